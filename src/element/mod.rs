@@ -1,0 +1,1 @@
+//! Elements: pure functions from coordinates and constants to matrices.

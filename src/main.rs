@@ -1,0 +1,2 @@
+//! `squeal`
+fn main() {}
