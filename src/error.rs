@@ -22,6 +22,9 @@ pub enum Error {
     /// PETSc, SLEPc, MUMPS or METIS reported an error. Exit code 1.
     #[error("{0}")]
     Library(String),
+    /// Another rank failed with this exit code and says why itself.
+    #[error("another rank failed")]
+    Elsewhere(i32),
 }
 
 /// Result of everything in this crate that can fail.
@@ -34,6 +37,7 @@ impl Error {
             Error::Input(_) => 2,
             Error::NotConverged(_) => 3,
             Error::Io { .. } | Error::Library(_) => 1,
+            Error::Elsewhere(code) => *code,
         }
     }
 

@@ -1,8 +1,10 @@
 //! squeal
+pub mod assembly;
 pub mod contact;
 pub mod element;
 pub mod error;
 pub mod mesh;
 pub mod model;
+pub mod petsc;
 
 pub use error::{Error, Result};

@@ -1,1 +1,89 @@
-fn main(){}
+//! Finds Debian's real PETSc and SLEPc, METIS and MPI, and generates the bindings that `squeal` uses.
+
+use std::env;
+use std::path::PathBuf;
+
+/// The real-scalar flavour is pinned even where the complex packages are installed side by side.
+const REAL: &str = "/usr/lib/slepcdir/slepc-real/lib/pkgconfig:/usr/lib/petscdir/petsc-real/lib/pkgconfig:\
+    /usr/lib/slepcdir/slepc3.18/x86_64-linux-gnu-real/lib/pkgconfig:\
+    /usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/pkgconfig";
+
+/// Everything `squeal` calls; whatever these need comes along.
+const FUNCTIONS: &[&str] = &[
+    "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Bcast|Barrier|Abort)",
+    "Petsc(InitializeNoArguments|OptionsSetValue|OptionsClearValue|PushErrorHandler|PopErrorHandler|Error|GetVersion)",
+    "PetscObject(SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
+    "Slepc(Initialize|InitializeNoArguments|Finalize|GetVersion)",
+    "Vec(Create|CreateMPI|CreateSeq|CreateMPIWithArray|CreateSeqWithArray|Destroy|Duplicate|Copy|Set|Scale|AXPY|AYPX|WAXPY|Dot|Norm|MDot|PointwiseMult)",
+    "Vec(GetArray|RestoreArray|GetArrayRead|RestoreArrayRead|GetLocalSize|GetSize|GetOwnershipRange|SetValues|AssemblyBegin|AssemblyEnd)",
+    "VecScatter(Create|CreateToAll|CreateToZero|Begin|End|Destroy)",
+    "IS(CreateGeneral|CreateStride|Destroy)",
+    "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
+    "Mat(SeqAIJSetPreallocationCSR|MPIAIJSetPreallocationCSR|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|ConvertIfNeeded)",
+    "Mat(CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
+    "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
+    "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",
+    "KSP(SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
+    "PC(SetType|ShellSetApply|ShellSetApplyTranspose|ShellSetContext|ShellGetContext|ShellSetName)",
+    "SNES(Create|Destroy|SetType|SetFunction|SetJacobian|SetConvergenceTest|SetTolerances|SetFromOptions|SetOptionsPrefix|Solve|GetKSP|GetLineSearch)",
+    "SNES(GetConvergedReason|GetIterationNumber|GetFunctionNorm|MonitorSet|SetFunctionDomainError|SetMaxLinearSolveFailures|GetSolution|LineSearchSetType|LineSearchSetTolerances|LineSearchGetLambda|GetNumberFunctionEvals)",
+    "PEP(Create|Destroy|SetOperators|SetProblemType|SetType|SetDimensions|SetTarget|SetWhichEigenpairs|SetTolerances|SetScale|SetRefine|SetExtract|SetFromOptions|SetOptionsPrefix)",
+    "PEP(Solve|GetST|GetConverged|GetEigenpair|GetIterationNumber|GetConvergedReason|MonitorSet|SetStoppingTestFunction|StoppingBasic|SetInitialSpace|SetConvergenceTest|TOARSetRestart|TOARSetLocking|GetDimensions)",
+    "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
+    "METIS_(PartGraphKway|PartGraphRecursive|NodeND|SetDefaultOptions)",
+    "squeal_.*",
+];
+
+fn main() {
+    let path = env::var("PKG_CONFIG_PATH").unwrap_or_default();
+    // SAFETY: a build script is single-threaded here.
+    unsafe { env::set_var("PKG_CONFIG_PATH", format!("{REAL}:{path}")) };
+    for library in ["metis"] {
+        println!("cargo:rustc-link-lib={library}");
+    }
+    // Before petsc: then PETSc's own calls of MUMPS find the build that has SCOTCH.
+    println!("cargo:rustc-link-arg=-Wl,--no-as-needed");
+    println!("cargo:rustc-link-lib=dmumps_ptscotch");
+    let slepc = probe("slepc", "libslepc-real-dev");
+    let petsc = probe("petsc", "libpetsc-real-dev");
+    let mpi = probe("mpi-c", "libopenmpi-dev");
+    let includes: Vec<PathBuf> = [slepc, petsc, mpi].into_iter().flat_map(|library| library.include_paths).collect();
+    shim(&includes);
+    bindings(&includes);
+    println!("cargo:rerun-if-changed=wrapper.h");
+    println!("cargo:rerun-if-changed=shim.c");
+}
+
+fn probe(name: &str, package: &str) -> pkg_config::Library {
+    pkg_config::Config::new()
+        .probe(name)
+        .unwrap_or_else(|error| panic!("{name} is missing: apt-get install {package} (or run `make setup`)\n{error}"))
+}
+
+fn shim(includes: &[PathBuf]) {
+    cc::Build::new()
+        .file("shim.c")
+        .includes(includes)
+        .flag("-Werror=implicit-function-declaration")
+        .compile("squeal_shim");
+}
+
+fn bindings(includes: &[PathBuf]) {
+    let mut builder = bindgen::Builder::default()
+        .header("wrapper.h")
+        .clang_args(includes.iter().map(|path| format!("-I{}", path.display())))
+        .default_enum_style(bindgen::EnumVariation::NewType { is_bitfield: false, is_global: false })
+        .prepend_enum_name(false)
+        .layout_tests(false)
+        .generate_comments(false)
+        .derive_default(true);
+    for function in FUNCTIONS {
+        builder = builder.allowlist_function(function);
+    }
+    let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("bindings.rs");
+    builder
+        .generate()
+        .expect("bindgen reads PETSc's headers (needs libclang-dev)")
+        .write_to_file(out)
+        .expect("OUT_DIR is writable");
+}

@@ -1,0 +1,488 @@
+// Demo brake of squeal: ventilated disc, two pads, piston, floating caliper, bracket.
+//
+//   gmsh -3 meshes/brake.geo -setnumber size N -o brake.msh
+//
+// N = 1 small, 2 medium, 3 full, 4 million. Millimetres. The disc turns about z, its mid-plane is z = 0; the pads are
+// at +y; left/right = -x/+x; inner = z < 0 (piston), outer = z > 0 (fingers). Written for Gmsh >= 4.8, OpenCASCADE.
+// meshes/README.md has the dimensions, the names and the node counts.
+
+SetFactory("OpenCASCADE");
+DefineConstant[ size = {3, Choices{1 = "small", 2 = "medium", 3 = "full", 4 = "million"}, Name "Size"} ];
+If (size != 1 && size != 2 && size != 3 && size != 4)
+  Error("size must be 1 (small), 2 (medium), 3 (full) or 4 (million), not %g", size);
+  Exit;
+EndIf
+
+// ---------------------------------------------------------------------------------------------- what the size decides
+k = size - 1;
+// element edge, mm                small   medium  full    million
+h_disc_()     = {                  30.0,   12.0,   6.4,    4.7 };
+h_lining_()   = {                  18.0,   7.0,    4.0,    3.2 };
+h_plate_()    = {                  18.0,   8.0,    4.6,    3.6 };
+h_piston_()   = {                  18.0,   9.0,    5.0,    3.8 };
+h_caliper_()  = {                  30.0,   12.0,   6.0,    4.6 };
+h_bracket_()  = {                  30.0,   12.0,   6.0,    4.4 };
+per_turn_()   = {                  6,      7,      9,      11  };  // elements around a hole, at least
+vanes_()      = {                  7,      17,     37,     37  };  // primes: no doublet of a low nodal diameter is split
+rmin_()       = {                  15,     7,      0,      0   };  // corner radii below this stay sharp
+h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);
+h_caliper = h_caliper_(k);  h_bracket = h_bracket_(k);  vanes = vanes_(k);  rmin = rmin_(k);
+
+// --------------------------------------------------------------------------------------------------------- dimensions
+// disc
+disc_R = 140;  disc_t = 24;  cheek_t = 7;        // radius, thickness over both cheeks, one cheek
+rub_r = 90;                                      // inner radius of the rubbing faces
+cheek_r = 86;                                    // bore of the inner cheek
+vane_r0 = 89;  vane_r1 = 137;  vane_t = 180 / vanes;
+hat_R = 78;  hat_t = 7;  hat_z = 46;             // hat: outer radius, wall, height of its top
+bore_R = 32;  hub_n = 5;  hub_pcd = 108;  hub_d = 14.5;
+// pads
+lin_t = 11;  lin_R = 137;  lin_r = 93;           // lining: thickness, outer and inner radius
+lin_x0 = 47;  lin_x1 = 55;                       // half widths at the inner and outer corner
+cham_w = 8;  cham_d = 3.5;                       // chamfers at the leading and trailing edge
+slot_w = 4;  slot_d = 7;                         // radial slot
+bp_t = 5.5;  bp_R = 139.5;  bp_r = 90.5;  bp_x0 = 49;  bp_x1 = 57;
+ear_x0 = 60.5;  ear_x1 = 70;  ear_y0 = 98;  ear_y1 = 112;   // the part of an ear that sits in the bracket
+// piston and caliper
+pis_y = 115;  pis_R = 22;  pis_r = 14.5;  pis_l = 42;  pis_floor = 7;
+cyl_R = 32;  cyl_z0 = -92;  cyl_z1 = -39;  bore_z = -80;    // housing, and the floor of its bore
+bri_r = 144;                                     // the caliper's bridge keeps outside this radius
+fin_t = 16;                                      // fingers
+lug_z0 = -64;  lug_z1 = -52;                     // guide pin lugs
+pin_x = 80;  pin_y = 133;  pin_R = 6;
+// bracket
+brk_z = 36;  brk_gap = 15;  brk_r = 143.5;       // abutments from |z| = brk_gap to brk_z; radius over the disc's rim
+boss_z = -48;  pinhole_z = -10;                  // inboard end of the pin bosses, bottom of the pin holes
+bolt_x = 68;  bolt_y = 50;  bolt_R = 6.5;
+
+z_rub = disc_t / 2;  z_lin = z_rub + lin_t;  z_back = z_lin + bp_t;   // 12, 23, 28.5
+eps = 1e-3;
+
+// ------------------------------------------------------------------------------------------------------------- helpers
+// Prism over a polygon with rounded corners. In: pu(), pv(), pr() (corner radii), plane (0: u,v = x,y; 1: y,z; 2: x,z),
+// w0 and w1 (extent across the plane; w0 == w1 gives only the surface). Out: surf, vol.
+Macro RoundPoly
+  n = #pu();  first() = {};  last() = {};  crv() = {};
+  For i In {0:n-1}
+    a = (i + n - 1) % n;  b = (i + 1) % n;
+    ux = pu(a) - pu(i);  uy = pv(a) - pv(i);  l = Sqrt(ux*ux + uy*uy);  ux = ux / l;  uy = uy / l;
+    vx = pu(b) - pu(i);  vy = pv(b) - pv(i);  l = Sqrt(vx*vx + vy*vy);  vx = vx / l;  vy = vy / l;
+    np = 1;  qu() = {pu(i)};  qv() = {pv(i)};
+    If (pr(i) > 0 && pr(i) >= rmin)
+      half = Acos(ux*vx + uy*vy) / 2;
+      l = Sqrt((ux + vx)^2 + (uy + vy)^2);
+      np = 3;
+      qu() = {pu(i) + ux*pr(i)/Tan(half), pu(i) + (ux + vx)/l*pr(i)/Sin(half), pu(i) + vx*pr(i)/Tan(half)};
+      qv() = {pv(i) + uy*pr(i)/Tan(half), pv(i) + (uy + vy)/l*pr(i)/Sin(half), pv(i) + vy*pr(i)/Tan(half)};
+    EndIf
+    tag() = {};
+    For j In {0:np-1}
+      p = newp;
+      If (plane == 0)
+        Point(p) = {qu(j), qv(j), w0};
+      ElseIf (plane == 1)
+        Point(p) = {w0, qu(j), qv(j)};
+      Else
+        Point(p) = {qu(j), w0, qv(j)};
+      EndIf
+      tag() += {p};
+    EndFor
+    first() += {tag(0)};  last() += {tag(np-1)};
+    If (np == 3)
+      c = newl;  Circle(c) = {tag(0), tag(1), tag(2)};  crv() += {c};
+    Else
+      crv() += {-1};
+    EndIf
+  EndFor
+  loop() = {};
+  For i In {0:n-1}
+    b = (i + 1) % n;
+    If (crv(i) > 0)
+      loop() += {crv(i)};
+    EndIf
+    c = newl;  Line(c) = {last(i), first(b)};  loop() += {c};
+  EndFor
+  ll = newll;  Curve Loop(ll) = {loop()};
+  surf = news;  Plane Surface(surf) = {ll};
+  If (w1 != w0)
+    If (plane == 0)
+      out() = Extrude {0, 0, w1 - w0} { Surface{surf}; };
+    ElseIf (plane == 1)
+      out() = Extrude {w1 - w0, 0, 0} { Surface{surf}; };
+    Else
+      out() = Extrude {0, w1 - w0, 0} { Surface{surf}; };
+    EndIf
+    vol = out(1);
+  EndIf
+Return
+
+// A ring about (0, cy, .) or, where rr is 0, a cylinder. In: cy, rr, rR, w0, w1. Out: vol.
+Macro Ring
+  vol = newv;  Cylinder(vol) = {0, cy, w0, 0, 0, w1 - w0, rR};
+  If (rr > 0)
+    v2 = newv;  Cylinder(v2) = {0, cy, 2*w0 - w1, 0, 0, 3*(w1 - w0), rr};
+    out() = BooleanDifference { Volume{vol}; Delete; }{ Volume{v2}; Delete; };
+    vol = out(0);
+  EndIf
+Return
+
+// ---------------------------------------------------------------------------------------------------------------- disc
+// outer cheek with neck and hat, revolved
+z1 = disc_t / 2;  z0 = z1 - cheek_t;
+pu() = {disc_R, disc_R, rub_r, rub_r - 4, hat_R,   hat_R, bore_R, bore_R,        hat_R - hat_t, hat_R - hat_t};
+pv() = {z0,     z1,     z1,    z1 - 2,    z1 - 2,  hat_z, hat_z,  hat_z - hat_t, hat_z - hat_t, z0};
+pr() = {0,      0,      0,     0,         5,       10,    0,      0,             6,             0};
+plane = 2;  w0 = 0;  w1 = 0;  Call RoundPoly;
+out() = Extrude { {0, 0, 1}, {0, 0, 0}, 2*Pi } { Surface{surf}; };
+disc = out(1);
+Recursive Delete { Surface{surf}; }
+cy = 0;  rr = cheek_r;  rR = disc_R;  w0 = -z1;  w1 = -z0;  Call Ring;
+parts() = {vol};
+For i In {0:vanes-1}
+  v = newv;  Box(v) = {vane_r0, -vane_t/2, -z0, vane_r1 - vane_r0, vane_t, 2*z0};
+  Rotate { {0, 0, 1}, {0, 0, 0}, 2*Pi*(i + 0.5)/vanes + Pi/2 } { Volume{v}; }
+  parts() += {v};
+EndFor
+out() = BooleanUnion { Volume{disc}; Delete; }{ Volume{parts()}; Delete; };
+disc = out(0);
+holes() = {};
+For i In {0:hub_n-1}
+  a = 2*Pi*i/hub_n + Pi/2;
+  v = newv;  Cylinder(v) = {hub_pcd/2*Cos(a), hub_pcd/2*Sin(a), hat_z - 20, 0, 0, 40, hub_d/2};
+  holes() += {v};
+EndFor
+out() = BooleanDifference { Volume{disc}; Delete; }{ Volume{holes()}; Delete; };
+disc = out(0);
+
+// ---------------------------------------------------------------------------------------------------- outline of a finger plate
+// (the caliper's and, as an imprint, the outer backplate's)
+fpu() = {  52,  52,  45,  38,  16,  16, -16, -16, -38, -45, -52, -52};
+fpv() = { 146, 120, 98,   93,  93, 122, 122,  93,  93, 98,  120, 146};
+fpr() = {   0,   0,   8,   0,   5,  15.9, 15.9, 5,  0,   8,   0,   0};
+
+// ---------------------------------------------------------------------------------------------------------------- pads
+// Backplate and lining are fragmented together and share nodes. The back of the backplate carries an imprint of what
+// touches it (the piston's ring, the fingers), so that a slave surface is exactly the touching zone.
+// In: s = -1 inner, +1 outer. Out: lining, plate.
+Macro Pad
+  // backplate
+  y0 = Sqrt(bp_r^2 - bp_x0^2);  y1 = Sqrt(bp_R^2 - bp_x1^2);
+  m = (bp_x1 - bp_x0) / (y1 - y0);
+  pu() = {bp_x0 + m*(60 - y0), bp_x0 + m*(150 - y0), -bp_x0 - m*(150 - y0), -bp_x0 - m*(60 - y0)};
+  pv() = {60, 150, 150, 60};  pr() = {0, 0, 0, 0};
+  plane = 0;  w0 = s*z_lin;  w1 = s*z_back;  Call RoundPoly;
+  trap = vol;
+  cy = 0;  rr = bp_r;  rR = bp_R;  Call Ring;
+  out() = BooleanIntersection { Volume{trap}; Delete; }{ Volume{vol}; Delete; };
+  plate = out(0);
+  ears() = {};
+  For e In {-1:1:2}
+    pu() = {e*40, e*50, e*ear_x0, e*ear_x1, e*ear_x1, e*ear_x0, e*50, e*40};
+    pv() = {ear_y0 - 4.5, ear_y0 - 4.5, ear_y0, ear_y0, ear_y1, ear_y1, ear_y1 + 4.5, ear_y1 + 4.5};
+    pr() = {0, 0, 0, 0, 0, 0, 0, 0};
+    Call RoundPoly;
+    ears() += {vol};
+  EndFor
+  out() = BooleanUnion { Volume{plate}; Delete; }{ Volume{ears()}; Delete; };
+  plate = out(0);
+  // lining
+  y0 = Sqrt(lin_r^2 - lin_x0^2);  y1 = Sqrt(lin_R^2 - lin_x1^2);
+  m = (lin_x1 - lin_x0) / (y1 - y0);
+  pu() = {lin_x0 + m*(60 - y0), lin_x0 + m*(150 - y0), -lin_x0 - m*(150 - y0), -lin_x0 - m*(60 - y0)};
+  pv() = {60, 150, 150, 60};  pr() = {0, 0, 0, 0};
+  w0 = s*z_rub;  w1 = s*z_lin;  Call RoundPoly;
+  trap = vol;
+  cy = 0;  rr = lin_r;  rR = lin_R;  Call Ring;
+  out() = BooleanIntersection { Volume{trap}; Delete; }{ Volume{vol}; Delete; };
+  lining = out(0);
+  cuts() = {};
+  v = newv;  Box(v) = {-slot_w/2, 60, s*(z_rub + slot_d) - (s > 0 ? 20 : 0), slot_w, 90, 20};
+  cuts() += {v};
+  For e In {-1:1:2}
+    x = lin_x0 + m*(60 - y0);
+    p = newp;
+    Point(p)     = {e*(x - cham_w - 2*cham_w/cham_d), 60, s*(z_rub - 2)};
+    Point(p + 1) = {e*(x + 4),                        60, s*(z_rub - 2)};
+    Point(p + 2) = {e*(x + 4),                        60, s*(z_rub + cham_d*(1 + 4/cham_w))};
+    c = newl;
+    Line(c) = {p, p + 1};  Line(c + 1) = {p + 1, p + 2};  Line(c + 2) = {p + 2, p};
+    ll = newll;  Curve Loop(ll) = {c, c + 1, c + 2};
+    sf = news;  Plane Surface(sf) = {ll};
+    out() = Extrude {e*m*90, 90, 0} { Surface{sf}; };
+    cuts() += {out(1)};
+  EndFor
+  out() = BooleanDifference { Volume{lining}; Delete; }{ Volume{cuts()}; Delete; };
+  lining = out(0);
+  // imprint
+  If (s < 0)
+    tool = news;  Disk(tool) = {0, pis_y, -z_back, pis_R};
+    t2 = news;  Disk(t2) = {0, pis_y, -z_back, pis_r};
+    imprint() = {tool, t2};
+  Else
+    pu() = fpu();  pv() = fpv();  pr() = fpr();  w0 = z_back;  w1 = z_back;  Call RoundPoly;
+    t2 = news;  Disk(t2) = {0, 0, z_back, bp_R};
+    imprint() = BooleanIntersection { Surface{surf}; Delete; }{ Surface{t2}; Delete; };
+  EndIf
+  out() = BooleanFragments { Volume{lining, plate}; Delete; }{ Surface{imprint()}; Delete; };
+  lining = out(0);  plate = out(1);
+Return
+s = -1;  Call Pad;
+lining_inner = lining;  plate_inner = plate;
+s = 1;   Call Pad;
+lining_outer = lining;  plate_outer = plate;
+
+// -------------------------------------------------------------------------------------------------------------- piston
+// The wall is split where it enters the bore: `piston_side` is the part that the bore guides.
+Geometry.OCCUnionUnify = 0;
+cy = pis_y;  rr = pis_r;  rR = pis_R;  w0 = -z_back;  w1 = cyl_z1;  Call Ring;
+piston = vol;
+rr = pis_r;  w0 = cyl_z1;  w1 = -z_back - pis_l + pis_floor;  Call Ring;
+v3 = vol;
+rr = 0;  w0 = w1;  w1 = -z_back - pis_l;  Call Ring;
+out() = BooleanUnion { Volume{piston}; Delete; }{ Volume{v3, vol}; Delete; };
+piston = out(0);
+Geometry.OCCUnionUnify = 1;
+
+// ------------------------------------------------------------------------------------------------------------- caliper
+z_fin = z_back + fin_t;
+plane = 0;
+// bridge
+pu() = {56, 56, 34, -34, -56, -56};  pv() = {120, 147, 163, 163, 147, 120};  pr() = {0, 8, 12, 12, 8, 0};
+w0 = -72;  w1 = z_fin;  Call RoundPoly;
+bridge = vol;
+cy = 0;  rr = 0;  rR = bri_r;  w0 = -100;  w1 = 100;  Call Ring;
+v = newv;  Box(v) = {-20, 120, -20, 40, 60, 40};                       // window
+pu() = {146, 180, 180};  pv() = {-80, -80, -22};  pr() = {0, 0, 0};  // slope above the housing
+plane = 1;  w0 = -70;  w1 = 70;  v3 = vol;  Call RoundPoly;
+out() = BooleanDifference { Volume{bridge}; Delete; }{ Volume{v3, vol, v}; Delete; };
+bridge = out(0);
+plane = 0;
+// fingers
+pu() = fpu();  pv() = fpv();  pr() = fpr();  w0 = z_back;  w1 = z_fin;  Call RoundPoly;
+fingers = vol;
+// shoulders between the housing and the bridge
+pu() = {53, 53, 33, -33, -53, -53};  pv() = {148, 132, 96, 96, 132, 148};  pr() = {0, 12, 0, 0, 12, 0};
+w0 = -68;  w1 = cyl_z1;  Call RoundPoly;
+shoulder = vol;
+// housing
+cy = pis_y;  rr = 0;  rR = cyl_R;  w0 = cyl_z0;  w1 = cyl_z1;  Call Ring;
+house = vol;
+// lugs
+lugs() = {};
+For e In {-1:1:2}
+  pu() = {e*20, e*91, e*91, e*74, e*20};  pv() = {144, 144, 122, 122, 97};  pr() = {0, 10.9, 10.9, 8, 0};
+  w0 = lug_z0;  w1 = lug_z1;  Call RoundPoly;
+  lugs() += {vol};
+EndFor
+out() = BooleanUnion { Volume{bridge}; Delete; }{ Volume{fingers, shoulder, house, lugs()}; Delete; };
+caliper = out(0);
+cy = pis_y;  rr = 0;  rR = pis_R;  w0 = bore_z;  w1 = cyl_z1 + 5;  Call Ring;
+cuts() = {vol};
+For e In {-1:1:2}
+  v = newv;  Cylinder(v) = {e*pin_x, pin_y, lug_z0 - 5, 0, 0, lug_z1 - lug_z0 + 10, pin_R};
+  cuts() += {v};
+EndFor
+out() = BooleanDifference { Volume{caliper}; Delete; }{ Volume{cuts()}; Delete; };
+caliper = out(0);
+
+// ------------------------------------------------------------------------------------------------------------- bracket
+plane = 0;  arms() = {};
+For e In {-1:1:2}
+  // column over the rim, with the channel for the ears
+  pu() = {e*ear_x0, e*ear_x0, e*ear_x1, e*ear_x1, e*ear_x0, e*ear_x0, e*69,  e*91,  e*91,  e*86, e*76};
+  pv() = {62,       ear_y0,   ear_y0,   ear_y1,   ear_y1,   136,      146,   146,   118,   96,   62};
+  pr() = {0,        0,        0,        0,        0,        0,        0,     11,    20,    20,   0};
+  w0 = -brk_z;  w1 = brk_z;  Call RoundPoly;
+  cy = 0;  v1 = vol;  rr = 0;  rR = brk_r;  w0 = -brk_gap;  w1 = brk_gap;  Call Ring;
+  out() = BooleanDifference { Volume{v1}; Delete; }{ Volume{vol}; Delete; };
+  arms() += {out(0)};
+  // pin boss
+  pu() = {e*69, e*91, e*91, e*84, e*69};  pv() = {146, 146, 128, 121, 121};  pr() = {0, 11, 0, 0, 0};
+  w0 = boss_z;  w1 = -brk_z;  Call RoundPoly;
+  arms() += {vol};
+  // inboard leg with the mounting bolt
+  pu() = {e*55, e*ear_x0, e*78, e*82, e*81, e*55};
+  pv() = {66,   86,       86,   70,   37,   37};
+  pr() = {0,    0,        0,    0,    12.9,   12.9};
+  w0 = -brk_z;  w1 = -18;  Call RoundPoly;
+  arms() += {vol};
+EndFor
+// inboard cross-bar below the inner pad, outboard tie bar between hat and outer pad
+For e In {-1:1:2}
+  cy = 0;  rr = (e < 0) ? 64 : hat_R + 3;  rR = 88;
+  w0 = (e < 0) ? -brk_z : 17;  w1 = (e < 0) ? -21 : 29;  Call Ring;
+  v1 = vol;
+  pu() = {-66, -66, 66, 66};  pv() = {(e < 0) ? 46 : 61, 95, 95, (e < 0) ? 46 : 61};
+  pr() = {0, 0, 0, 0};  Call RoundPoly;
+  out() = BooleanIntersection { Volume{v1}; Delete; }{ Volume{vol}; Delete; };
+  arms() += {out(0)};
+EndFor
+v1 = arms(0);
+out() = BooleanUnion { Volume{v1}; Delete; }{ Volume{arms({1:#arms()-1})}; Delete; };
+bracket = out(0);
+cuts() = {};
+For e In {-1:1:2}
+  v = newv;  Cylinder(v) = {e*pin_x, pin_y, boss_z - 5, 0, 0, pinhole_z - boss_z + 5, pin_R};  cuts() += {v};
+  v = newv;  Cylinder(v) = {e*bolt_x, bolt_y, -brk_z - 5, 0, 0, 40, bolt_R};  cuts() += {v};
+EndFor
+out() = BooleanDifference { Volume{bracket}; Delete; }{ Volume{cuts()}; Delete; };
+bracket = out(0);
+Printf("parts: %g %g %g %g %g %g %g %g", disc, lining_inner, plate_inner, lining_outer, plate_outer, piston, caliper, bracket);
+
+// ---------------------------------------------------------------------------------------------------------------- names
+Physical Volume("disc") = {disc};
+Physical Volume("lining_inner") = {lining_inner};
+Physical Volume("backplate_inner") = {plate_inner};
+Physical Volume("lining_outer") = {lining_outer};
+Physical Volume("backplate_outer") = {plate_outer};
+Physical Volume("piston") = {piston};
+Physical Volume("caliper") = {caliper};
+Physical Volume("bracket") = {bracket};
+
+// Faces of a part within a box. In: part, and the box x0 y0 z0 to x1 y1 z1 (grown by tol). Out: found().
+tol = 0.05;
+Macro Faces
+  near() = Surface In BoundingBox {bx0 - tol, by0 - tol, bz0 - tol, bx1 + tol, by1 + tol, bz1 + tol};
+  own() = Abs(Boundary { Volume{part}; });
+  found() = {};
+  For i In {0:#near()-1}
+    For j In {0:#own()-1}
+      If (near(i) == own(j))
+        found() += {near(i)};
+      EndIf
+    EndFor
+  EndFor
+  If (#found() == 0)
+    Error("no face of part %g in the box (%g %g %g) (%g %g %g)", part, bx0, by0, bz0, bx1, by1, bz1);
+  EndIf
+Return
+
+// disc
+part = disc;  bx0 = -disc_R;  bx1 = disc_R;  by0 = -disc_R;  by1 = disc_R;
+bz0 = -z_rub;  bz1 = -z_rub;  Call Faces;
+Physical Surface("disc_inner_face") = found();
+bz0 = z_rub;  bz1 = z_rub;  Call Faces;
+Physical Surface("disc_outer_face") = found();
+all() = {};
+For h In {0:hub_n-1}
+  a = 2*Pi*h/hub_n + Pi/2;  x = hub_pcd/2*Cos(a);  y = hub_pcd/2*Sin(a);
+  bx0 = x - hub_d/2;  bx1 = x + hub_d/2;  by0 = y - hub_d/2;  by1 = y + hub_d/2;  bz0 = hat_z - hat_t;  bz1 = hat_z;  Call Faces;
+  all() += {found()};
+EndFor
+Physical Surface("hub_bolts") = all();
+
+// pads
+bx0 = -100;  bx1 = 100;  by0 = 60;  by1 = 150;
+part = lining_inner;  bz0 = -z_rub;  bz1 = -z_rub;  Call Faces;
+Physical Surface("lining_inner_face") = found();
+part = lining_outer;  bz0 = z_rub;  bz1 = z_rub;  Call Faces;
+Physical Surface("lining_outer_face") = found();
+// the ring under the piston: what lies within the piston's radius, without the disc inside
+part = plate_inner;  bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;  bz0 = -z_back;  bz1 = -z_back;  Call Faces;
+ring() = found();
+bx0 = -pis_r;  bx1 = pis_r;  by0 = pis_y - pis_r;  by1 = pis_y + pis_r;  Call Faces;
+ring() -= {found()};
+Physical Surface("backplate_inner_back") = ring();
+part = plate_outer;  by0 = 92;  by1 = bp_R;  bz0 = z_back;  bz1 = z_back;  bx0 = -52;  bx1 = 52;  Call Faces;
+Physical Surface("backplate_outer_back") = found();
+
+// ears and abutments: the end face and both radial faces
+Macro Ears
+  all() = {};
+  bx0 = (e < 0) ? -ear_x1 : ear_x0;  bx1 = (e < 0) ? -ear_x0 : ear_x1;
+  by0 = ear_y0;  by1 = ear_y0;  Call Faces;
+  all() += {found()};
+  by0 = ear_y1;  by1 = ear_y1;  Call Faces;
+  all() += {found()};
+  bx0 = e*ear_x1;  bx1 = e*ear_x1;  by0 = ear_y0;  Call Faces;
+  all() += {found()};
+Return
+e = -1;
+part = plate_inner;  bz0 = -z_back;  bz1 = -z_lin;  Call Ears;
+Physical Surface("pad_inner_left") = all();
+part = plate_outer;  bz0 = z_lin;  bz1 = z_back;  Call Ears;
+Physical Surface("pad_outer_left") = all();
+part = bracket;  bz0 = -brk_z;  bz1 = -brk_gap;  Call Ears;
+Physical Surface("bracket_inner_left") = all();
+part = bracket;  bz0 = brk_gap;  bz1 = brk_z;  Call Ears;
+Physical Surface("bracket_outer_left") = all();
+e = 1;
+part = plate_inner;  bz0 = -z_back;  bz1 = -z_lin;  Call Ears;
+Physical Surface("pad_inner_right") = all();
+part = plate_outer;  bz0 = z_lin;  bz1 = z_back;  Call Ears;
+Physical Surface("pad_outer_right") = all();
+part = bracket;  bz0 = -brk_z;  bz1 = -brk_gap;  Call Ears;
+Physical Surface("bracket_inner_right") = all();
+part = bracket;  bz0 = brk_gap;  bz1 = brk_z;  Call Ears;
+Physical Surface("bracket_outer_right") = all();
+
+// piston and bore
+bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;
+part = piston;  bz0 = -z_back;  bz1 = -z_back;  Call Faces;
+Physical Surface("piston_face") = found();
+bz0 = -z_back - pis_l;  bz1 = -z_back - pis_l;  Call Faces;
+Physical Surface("piston_floor") = found();
+bz1 = cyl_z1;  Call Faces;  // wall, floor and, without it, the wall alone
+wall() = found();
+bz1 = bz0;  Call Faces;
+wall() -= {found()};
+bx0 = -pis_r;  bx1 = pis_r;  by0 = pis_y - pis_r;  by1 = pis_y + pis_r;  bz1 = cyl_z1;  Call Faces;
+wall() -= {found()};
+Physical Surface("piston_side") = wall();
+part = caliper;  bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;
+bz0 = bore_z;  bz1 = bore_z;  Call Faces;
+floor() = found();
+Physical Surface("caliper_bore_floor") = floor();
+bz1 = cyl_z1;  Call Faces;
+wall() = found();
+wall() -= {floor()};
+Physical Surface("caliper_bore_wall") = wall();
+bx0 = -60;  bx1 = 60;  by0 = 90;  by1 = 170;  bz0 = z_back;  bz1 = z_back;  part = caliper;  Call Faces;
+Physical Surface("caliper_fingers") = found();
+
+// pins and bolts
+by0 = pin_y - pin_R;  by1 = pin_y + pin_R;
+bx0 = -pin_x - pin_R;  bx1 = -pin_x + pin_R;
+part = caliper;  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
+Physical Surface("caliper_pin_left") = found();
+part = bracket;  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
+hole() = found();
+bz0 = pinhole_z;  Call Faces;
+hole() -= {found()};
+Physical Surface("bracket_pin_left") = hole();
+bx0 = pin_x - pin_R;  bx1 = pin_x + pin_R;
+part = caliper;  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
+Physical Surface("caliper_pin_right") = found();
+part = bracket;  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
+hole() = found();
+bz0 = pinhole_z;  Call Faces;
+hole() -= {found()};
+Physical Surface("bracket_pin_right") = hole();
+all() = {};  bz0 = -brk_z;  bz1 = 0;  by0 = bolt_y - bolt_R;  by1 = bolt_y + bolt_R;
+For e In {-1:1:2}
+  bx0 = e*bolt_x - bolt_R;  bx1 = e*bolt_x + bolt_R;  Call Faces;
+  all() += {found()};
+EndFor
+Physical Surface("bracket_bolts") = all();
+
+// ---------------------------------------------------------------------------------------------------------------- mesh
+MeshSize { PointsOf { Volume{disc}; } } = h_disc;
+MeshSize { PointsOf { Volume{caliper}; } } = h_caliper;
+MeshSize { PointsOf { Volume{bracket}; } } = h_bracket;
+MeshSize { PointsOf { Volume{piston}; } } = h_piston;
+MeshSize { PointsOf { Volume{plate_inner, plate_outer}; } } = h_plate;
+MeshSize { PointsOf { Volume{lining_inner, lining_outer}; } } = h_lining;
+Mesh.MeshSizeExtendFromBoundary = 1;
+Mesh.MeshSizeFromPoints = 1;
+Mesh.MeshSizeFromCurvature = per_turn_(k);
+Mesh.Algorithm = 6;               // frontal-Delaunay
+Mesh.Algorithm3D = 10;            // HXT
+Mesh.ElementOrder = 2;
+Mesh.SecondOrderLinear = 0;
+Mesh.HighOrderOptimize = 0;
+Mesh.Optimize = 1;
+Mesh.OptimizeThreshold = 0.35;
+General.NumThreads = 1;           // and the default random seed: the same mesh every time
+Mesh.MshFileVersion = 4.1;
+Mesh.Binary = 1;
+Mesh.SaveAll = 0;

@@ -1,0 +1,18 @@
+//! From elements to the system matrices: one layer for full and reduced models alike.
+//!
+//! Whatever adds to M, C or K is a family of [`Elements`]: a list of nodes and dense matrices for each member. A *node*
+//! is a place for up to three equations: a mesh node, a reference point, or three generalised coordinates of a super-element.
+//! [`DofMap`] numbers the equations (held displacements have none) so that each rank owns a contiguous range; [`Pattern`]
+//! is the union of everything that couples nodes, contact points included, open or closed, so that it never changes;
+//! [`System`] is the result.
+//!
+//! Each rank computes every element that touches a node of its own and keeps the rows that it owns. Elements on the
+//! border are computed twice and nothing is communicated: every entry is the same sum in the same order on any number of ranks.
+
+mod dofs;
+mod pattern;
+mod system;
+
+pub use dofs::DofMap;
+pub use pattern::{BlockRows, Pattern};
+pub use system::{Connectivity, ElementMatrices, Elements, System};

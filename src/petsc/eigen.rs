@@ -1,0 +1,204 @@
+//! Quadratic eigenproblems by SLEPc PEP with a factor of ours inside.
+
+use std::ffi::c_void;
+use std::ptr;
+
+use num_complex::Complex64;
+use squeal_sys as sys;
+
+use super::error::{Trap, check};
+use super::vector::Borrowed;
+use super::{Comm, Factor, Matrix, Vector};
+use crate::Result;
+
+/// The polynomial `lambda^2 M + lambda C + K` and a factor of it at a real shift.
+pub struct Quadratic<'a> {
+    /// Mass.
+    pub m: &'a Matrix,
+    /// Damping.
+    pub c: &'a Matrix,
+    /// Stiffness.
+    pub k: &'a Matrix,
+    /// The real shift sigma.
+    pub shift: f64,
+    /// Factor of `sigma^2 M + sigma C + K`.
+    pub factor: &'a Factor,
+}
+
+/// How the eigensolver is to run.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Eigenvalues wanted, those nearest to the shift (conjugates count separately).
+    pub n_wanted: usize,
+    /// Dimension of the search space (0: SLEPc's choice).
+    pub n_basis: usize,
+    /// Relative residual at which an eigenpair counts as converged.
+    pub tolerance: f64,
+    /// Restarts at most.
+    pub max_restarts: usize,
+}
+
+/// One eigenvalue with non-negative imaginary part, and its vector.
+pub struct Pair {
+    /// The eigenvalue, 1/s.
+    pub lambda: Complex64,
+    /// Real part of the vector.
+    pub re: Vector,
+    /// Imaginary part of the vector.
+    pub im: Vector,
+}
+
+struct Context<'a> {
+    factor: &'a Factor,
+    comm: Comm,
+    n_solves: usize,
+    progress: &'a mut dyn FnMut(usize, usize),
+    trap: Trap,
+}
+
+/// Owns a PEP for the length of a solve.
+struct Pep(sys::PEP);
+
+impl Drop for Pep {
+    fn drop(&mut self) {
+        // SAFETY: this handle owns the solver and the session is alive.
+        unsafe { sys::PEPDestroy(&mut self.0) };
+    }
+}
+
+/// What the solver found.
+pub struct Found {
+    /// The eigenpairs of the closed upper half plane, nearest to the shift first.
+    pub pairs: Vec<Pair>,
+    /// Number of eigenvalues that converged, conjugates counted.
+    pub n_converged: usize,
+    /// Solves with the factor.
+    pub n_solves: usize,
+    /// Restarts.
+    pub n_restarts: usize,
+}
+
+/// Eigenpairs nearest to the shift by TOAR (two-level orthogonal Arnoldi) on the inverted problem. `progress` hears of
+/// (converged, solves). Options of the prefix `stability_` act (`-stability_pep_view`). Collective.
+///
+/// # Errors
+/// PETSc's.
+///
+/// # Panics
+/// Where `progress` panicked.
+pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(usize, usize)) -> Result<Found> {
+    let comm = problem.k.comm().clone();
+    let mut context =
+        Context { factor: problem.factor, comm: comm.clone(), n_solves: 0, progress, trap: Trap::default() };
+    let pointer = ptr::from_mut(&mut context).cast::<c_void>();
+    let mut pep = Pep(ptr::null_mut());
+    // SAFETY: `context` outlives the solver, and is reached through `pointer` only while PEPSolve runs.
+    unsafe {
+        check(sys::PEPCreate(comm.raw(), &mut pep.0))?;
+        check(sys::PEPSetOptionsPrefix(pep.0, c"stability_".as_ptr()))?;
+        let mut operators = [problem.k.raw(), problem.c.raw(), problem.m.raw()];
+        check(sys::PEPSetOperators(pep.0, 3, operators.as_mut_ptr()))?;
+        configure(pep.0, problem.shift, options)?;
+        use_factor(pep.0, problem.shift, pointer)?;
+        check(sys::PEPMonitorSet(pep.0, Some(monitor), pointer, None))?;
+        check(sys::PEPSetFromOptions(pep.0))?;
+        let code = sys::PEPSolve(pep.0);
+        (*pointer.cast::<Context>()).trap.release(code)?;
+    }
+    let n_solves = context.n_solves;
+    collect(&pep, &comm, problem.k.n_local(), n_solves)
+}
+
+unsafe fn configure(pep: sys::PEP, shift: f64, options: &Options) -> Result<()> {
+    let or_default = |n: usize| if n == 0 { super::DETERMINE } else { n as i32 };
+    let (wanted, basis) = (options.n_wanted as i32, or_default(options.n_basis));
+    let (decide, none) = (super::DETERMINE, ptr::null_mut());
+    // SAFETY: the solver is alive; the strings are static.
+    unsafe {
+        check(sys::PEPSetType(pep, c"toar".as_ptr()))?;
+        check(sys::PEPSetProblemType(pep, sys::PEPProblemType::PEP_GENERAL))?;
+        check(sys::PEPSetTarget(pep, shift))?;
+        check(sys::PEPSetWhichEigenpairs(pep, sys::PEPWhich::PEP_TARGET_MAGNITUDE))?;
+        check(sys::PEPSetDimensions(pep, wanted, basis, decide))?;
+        check(sys::PEPSetTolerances(pep, options.tolerance, options.max_restarts as i32))?;
+        check(sys::PEPSetScale(
+            pep,
+            sys::PEPScale::PEP_SCALE_SCALAR,
+            f64::from(decide),
+            none,
+            none,
+            decide,
+            f64::from(decide),
+        ))
+    }
+}
+
+/// The spectral transformation inverts with our factor.
+unsafe fn use_factor(pep: sys::PEP, shift: f64, context: *mut c_void) -> Result<()> {
+    let (mut st, mut ksp, mut pc) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
+    // SAFETY: the solver is alive; the strings are static.
+    unsafe {
+        check(sys::PEPGetST(pep, &mut st))?;
+        check(sys::STSetType(st, c"sinvert".as_ptr()))?;
+        check(sys::STSetShift(st, shift))?;
+        check(sys::STGetKSP(st, &mut ksp))?;
+        check(sys::KSPSetType(ksp, c"preonly".as_ptr()))?;
+        check(sys::KSPGetPC(ksp, &mut pc))?;
+        check(sys::PCSetType(pc, c"shell".as_ptr()))?;
+        check(sys::PCShellSetContext(pc, context))?;
+        check(sys::PCShellSetApply(pc, Some(apply)))
+    }
+}
+
+unsafe extern "C" fn apply(pc: sys::PC, b: sys::Vec, x: sys::Vec) -> sys::PetscErrorCode {
+    let mut pointer: *mut c_void = ptr::null_mut();
+    // SAFETY: the context is the one that `use_factor` set; PEP runs its callbacks one at a time.
+    let context = unsafe {
+        sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast());
+        &mut *pointer.cast::<Context>()
+    };
+    context.n_solves += 1;
+    let (factor, comm) = (context.factor, &context.comm);
+    context.trap.guard(c"solve", || factor.solve(&Borrowed::new(b, comm), Borrowed::new(x, comm).get_mut()))
+}
+
+unsafe extern "C" fn monitor(
+    _: sys::PEP,
+    _restart: sys::PetscInt,
+    n_converged: sys::PetscInt,
+    _re: *mut f64,
+    _im: *mut f64,
+    _errors: *mut f64,
+    _n: sys::PetscInt,
+    pointer: *mut c_void,
+) -> sys::PetscErrorCode {
+    // SAFETY: the pointer is the one that `solve` registered.
+    let context = unsafe { &mut *pointer.cast::<Context>() };
+    let (progress, n_solves) = (&mut *context.progress, context.n_solves);
+    context.trap.guard(c"progress", || {
+        progress(n_converged as usize, n_solves);
+        Ok(())
+    })
+}
+
+/// Real eigenpairs of PETSc's real arithmetic, translated once: conjugates come as neighbours, the first is kept.
+fn collect(pep: &Pep, comm: &Comm, n_local: usize, n_solves: usize) -> Result<Found> {
+    let (mut n_converged, mut n_restarts) = (0, 0);
+    // SAFETY: the solver is alive.
+    unsafe {
+        check(sys::PEPGetConverged(pep.0, &mut n_converged))?;
+        check(sys::PEPGetIterationNumber(pep.0, &mut n_restarts))?;
+    }
+    let mut pairs = Vec::new();
+    for i in 0..n_converged {
+        let (re, im) = (Vector::zeros(comm, n_local)?, Vector::zeros(comm, n_local)?);
+        let (mut a, mut omega) = (0.0, 0.0);
+        // SAFETY: the vectors are alive and of the problem's size.
+        check(unsafe { sys::PEPGetEigenpair(pep.0, i, &mut a, &mut omega, re.raw(), im.raw()) })?;
+        if omega >= 0.0 {
+            pairs.push(Pair { lambda: Complex64::new(a, omega), re, im });
+        }
+    }
+    let (n_converged, n_restarts) = (n_converged as usize, n_restarts as usize);
+    Ok(Found { pairs, n_converged, n_solves, n_restarts })
+}

@@ -1,0 +1,90 @@
+//! From PETSc's error codes and frames to [`Error`].
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::ffi::{CStr, c_char, c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+use squeal_sys as sys;
+
+use crate::{Error, Result};
+
+thread_local! {
+    static FRAMES: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Collects one frame of PETSc's error stack; the innermost comes first and carries the message.
+pub(super) unsafe extern "C" fn collect(
+    _comm: sys::MPI_Comm,
+    line: c_int,
+    function: *const c_char,
+    file: *const c_char,
+    code: sys::PetscErrorCode,
+    kind: sys::PetscErrorType,
+    message: *const c_char,
+    _context: *mut c_void,
+) -> sys::PetscErrorCode {
+    let text = |pointer: *const c_char| {
+        if pointer.is_null() {
+            return String::new();
+        }
+        // SAFETY: PETSc passes NUL-terminated strings that live for the call.
+        unsafe { CStr::from_ptr(pointer) }.to_string_lossy().trim().to_owned()
+    };
+    let first = kind == sys::PetscErrorType::PETSC_ERROR_INITIAL;
+    let frame = match (first, text(message)) {
+        (true, message) if !message.is_empty() => {
+            format!("{message}\n    in {} ({}:{line})", text(function), text(file))
+        }
+        _ => format!("    in {} ({}:{line})", text(function), text(file)),
+    };
+    FRAMES.with_borrow_mut(|frames| frames.push(frame));
+    code
+}
+
+/// The one door: a code of 0 passes, any other becomes an error with the frames collected on the way.
+pub(super) fn check(code: sys::PetscErrorCode) -> Result<()> {
+    if code == 0 {
+        return Ok(());
+    }
+    let frames = FRAMES.with_borrow_mut(std::mem::take);
+    Err(Error::Library(format!("PETSc error {code}: {}", frames.join("\n"))))
+}
+
+/// Carries an error or a panic across PETSc's C frames.
+#[derive(Default)]
+pub(super) struct Trap {
+    error: Option<Error>,
+    panic: Option<Box<dyn Any + Send>>,
+}
+
+impl Trap {
+    /// Runs a callback's body; what goes wrong is kept here and PETSc is told to unwind.
+    pub(super) fn guard(&mut self, name: &CStr, body: impl FnOnce() -> Result<()>) -> sys::PetscErrorCode {
+        let message = match catch_unwind(AssertUnwindSafe(body)) {
+            Ok(Ok(())) => return 0,
+            Ok(Err(error)) => {
+                self.error = Some(error);
+                c"error in a callback"
+            }
+            Err(panic) => {
+                self.panic = Some(panic);
+                c"panic in a callback"
+            }
+        };
+        // SAFETY: both strings are NUL-terminated and static for the call.
+        unsafe { sys::squeal_raise(name.as_ptr(), message.as_ptr()) }
+    }
+
+    /// What the solve comes to: the callback's own panic or error first, PETSc's second.
+    pub(super) fn release(&mut self, code: sys::PetscErrorCode) -> Result<()> {
+        let outcome = check(code);
+        if let Some(panic) = self.panic.take() {
+            resume_unwind(panic);
+        }
+        match self.error.take() {
+            Some(error) => Err(error),
+            None => outcome,
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Sparse direct factors by MUMPS: analysed once for a pattern, factorised again as often as values change.
+
+use std::ptr;
+use std::time::Instant;
+
+use squeal_sys as sys;
+
+use super::error::check;
+use super::{Comm, Matrix, Vector};
+use crate::{Error, Result};
+
+/// Which factors are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FactorKind {
+    /// `L U`, for any matrix.
+    Unsymmetric,
+    /// `L D L^T`, for matrices declared symmetric; counts negative pivots (the inertia).
+    Symmetric,
+}
+
+/// What a factor costs.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FactorStats {
+    /// Ordering used, MUMPS's number (3 is SCOTCH, 4 PORD).
+    pub ordering: i32,
+    /// Entries in the factors.
+    pub entries: f64,
+    /// Memory MUMPS estimates after the analysis, MB over all ranks.
+    pub estimated_mb: f64,
+    /// Memory MUMPS used, MB over all ranks.
+    pub used_mb: f64,
+    /// Number of analyses.
+    pub n_analyses: usize,
+    /// Number of numerical factorisations.
+    pub n_factorisations: usize,
+    /// Seconds of the analyses.
+    pub analysis_seconds: f64,
+    /// Seconds of the numerical factorisations.
+    pub factorisation_seconds: f64,
+}
+
+/// Name of a MUMPS ordering.
+pub const ORDERING: [&str; 8] = ["AMD", "user", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
+
+/// A factorised matrix.
+pub struct Factor {
+    raw: sys::Mat,
+    kind: FactorKind,
+    comm: Comm,
+    stats: FactorStats,
+}
+
+impl Drop for Factor {
+    fn drop(&mut self) {
+        // SAFETY: this handle owns the factor and the session is alive.
+        unsafe { sys::MatDestroy(&mut self.raw) };
+    }
+}
+
+/// Percentage of extra workspace over MUMPS's estimate, and how often it is doubled when pivoting needs more.
+const WORKSPACE: i32 = 30;
+const WORKSPACE_TRIES: usize = 4;
+
+impl Factor {
+    /// Analyses the pattern: ordering and symbolic factorisation. No values are used but for the choice of pivots.
+    ///
+    /// # Errors
+    /// PETSc's, and MUMPS's with its code.
+    pub fn analyse(a: &Matrix, kind: FactorKind) -> Result<Factor> {
+        let start = Instant::now();
+        let comm = a.comm().clone();
+        let mut raw = ptr::null_mut();
+        let kind_raw = match kind {
+            FactorKind::Unsymmetric => sys::MatFactorType::MAT_FACTOR_LU,
+            FactorKind::Symmetric => sys::MatFactorType::MAT_FACTOR_CHOLESKY,
+        };
+        // SAFETY: the handle is alive and the solver's name static.
+        check(unsafe { sys::MatGetFactor(a.raw(), c"mumps".as_ptr(), kind_raw, &mut raw) })?;
+        let mut factor = Factor { raw, kind, comm, stats: FactorStats::default() };
+        factor.set_icntl(14, WORKSPACE)?;
+        if kind == FactorKind::Symmetric {
+            // The inertia is right only with null pivots detected, and on several ranks without a parallel root.
+            factor.set_icntl(24, 1)?;
+            factor.set_icntl(13, 1)?;
+        }
+        factor.symbolic(a)?;
+        factor.stats.ordering = factor.infog(7)? as i32;
+        factor.stats.estimated_mb = factor.infog(17)?;
+        factor.stats.n_analyses = 1;
+        factor.stats.analysis_seconds = start.elapsed().as_secs_f64();
+        Ok(factor)
+    }
+
+    fn symbolic(&self, a: &Matrix) -> Result<()> {
+        let mut info = sys::MatFactorInfo::default();
+        let none = ptr::null_mut();
+        // SAFETY: MUMPS orders by itself, so that no permutations are passed.
+        unsafe {
+            check(sys::MatFactorInfoInitialize(&mut info))?;
+            check(match self.kind {
+                FactorKind::Unsymmetric => sys::MatLUFactorSymbolic(self.raw, a.raw(), none, none, &info),
+                FactorKind::Symmetric => sys::MatCholeskyFactorSymbolic(self.raw, a.raw(), none, &info),
+            })?;
+        }
+        self.verdict("analysis")
+    }
+
+    /// Factorises the values of `a`, whose pattern is the one analysed. Workspace is enlarged where pivoting needs it.
+    ///
+    /// # Errors
+    /// PETSc's, and MUMPS's with its code.
+    pub fn factorise(&mut self, a: &Matrix) -> Result<()> {
+        let start = Instant::now();
+        let mut workspace = WORKSPACE;
+        for attempt in 0..WORKSPACE_TRIES {
+            self.numeric(a)?;
+            if !matches!(self.infog(1)? as i32, -8 | -9 | -11 | -12 | -14 | -15) || attempt + 1 == WORKSPACE_TRIES {
+                break;
+            }
+            workspace *= 2;
+            self.set_icntl(14, workspace)?;
+        }
+        self.verdict("factorisation")?;
+        self.stats.entries = self.infog(29)?;
+        self.stats.used_mb = self.infog(22)?;
+        self.stats.n_factorisations += 1;
+        self.stats.factorisation_seconds += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn numeric(&self, a: &Matrix) -> Result<()> {
+        let mut info = sys::MatFactorInfo::default();
+        // SAFETY: the factor was analysed for this pattern.
+        unsafe {
+            check(sys::MatFactorInfoInitialize(&mut info))?;
+            check(match self.kind {
+                FactorKind::Unsymmetric => sys::MatLUFactorNumeric(self.raw, a.raw(), &info),
+                FactorKind::Symmetric => sys::MatCholeskyFactorNumeric(self.raw, a.raw(), &info),
+            })
+        }
+    }
+
+    fn set_icntl(&self, index: i32, value: i32) -> Result<()> {
+        // SAFETY: the handle is a MUMPS factor.
+        check(unsafe { sys::MatMumpsSetIcntl(self.raw, index, value) })
+    }
+
+    /// MUMPS's global information number; large counts, which MUMPS gives as negative millions, are turned into counts.
+    fn infog(&self, index: i32) -> Result<f64> {
+        let mut value = 0;
+        // SAFETY: the handle is a MUMPS factor.
+        check(unsafe { sys::MatMumpsGetInfog(self.raw, index, &mut value) })?;
+        let counts = [3, 20, 29].contains(&index);
+        Ok(if counts && value < 0 { -1e6 * f64::from(value) } else { f64::from(value) })
+    }
+
+    /// MUMPS fails silently through PETSc: its own code is looked at each time.
+    fn verdict(&self, phase: &str) -> Result<()> {
+        let (code, detail) = (self.infog(1)? as i32, self.infog(2)?);
+        if code >= 0 {
+            return Ok(());
+        }
+        let meaning = match code {
+            -5 | -7 | -13 => "not enough memory; use a smaller mesh or a machine with more",
+            -8 | -9 | -11 | -12 | -14 | -15 => "its workspace was too small even after enlarging",
+            -6 | -10 => "the matrix is singular: a part is held by nothing, or the load has reached a limit point",
+            -16 => "the matrix is empty",
+            _ => "see MUMPS's manual, INFOG(1)",
+        };
+        Err(Error::Library(format!("MUMPS {phase} failed with INFOG(1) = {code}, INFOG(2) = {detail}: {meaning}")))
+    }
+
+    /// `x = A^-1 b`.
+    ///
+    /// # Errors
+    /// PETSc's, and MUMPS's with its code.
+    pub fn solve(&self, b: &Vector, x: &mut Vector) -> Result<()> {
+        // SAFETY: all handles are alive.
+        check(unsafe { sys::MatSolve(self.raw, b.raw(), x.raw()) })?;
+        self.verdict("solve")
+    }
+
+    /// Number of negative pivots of a symmetric factor: how many eigenvalues of the matrix are negative.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn n_negative(&self) -> Result<usize> {
+        debug_assert_eq!(self.kind, FactorKind::Symmetric);
+        Ok(self.infog(12)? as usize)
+    }
+
+    /// Number of pivots that MUMPS took for zero (symmetric factors).
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn n_null(&self) -> Result<usize> {
+        Ok(self.infog(28)? as usize)
+    }
+
+    /// What this factor has cost so far. Not collective.
+    pub fn stats(&self) -> FactorStats {
+        self.stats
+    }
+
+    /// The communicator.
+    pub fn comm(&self) -> &Comm {
+        &self.comm
+    }
+}

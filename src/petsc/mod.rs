@@ -1,0 +1,28 @@
+//! The only `unsafe` code of this crate: owning handles on PETSc, SLEPc, MUMPS and METIS.
+//!
+//! * [`Session`] starts MPI, PETSc and SLEPc and ends them; every handle holds the session through its [`Comm`], so that
+//!   finalisation comes last by construction.
+//! * [`Vector`], [`Matrix`], [`Factor`] own one PETSc object each. Borrowed arrays exist only inside closures.
+//! * [`nonlinear`] runs SNES, [`eigen`] runs PEP on what the caller's trait objects compute; callbacks are registered
+//!   inside `solve` and forgotten when it returns. Errors and panics inside them come out of `solve`.
+//! * Every call goes through one checked door ([`error::check`]), which turns PETSc's frames into an error.
+//!
+//! Everything that takes a handle is collective over its communicator unless it says otherwise.
+
+pub mod eigen;
+pub mod error;
+mod factor;
+mod matrix;
+mod metis;
+pub mod nonlinear;
+mod session;
+mod vector;
+
+pub use factor::{Factor, FactorKind, FactorStats, ORDERING};
+pub use matrix::Matrix;
+pub use metis::partition;
+pub use session::{Comm, Session};
+pub use vector::{Gather, Vector};
+
+/// PETSc's "work it out": a macro in its headers.
+const DETERMINE: i32 = -1;

@@ -1,0 +1,222 @@
+//! Newton's method with a line search, by PETSc SNES.
+
+use std::ffi::{CStr, c_void};
+use std::ptr;
+
+use squeal_sys as sys;
+
+use super::error::{Trap, check};
+use super::vector::Borrowed;
+use super::{Comm, Matrix, Vector};
+use crate::Result;
+
+/// What SNES asks of a problem `F(u) = 0`.
+pub trait Problem {
+    /// `r = F(u)`.
+    ///
+    /// # Errors
+    /// Whatever makes the evaluation impossible; it comes out of [`solve`].
+    fn residual(&mut self, u: &Vector, r: &mut Vector) -> Result<()>;
+
+    /// Makes the tangent at `u` current in [`Problem::jacobian`], and whatever [`Problem::correct`] needs.
+    ///
+    /// # Errors
+    /// Whatever makes the evaluation impossible; it comes out of [`solve`].
+    fn linearise(&mut self, u: &Vector) -> Result<()>;
+
+    /// The tangent matrix; always the same object.
+    fn jacobian(&self) -> &Matrix;
+
+    /// `du = J^-1 r`.
+    ///
+    /// # Errors
+    /// Whatever makes the solution impossible; it comes out of [`solve`].
+    fn correct(&mut self, r: &Vector, du: &mut Vector) -> Result<()>;
+
+    /// Looks at an iterate (Euclidean norms of the residual and of the last step) and decides.
+    fn judge(&mut self, iteration: usize, residual: f64, step: f64) -> Verdict;
+}
+
+/// Whether to go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Another step.
+    Continue,
+    /// Done.
+    Converged,
+    /// Given up.
+    Diverged,
+}
+
+/// How steps are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineSearch {
+    /// Critical point of the residual's projection on the step: robust under contact.
+    CriticalPoint,
+    /// Full steps.
+    Full,
+}
+
+/// What a solve came to. "Not converged" is data.
+#[derive(Debug, Clone, Copy)]
+pub struct Outcome {
+    /// Whether the problem judged an iterate to be converged.
+    pub converged: bool,
+    /// SNES's own reason.
+    pub reason: i32,
+    /// Newton steps.
+    pub iterations: usize,
+}
+
+struct Context<'a> {
+    problem: &'a mut dyn Problem,
+    comm: Comm,
+    trap: Trap,
+}
+
+/// Owns a SNES for the length of a solve.
+struct Snes(sys::SNES);
+
+impl Drop for Snes {
+    fn drop(&mut self) {
+        // SAFETY: this handle owns the solver and the session is alive.
+        unsafe { sys::SNESDestroy(&mut self.0) };
+    }
+}
+
+/// Solves `F(u) = 0` from `u`, which ends as the last iterate whether or not it converged. Options of the prefix
+/// `equilibrium_` act (`-equilibrium_snes_monitor`). Collective.
+///
+/// # Errors
+/// PETSc's, or what the problem's callbacks returned.
+///
+/// # Panics
+/// Where a callback panicked.
+pub fn solve(problem: &mut dyn Problem, u: &mut Vector, search: LineSearch, max_iterations: usize) -> Result<Outcome> {
+    let comm = u.comm().clone();
+    let residual = Vector::zeros(&comm, u.n_local())?;
+    let jacobian = problem.jacobian().raw();
+    let mut context = Context { problem, comm: comm.clone(), trap: Trap::default() };
+    let pointer = ptr::from_mut(&mut context).cast::<c_void>();
+    let mut snes = Snes(ptr::null_mut());
+    // SAFETY: `context` outlives the solver, and is reached through `pointer` only while SNESSolve runs.
+    unsafe {
+        check(sys::SNESCreate(comm.raw(), &mut snes.0))?;
+        check(sys::SNESSetOptionsPrefix(snes.0, c"equilibrium_".as_ptr()))?;
+        check(sys::SNESSetType(snes.0, c"newtonls".as_ptr()))?;
+        check(sys::SNESSetFunction(snes.0, residual.raw(), Some(evaluate), pointer))?;
+        check(sys::SNESSetJacobian(snes.0, jacobian, jacobian, Some(linearise), pointer))?;
+        check(sys::SNESSetConvergenceTest(snes.0, Some(judge), pointer, None))?;
+        check(sys::SNESSetTolerances(snes.0, 0.0, 0.0, 0.0, max_iterations as i32, i32::MAX))?;
+        use_corrections(snes.0, pointer)?;
+        set_line_search(snes.0, search)?;
+        check(sys::SNESSetFromOptions(snes.0))?;
+        let code = sys::SNESSolve(snes.0, ptr::null_mut(), u.raw());
+        (*pointer.cast::<Context>()).trap.release(code)?;
+    }
+    outcome(&snes)
+}
+
+/// The linear solver is one application of [`Problem::correct`].
+unsafe fn use_corrections(snes: sys::SNES, context: *mut c_void) -> Result<()> {
+    let (mut ksp, mut pc) = (ptr::null_mut(), ptr::null_mut());
+    // SAFETY: the solver is alive; the strings are static.
+    unsafe {
+        check(sys::SNESGetKSP(snes, &mut ksp))?;
+        check(sys::KSPSetType(ksp, c"preonly".as_ptr()))?;
+        check(sys::KSPGetPC(ksp, &mut pc))?;
+        check(sys::PCSetType(pc, c"shell".as_ptr()))?;
+        check(sys::PCShellSetContext(pc, context))?;
+        check(sys::PCShellSetApply(pc, Some(correct)))
+    }
+}
+
+unsafe fn set_line_search(snes: sys::SNES, search: LineSearch) -> Result<()> {
+    let mut line = ptr::null_mut();
+    let name = match search {
+        LineSearch::CriticalPoint => c"cp",
+        LineSearch::Full => c"basic",
+    };
+    // SAFETY: the solver is alive; the string is static.
+    unsafe {
+        check(sys::SNESGetLineSearch(snes, &mut line))?;
+        check(sys::SNESLineSearchSetType(line, name.as_ptr()))
+    }
+}
+
+fn outcome(snes: &Snes) -> Result<Outcome> {
+    let (mut reason, mut iterations) = (sys::SNESConvergedReason(0), 0);
+    // SAFETY: the solver is alive.
+    unsafe {
+        check(sys::SNESGetConvergedReason(snes.0, &mut reason))?;
+        check(sys::SNESGetIterationNumber(snes.0, &mut iterations))?;
+    }
+    Ok(Outcome { converged: reason.0 > 0, reason: reason.0, iterations: iterations as usize })
+}
+
+/// Runs a callback's body on the context behind `pointer`.
+unsafe fn with_context(
+    pointer: *mut c_void,
+    name: &CStr,
+    body: impl FnOnce(&mut dyn Problem, &Comm) -> Result<()>,
+) -> sys::PetscErrorCode {
+    // SAFETY: the pointer is the one that `solve` registered; SNES runs its callbacks one at a time.
+    let context = unsafe { &mut *pointer.cast::<Context>() };
+    let (problem, comm) = (&mut *context.problem, &context.comm);
+    context.trap.guard(name, || body(problem, comm))
+}
+
+unsafe extern "C" fn evaluate(_: sys::SNES, u: sys::Vec, r: sys::Vec, pointer: *mut c_void) -> sys::PetscErrorCode {
+    let body = |problem: &mut dyn Problem, comm: &Comm| {
+        problem.residual(&Borrowed::new(u, comm), Borrowed::new(r, comm).get_mut())
+    };
+    // SAFETY: see `with_context`.
+    unsafe { with_context(pointer, c"residual", body) }
+}
+
+unsafe extern "C" fn linearise(
+    _: sys::SNES,
+    u: sys::Vec,
+    _: sys::Mat,
+    _: sys::Mat,
+    pointer: *mut c_void,
+) -> sys::PetscErrorCode {
+    let body = |problem: &mut dyn Problem, comm: &Comm| problem.linearise(&Borrowed::new(u, comm));
+    // SAFETY: see `with_context`.
+    unsafe { with_context(pointer, c"linearise", body) }
+}
+
+unsafe extern "C" fn correct(pc: sys::PC, r: sys::Vec, du: sys::Vec) -> sys::PetscErrorCode {
+    let mut pointer: *mut c_void = ptr::null_mut();
+    let body = |problem: &mut dyn Problem, comm: &Comm| {
+        problem.correct(&Borrowed::new(r, comm), Borrowed::new(du, comm).get_mut())
+    };
+    // SAFETY: the context is the one that `use_corrections` set.
+    unsafe {
+        sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast());
+        with_context(pointer, c"correct", body)
+    }
+}
+
+unsafe extern "C" fn judge(
+    _: sys::SNES,
+    iteration: sys::PetscInt,
+    _u: f64,
+    step: f64,
+    residual: f64,
+    reason: *mut sys::SNESConvergedReason,
+    pointer: *mut c_void,
+) -> sys::PetscErrorCode {
+    let body = |problem: &mut dyn Problem, _: &Comm| {
+        let value = match problem.judge(iteration as usize, residual, step) {
+            Verdict::Continue => sys::SNESConvergedReason::SNES_CONVERGED_ITERATING,
+            Verdict::Converged => sys::SNESConvergedReason::SNES_CONVERGED_FNORM_ABS,
+            Verdict::Diverged => sys::SNESConvergedReason::SNES_DIVERGED_DTOL,
+        };
+        // SAFETY: SNES passes a valid place for the answer.
+        unsafe { *reason = value };
+        Ok(())
+    };
+    // SAFETY: see `with_context`.
+    unsafe { with_context(pointer, c"judge", body) }
+}

@@ -1,0 +1,184 @@
+//! MPI, PETSc and SLEPc from start to end, and the communicator.
+
+use std::ffi::{CString, c_void};
+use std::ptr;
+use std::rc::Rc;
+
+use squeal_sys as sys;
+
+use super::error::{check, collect};
+use crate::{Error, Result};
+
+/// The one initialisation of MPI, PETSc and SLEPc that a process may have. Ends when the last handle is dropped.
+pub struct Session {
+    _private: (),
+}
+
+/// Options that hold for every run. `mat_mumps_icntl_7` can be set on one rank through the option database only.
+const OPTIONS: &[(&str, &str)] =
+    &[("-no_signal_handler", "1"), ("-skip_petscrc", "1"), ("-mat_mumps_icntl_7", "3"), ("-mat_mumps_icntl_28", "1")];
+
+impl Session {
+    /// Starts MPI, PETSc and SLEPc. `options` are `(name, value)` pairs for PETSc's option database, names with their dash.
+    ///
+    /// # Errors
+    /// Where PETSc refuses, or where the process has had a session before.
+    pub fn start(options: &[(String, String)]) -> Result<Comm> {
+        let mut finalized = 0;
+        // SAFETY: MPI_Finalized may be called at any time.
+        unsafe { sys::MPI_Finalized(&mut finalized) };
+        if finalized != 0 {
+            return Err(Error::Library("MPI cannot be started twice in one process".into()));
+        }
+        for (name, value) in OPTIONS {
+            set_option(name, value)?;
+        }
+        // SAFETY: no arguments are passed, so PETSc reads neither the command line nor a file.
+        check(unsafe { sys::SlepcInitialize(ptr::null_mut(), ptr::null_mut(), ptr::null(), ptr::null()) })?;
+        // SAFETY: `collect` has the signature of a handler and no context.
+        check(unsafe { sys::PetscPushErrorHandler(Some(collect), ptr::null_mut()) })?;
+        for (name, value) in options {
+            set_option(name, value)?;
+        }
+        Ok(Comm::world(Rc::new(Session { _private: () })))
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        // SAFETY: every handle holds this session, so none is alive any more.
+        unsafe {
+            sys::PetscPopErrorHandler();
+            sys::SlepcFinalize();
+        }
+    }
+}
+
+fn set_option(name: &str, value: &str) -> Result<()> {
+    let text = |s: &str| CString::new(s).map_err(|_| Error::input(format!("option {s:?} holds a NUL byte")));
+    let (name, value) = (text(name)?, text(value)?);
+    // SAFETY: both strings are NUL-terminated and live for the call; PETSc copies them.
+    check(unsafe { sys::PetscOptionsSetValue(ptr::null_mut(), name.as_ptr(), value.as_ptr()) })
+}
+
+/// A communicator that keeps the session alive.
+#[derive(Clone)]
+pub struct Comm {
+    raw: sys::MPI_Comm,
+    rank: usize,
+    size: usize,
+    _session: Rc<Session>,
+}
+
+impl Comm {
+    fn world(session: Rc<Session>) -> Comm {
+        let (mut rank, mut size) = (0, 0);
+        // SAFETY: MPI is initialised as long as the session lives.
+        let raw = unsafe { sys::squeal_comm_world() };
+        unsafe {
+            sys::MPI_Comm_rank(raw, &mut rank);
+            sys::MPI_Comm_size(raw, &mut size);
+        }
+        Comm { raw, rank: rank as usize, size: size as usize, _session: session }
+    }
+
+    /// This process's number, from 0.
+    pub fn rank(&self) -> usize {
+        self.rank
+    }
+
+    /// Number of processes.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Whether this process prints and writes.
+    pub fn is_root(&self) -> bool {
+        self.rank == 0
+    }
+
+    pub(super) fn raw(&self) -> sys::MPI_Comm {
+        self.raw
+    }
+
+    /// Sum over the ranks.
+    pub fn sum(&self, value: f64) -> f64 {
+        // SAFETY: MPI_SUM is a constant handle.
+        self.reduce(value, unsafe { sys::squeal_op_sum() })
+    }
+
+    /// Largest value of any rank.
+    pub fn max(&self, value: f64) -> f64 {
+        // SAFETY: MPI_MAX is a constant handle.
+        self.reduce(value, unsafe { sys::squeal_op_max() })
+    }
+
+    fn reduce(&self, value: f64, op: sys::MPI_Op) -> f64 {
+        let mut result = 0.0_f64;
+        // SAFETY: one double in, one out, on every rank.
+        unsafe {
+            sys::MPI_Allreduce(
+                ptr::from_ref(&value).cast::<c_void>(),
+                ptr::from_mut(&mut result).cast::<c_void>(),
+                1,
+                sys::squeal_type_double(),
+                op,
+                self.raw,
+            );
+        }
+        result
+    }
+
+    /// Elementwise maximum of an array over the ranks, in place.
+    pub fn max_all(&self, values: &mut [f64]) {
+        // SAFETY: MPI_MAX is a constant handle.
+        self.reduce_all(values, unsafe { sys::squeal_op_max() });
+    }
+
+    /// Elementwise sum of an array over the ranks, in place.
+    pub fn sum_all(&self, values: &mut [f64]) {
+        // SAFETY: MPI_SUM is a constant handle.
+        self.reduce_all(values, unsafe { sys::squeal_op_sum() });
+    }
+
+    fn reduce_all(&self, values: &mut [f64], op: sys::MPI_Op) {
+        let input = values.to_vec();
+        // SAFETY: both arrays have the same length, which all ranks share by contract.
+        unsafe {
+            sys::MPI_Allreduce(
+                input.as_ptr().cast(),
+                values.as_mut_ptr().cast(),
+                values.len() as i32,
+                sys::squeal_type_double(),
+                op,
+                self.raw,
+            );
+        }
+    }
+
+    /// Waits for all ranks.
+    pub fn barrier(&self) {
+        // SAFETY: a valid communicator.
+        unsafe { sys::MPI_Barrier(self.raw) };
+    }
+
+    /// All ranks go on only if each of them may: an error on any rank becomes an error on every rank, so that none is left waiting.
+    ///
+    /// # Errors
+    /// The rank's own, or a note that another rank failed (with that rank's exit code kind).
+    pub fn agree<T>(&self, result: Result<T>) -> Result<T> {
+        let own = result.as_ref().err().map_or(0, Error::exit_code);
+        let worst = self.max(f64::from(own));
+        match result {
+            Ok(_) if worst > 0.0 => Err(Error::Elsewhere(worst as i32)),
+            other => other,
+        }
+    }
+
+    /// Ends all ranks at once with this exit code.
+    pub fn abort(&self, code: i32) -> ! {
+        // SAFETY: a valid communicator; the call does not return.
+        unsafe { sys::MPI_Abort(self.raw, code) };
+        std::process::exit(code)
+    }
+}

@@ -1,0 +1,16 @@
+#include "shim.h"
+
+MPI_Comm squeal_comm_world(void) { return MPI_COMM_WORLD; }
+MPI_Comm squeal_comm_self(void) { return MPI_COMM_SELF; }
+MPI_Op squeal_op_sum(void) { return MPI_SUM; }
+MPI_Op squeal_op_max(void) { return MPI_MAX; }
+MPI_Op squeal_op_min(void) { return MPI_MIN; }
+MPI_Datatype squeal_type_double(void) { return MPI_DOUBLE; }
+MPI_Datatype squeal_type_int(void) { return MPI_INT; }
+MPI_Datatype squeal_type_byte(void) { return MPI_BYTE; }
+
+/* Raises a PETSc error from a callback, so that PETSc's frames follow it out. */
+PetscErrorCode squeal_raise(const char *function, const char *message)
+{
+  return PetscError(PETSC_COMM_SELF, 0, function, "squeal", PETSC_ERR_USER, PETSC_ERROR_INITIAL, "%s", message);
+}

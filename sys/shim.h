@@ -1,0 +1,11 @@
+/* What PETSc and MPI offer as macros only. */
+#include <petscsys.h>
+MPI_Comm squeal_comm_world(void);
+MPI_Comm squeal_comm_self(void);
+MPI_Op squeal_op_sum(void);
+MPI_Op squeal_op_max(void);
+MPI_Op squeal_op_min(void);
+MPI_Datatype squeal_type_double(void);
+MPI_Datatype squeal_type_int(void);
+MPI_Datatype squeal_type_byte(void);
+PetscErrorCode squeal_raise(const char *function, const char *message);

@@ -1,0 +1,4 @@
+#include <petscsnes.h>
+#include <slepcpep.h>
+#include <metis.h>
+#include "shim.h"
