@@ -16,13 +16,15 @@ EndIf
 // ---------------------------------------------------------------------------------------------- what the size decides
 k = size - 1;
 // element edge, mm                small   medium  full    million
-h_disc_()     = {                  30.0,   12.0,   6.4,    4.7 };
-h_lining_()   = {                  18.0,   7.0,    4.0,    3.2 };
-h_plate_()    = {                  18.0,   8.0,    4.6,    3.6 };
+h_disc_()     = {                  26.0,   12.0,   6.4,    4.7 };
+h_lining_()   = {                  13.0,   7.0,    4.0,    3.2 };
+h_plate_()    = {                  15.0,   8.0,    4.6,    3.6 };
 h_piston_()   = {                  18.0,   9.0,    5.0,    3.8 };
-h_caliper_()  = {                  30.0,   12.0,   6.0,    4.6 };
-h_bracket_()  = {                  30.0,   12.0,   6.0,    4.4 };
-per_turn_()   = {                  6,      7,      9,      11  };  // elements around a hole, at least
+h_caliper_()  = {                  24.0,   12.0,   6.0,    4.6 };
+h_bracket_()  = {                  24.0,   12.0,   6.0,    4.4 };
+per_turn_()   = {                  6,      6,      7,      9   };  // elements around a fillet's full circle, at least
+per_hole_()   = {                  8,      8,      12,     16  };  // elements around a hole
+wall_h_()     = {                  12,     7.0,    4.5,    3.5 };  // and along it
 vanes_()      = {                  7,      17,     37,     37  };  // primes: no doublet of a low nodal diameter is split
 rmin_()       = {                  15,     7,      0,      0   };  // corner radii below this stay sharp
 h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);
@@ -33,7 +35,7 @@ h_caliper = h_caliper_(k);  h_bracket = h_bracket_(k);  vanes = vanes_(k);  rmin
 disc_R = 140;  disc_t = 24;  cheek_t = 7;        // radius, thickness over both cheeks, one cheek
 rub_r = 90;                                      // inner radius of the rubbing faces
 cheek_r = 86;                                    // bore of the inner cheek
-vane_r0 = 89;  vane_r1 = 137;  vane_t = 180 / vanes;
+vane_r0 = (size == 1) ? cheek_r - 6 : 92;  vane_r1 = (size == 1) ? disc_R + 20 : 135;  vane_t = 180 / vanes;  // small: flush
 hat_R = 78;  hat_t = 7;  hat_z = 46;             // hat: outer radius, wall, height of its top
 bore_R = 32;  hub_n = 5;  hub_pcd = 108;  hub_d = 14.5;
 // pads
@@ -116,6 +118,21 @@ Macro RoundPoly
   EndIf
 Return
 
+// A round hole whose wall is four quarter cylinders, so that it can be meshed regularly. In: hx, hy, hr, w0, w1. Out: vol.
+Macro Drill
+  p = newp;
+  Point(p) = {hx, hy, w0};
+  Point(p + 1) = {hx + hr, hy, w0};  Point(p + 2) = {hx, hy + hr, w0};
+  Point(p + 3) = {hx - hr, hy, w0};  Point(p + 4) = {hx, hy - hr, w0};
+  c = newl;
+  Circle(c) = {p + 1, p, p + 2};      Circle(c + 1) = {p + 2, p, p + 3};
+  Circle(c + 2) = {p + 3, p, p + 4};  Circle(c + 3) = {p + 4, p, p + 1};
+  ll = newll;  Curve Loop(ll) = {c, c + 1, c + 2, c + 3};
+  surf = news;  Plane Surface(surf) = {ll};
+  out() = Extrude {0, 0, w1 - w0} { Surface{surf}; };
+  vol = out(1);
+Return
+
 // A ring about (0, cy, .) or, where rr is 0, a cylinder. In: cy, rr, rR, w0, w1. Out: vol.
 Macro Ring
   vol = newv;  Cylinder(vol) = {0, cy, w0, 0, 0, w1 - w0, rR};
@@ -127,29 +144,30 @@ Macro Ring
 Return
 
 // ---------------------------------------------------------------------------------------------------------------- disc
-// outer cheek with neck and hat, revolved
+// the solid, revolved, less the gap between the vanes
 z1 = disc_t / 2;  z0 = z1 - cheek_t;
-pu() = {disc_R, disc_R, rub_r, rub_r - 4, hat_R,   hat_R, bore_R, bore_R,        hat_R - hat_t, hat_R - hat_t};
-pv() = {z0,     z1,     z1,    z1 - 2,    z1 - 2,  hat_z, hat_z,  hat_z - hat_t, hat_z - hat_t, z0};
-pr() = {0,      0,      0,     0,         5,       10,    0,      0,             6,             0};
+pu() = {disc_R, disc_R, rub_r, hat_R,   hat_R, bore_R, bore_R,        hat_R - hat_t, hat_R - hat_t, cheek_r, cheek_r};
+pv() = {-z1,    z1,     z1,    z1 - 2,  hat_z, hat_z,  hat_z - hat_t, hat_z - hat_t, z0,            z0,      -z1};
+pr() = {0,      0,      0,     5,       10,    0,      0,             6,             0,             0,       0};
 plane = 2;  w0 = 0;  w1 = 0;  Call RoundPoly;
 out() = Extrude { {0, 0, 1}, {0, 0, 0}, 2*Pi } { Surface{surf}; };
 disc = out(1);
 Recursive Delete { Surface{surf}; }
-cy = 0;  rr = cheek_r;  rR = disc_R;  w0 = -z1;  w1 = -z0;  Call Ring;
-parts() = {vol};
+cy = 0;  rr = cheek_r - 5;  rR = disc_R + 10;  w0 = -z0;  w1 = z0;  Call Ring;
+boxes() = {};
 For i In {0:vanes-1}
   v = newv;  Box(v) = {vane_r0, -vane_t/2, -z0, vane_r1 - vane_r0, vane_t, 2*z0};
   Rotate { {0, 0, 1}, {0, 0, 0}, 2*Pi*(i + 0.5)/vanes + Pi/2 } { Volume{v}; }
-  parts() += {v};
+  boxes() += {v};
 EndFor
-out() = BooleanUnion { Volume{disc}; Delete; }{ Volume{parts()}; Delete; };
+gap() = BooleanDifference { Volume{vol}; Delete; }{ Volume{boxes()}; Delete; };
+out() = BooleanDifference { Volume{disc}; Delete; }{ Volume{gap()}; Delete; };
 disc = out(0);
 holes() = {};
 For i In {0:hub_n-1}
   a = 2*Pi*i/hub_n + Pi/2;
-  v = newv;  Cylinder(v) = {hub_pcd/2*Cos(a), hub_pcd/2*Sin(a), hat_z - 20, 0, 0, 40, hub_d/2};
-  holes() += {v};
+  hx = hub_pcd/2*Cos(a);  hy = hub_pcd/2*Sin(a);  hr = hub_d/2;  w0 = hat_z - 20;  w1 = hat_z + 20;  Call Drill;
+  holes() += {vol};
 EndFor
 out() = BooleanDifference { Volume{disc}; Delete; }{ Volume{holes()}; Delete; };
 disc = out(0);
@@ -279,8 +297,8 @@ caliper = out(0);
 cy = pis_y;  rr = 0;  rR = pis_R;  w0 = bore_z;  w1 = cyl_z1 + 5;  Call Ring;
 cuts() = {vol};
 For e In {-1:1:2}
-  v = newv;  Cylinder(v) = {e*pin_x, pin_y, lug_z0 - 5, 0, 0, lug_z1 - lug_z0 + 10, pin_R};
-  cuts() += {v};
+  hx = e*pin_x;  hy = pin_y;  hr = pin_R;  w0 = lug_z0 - 5;  w1 = lug_z1 + 5;  Call Drill;
+  cuts() += {vol};
 EndFor
 out() = BooleanDifference { Volume{caliper}; Delete; }{ Volume{cuts()}; Delete; };
 caliper = out(0);
@@ -322,8 +340,10 @@ out() = BooleanUnion { Volume{v1}; Delete; }{ Volume{arms({1:#arms()-1})}; Delet
 bracket = out(0);
 cuts() = {};
 For e In {-1:1:2}
-  v = newv;  Cylinder(v) = {e*pin_x, pin_y, boss_z - 5, 0, 0, pinhole_z - boss_z + 5, pin_R};  cuts() += {v};
-  v = newv;  Cylinder(v) = {e*bolt_x, bolt_y, -brk_z - 5, 0, 0, 40, bolt_R};  cuts() += {v};
+  hx = e*pin_x;  hy = pin_y;  hr = pin_R;  w0 = boss_z - 5;  w1 = pinhole_z;  Call Drill;
+  cuts() += {vol};
+  hx = e*bolt_x;  hy = bolt_y;  hr = bolt_R;  w0 = -brk_z - 5;  w1 = 0;  Call Drill;
+  cuts() += {vol};
 EndFor
 out() = BooleanDifference { Volume{bracket}; Delete; }{ Volume{cuts()}; Delete; };
 bracket = out(0);
@@ -370,6 +390,7 @@ For h In {0:hub_n-1}
   all() += {found()};
 EndFor
 Physical Surface("hub_bolts") = all();
+bolts() = all();
 
 // pads
 bx0 = -100;  bx1 = 100;  by0 = 60;  by1 = 150;
@@ -437,33 +458,40 @@ bz1 = cyl_z1;  Call Faces;
 wall() = found();
 wall() -= {floor()};
 Physical Surface("caliper_bore_wall") = wall();
+bore() = wall();
 bx0 = -60;  bx1 = 60;  by0 = 90;  by1 = 170;  bz0 = z_back;  bz1 = z_back;  part = caliper;  Call Faces;
 Physical Surface("caliper_fingers") = found();
 
 // pins and bolts
+pins() = {};
 by0 = pin_y - pin_R;  by1 = pin_y + pin_R;
 bx0 = -pin_x - pin_R;  bx1 = -pin_x + pin_R;
 part = caliper;  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
 Physical Surface("caliper_pin_left") = found();
+pins() += {found()};
 part = bracket;  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
 hole() = found();
 bz0 = pinhole_z;  Call Faces;
 hole() -= {found()};
 Physical Surface("bracket_pin_left") = hole();
+pins() += {hole()};
 bx0 = pin_x - pin_R;  bx1 = pin_x + pin_R;
 part = caliper;  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
 Physical Surface("caliper_pin_right") = found();
+pins() += {found()};
 part = bracket;  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
 hole() = found();
 bz0 = pinhole_z;  Call Faces;
 hole() -= {found()};
 Physical Surface("bracket_pin_right") = hole();
+pins() += {hole()};
 all() = {};  bz0 = -brk_z;  bz1 = 0;  by0 = bolt_y - bolt_R;  by1 = bolt_y + bolt_R;
 For e In {-1:1:2}
   bx0 = e*bolt_x - bolt_R;  bx1 = e*bolt_x + bolt_R;  Call Faces;
   all() += {found()};
 EndFor
 Physical Surface("bracket_bolts") = all();
+mounts() = all();
 
 // ---------------------------------------------------------------------------------------------------------------- mesh
 MeshSize { PointsOf { Volume{disc}; } } = h_disc;
@@ -472,17 +500,36 @@ MeshSize { PointsOf { Volume{bracket}; } } = h_bracket;
 MeshSize { PointsOf { Volume{piston}; } } = h_piston;
 MeshSize { PointsOf { Volume{plate_inner, plate_outer}; } } = h_plate;
 MeshSize { PointsOf { Volume{lining_inner, lining_outer}; } } = h_lining;
+// walls of holes regularly: arcs of equal parts, lengths by the hole's own element size
+walls() = {bolts(), pins(), mounts()};
+arcs = per_hole_(k) / 4;
+For i In {0:#walls()-1}
+  c() = Abs(Boundary { Surface{walls(i)}; });
+  For j In {0:#c()-1}
+    b() = BoundingBox Curve{c(j)};
+    l = b(5) - b(2);
+    If (l > 1)
+      Transfinite Curve{c(j)} = 1 + Ceil(l / wall_h_(k));
+    Else
+      Transfinite Curve{c(j)} = 1 + arcs;
+    EndIf
+  EndFor
+  Transfinite Surface{walls(i)};
+  MeshSize { PointsOf { Surface{walls(i)}; } } = wall_h_(k);
+EndFor
+MeshSize { PointsOf { Surface{bore()}; } } = Min(2*Pi*pis_R/per_hole_(k), h_caliper);
 Mesh.MeshSizeExtendFromBoundary = 1;
 Mesh.MeshSizeFromPoints = 1;
 Mesh.MeshSizeFromCurvature = per_turn_(k);
 Mesh.Algorithm = 6;               // frontal-Delaunay
-Mesh.Algorithm3D = 10;            // HXT
+Mesh.Algorithm3D = 1;             // Delaunay; HXT (10) is faster but in 4.8 not the same from run to run
 Mesh.ElementOrder = 2;
 Mesh.SecondOrderLinear = 0;
 Mesh.HighOrderOptimize = 0;
 Mesh.Optimize = 1;
 Mesh.OptimizeThreshold = 0.35;
-General.NumThreads = 1;           // and the default random seed: the same mesh every time
+General.NumThreads = 1;           // one thread and the default random seed: the same mesh every time
+Mesh.MaxNumThreads1D = 1;  Mesh.MaxNumThreads2D = 1;  Mesh.MaxNumThreads3D = 1;
 Mesh.MshFileVersion = 4.1;
 Mesh.Binary = 1;
 Mesh.SaveAll = 0;

@@ -6,5 +6,6 @@ pub mod error;
 pub mod mesh;
 pub mod model;
 pub mod petsc;
+pub mod stability;
 
 pub use error::{Error, Result};

@@ -6,7 +6,7 @@ use std::time::Instant;
 use squeal_sys as sys;
 
 use super::error::check;
-use super::{Comm, Matrix, Vector};
+use super::{Comm, Matrix, Vector, memory};
 use crate::{Error, Result};
 
 /// Which factors are made.
@@ -42,18 +42,21 @@ pub struct FactorStats {
 /// Name of a MUMPS ordering.
 pub const ORDERING: [&str; 8] = ["AMD", "user", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
 
-/// A factorised matrix.
+/// A factorised matrix. The first factorisation analyses the pattern, which all later ones share.
 pub struct Factor {
-    raw: sys::Mat,
     kind: FactorKind,
-    comm: Comm,
+    raw: sys::Mat,
+    /// Keeps the session alive as long as the factor.
+    comm: Option<Comm>,
     stats: FactorStats,
 }
 
 impl Drop for Factor {
     fn drop(&mut self) {
-        // SAFETY: this handle owns the factor and the session is alive.
-        unsafe { sys::MatDestroy(&mut self.raw) };
+        if self.comm.is_some() {
+            // SAFETY: this handle owns the factor, and the session is alive.
+            unsafe { sys::MatDestroy(&mut self.raw) };
+        }
     }
 }
 
@@ -62,33 +65,39 @@ const WORKSPACE: i32 = 30;
 const WORKSPACE_TRIES: usize = 4;
 
 impl Factor {
-    /// Analyses the pattern: ordering and symbolic factorisation. No values are used but for the choice of pivots.
+    /// A factor to be; nothing is computed yet.
+    pub fn new(kind: FactorKind) -> Factor {
+        Factor { kind, raw: ptr::null_mut(), comm: None, stats: FactorStats::default() }
+    }
+
+    /// Orders the equations and makes the symbolic factorisation, unless that is done. No values are used.
     ///
     /// # Errors
-    /// PETSc's, and MUMPS's with its code.
-    pub fn analyse(a: &Matrix, kind: FactorKind) -> Result<Factor> {
+    /// PETSc's, MUMPS's with its code, or [`Error::Input`] where the machine has too little memory for the factor.
+    pub fn analyse(&mut self, a: &Matrix) -> Result<()> {
+        if !self.raw.is_null() {
+            return Ok(());
+        }
         let start = Instant::now();
-        let comm = a.comm().clone();
-        let mut raw = ptr::null_mut();
-        let kind_raw = match kind {
+        let kind_raw = match self.kind {
             FactorKind::Unsymmetric => sys::MatFactorType::MAT_FACTOR_LU,
             FactorKind::Symmetric => sys::MatFactorType::MAT_FACTOR_CHOLESKY,
         };
         // SAFETY: the handle is alive and the solver's name static.
-        check(unsafe { sys::MatGetFactor(a.raw(), c"mumps".as_ptr(), kind_raw, &mut raw) })?;
-        let mut factor = Factor { raw, kind, comm, stats: FactorStats::default() };
-        factor.set_icntl(14, WORKSPACE)?;
-        if kind == FactorKind::Symmetric {
+        check(unsafe { sys::MatGetFactor(a.raw(), c"mumps".as_ptr(), kind_raw, &mut self.raw) })?;
+        self.comm = Some(a.comm().clone());
+        self.set_icntl(14, WORKSPACE)?;
+        if self.kind == FactorKind::Symmetric {
             // The inertia is right only with null pivots detected, and on several ranks without a parallel root.
-            factor.set_icntl(24, 1)?;
-            factor.set_icntl(13, 1)?;
+            self.set_icntl(24, 1)?;
+            self.set_icntl(13, 1)?;
         }
-        factor.symbolic(a)?;
-        factor.stats.ordering = factor.infog(7)? as i32;
-        factor.stats.estimated_mb = factor.infog(17)?;
-        factor.stats.n_analyses = 1;
-        factor.stats.analysis_seconds = start.elapsed().as_secs_f64();
-        Ok(factor)
+        self.symbolic(a)?;
+        self.stats.ordering = self.infog(7)? as i32;
+        self.stats.estimated_mb = self.infog(17)?;
+        self.stats.n_analyses += 1;
+        self.stats.analysis_seconds += start.elapsed().as_secs_f64();
+        memory::require(a.comm(), self.stats.estimated_mb)
     }
 
     fn symbolic(&self, a: &Matrix) -> Result<()> {
@@ -105,11 +114,12 @@ impl Factor {
         self.verdict("analysis")
     }
 
-    /// Factorises the values of `a`, whose pattern is the one analysed. Workspace is enlarged where pivoting needs it.
+    /// Factorises the values of `a`, whose pattern is that of all earlier calls. Workspace is enlarged where pivoting needs it.
     ///
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
     pub fn factorise(&mut self, a: &Matrix) -> Result<()> {
+        self.analyse(a)?;
         let start = Instant::now();
         let mut workspace = WORKSPACE;
         for attempt in 0..WORKSPACE_TRIES {
@@ -200,10 +210,5 @@ impl Factor {
     /// What this factor has cost so far. Not collective.
     pub fn stats(&self) -> FactorStats {
         self.stats
-    }
-
-    /// The communicator.
-    pub fn comm(&self) -> &Comm {
-        &self.comm
     }
 }

@@ -13,6 +13,7 @@ pub mod eigen;
 pub mod error;
 mod factor;
 mod matrix;
+mod memory;
 mod metis;
 pub mod nonlinear;
 mod session;

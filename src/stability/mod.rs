@@ -1,0 +1,11 @@
+//! Complex modes about an equilibrium: `(lambda^2 M + lambda C + K) x = 0`, all of a frequency band.
+//!
+//! [`Pencil`] is the linearised problem, with friction's unsymmetric part in K. [`solve`] finds the band's modes by SLEPc's PEP
+//! (TOAR, inverted about a real shift, so that one real factor serves the whole band), gives each its backward error, and
+//! checks their number against the inertia of the symmetric problem, so that none is missed.
+
+mod band;
+mod mode;
+
+pub use band::{Band, Count, Solver, solve};
+pub use mode::{Mode, Pencil, UNSTABLE_RATIO};

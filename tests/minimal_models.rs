@@ -1,0 +1,116 @@
+//! Minimal friction models with exact eigenvalues: Hoffmann (2 dofs), Hulten/Sinou (2 dofs, damped), NLEVP's `bicycle`
+//! and `qep1`. Sources: Hoffmann et al., Eur. J. Mech. A 21 (2002); Sinou and Jezequel, Eur. J. Mech. A 26 (2007);
+//! Betcke et al., NLEVP, ACM TOMS 39 (2013); Meijaard et al., Proc. R. Soc. A 463 (2007).
+
+use num_complex::Complex64;
+use squeal::petsc::eigen::{self, Options, Quadratic};
+use squeal::petsc::{Comm, Factor, FactorKind, Matrix, Session};
+
+fn dense<const N: usize>(comm: &Comm, a: [[f64; N]; N]) -> Matrix {
+    let offsets: Vec<i32> = (0..=N as i32).map(|i| i * N as i32).collect();
+    let columns: Vec<i32> = (0..N).flat_map(|_| 0..N as i32).collect();
+    Matrix::from_csr(comm, &offsets, &columns, a.as_flattened()).unwrap()
+}
+
+/// All eigenvalues of the closed upper half plane, sorted by imaginary part, equal ones by real part.
+fn eigenvalues<const N: usize>(
+    comm: &Comm,
+    m: [[f64; N]; N],
+    c: [[f64; N]; N],
+    k: [[f64; N]; N],
+    shift: f64,
+) -> Vec<Complex64> {
+    let mut p = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..N {
+            p[i][j] = shift * shift * m[i][j] + shift * c[i][j] + k[i][j];
+        }
+    }
+    let [m, c, k, p] = [m, c, k, p].map(|a| dense(comm, a));
+    let mut factor = Factor::new(FactorKind::Unsymmetric);
+    factor.factorise(&p).unwrap();
+    let options = Options { n_wanted: 2 * N, n_basis: 0, tolerance: 1e-15, max_restarts: 100 };
+    let problem = Quadratic { m: &m, c: &c, k: &k, shift, factor: &factor };
+    let found = eigen::solve(&problem, &options, &mut |_, _| ()).unwrap();
+    let mut lambdas: Vec<Complex64> = found.pairs.iter().map(|pair| pair.lambda).collect();
+    let key = |z: &Complex64| ((z.im * 1e6).round(), z.re);
+    lambdas.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap());
+    lambdas
+}
+
+#[track_caller]
+fn assert_near(found: &[Complex64], expected: &[(f64, f64)], tolerance: f64) {
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (f, &(re, im)) in found.iter().zip(expected) {
+        assert!((f - Complex64::new(re, im)).norm() <= tolerance * f.norm(), "{f} is not {re}+{im}i");
+    }
+}
+
+const IDENTITY: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+const ZERO: [[f64; 2]; 2] = [[0.0; 2]; 2];
+
+/// `lambda^2 = -2 +- sqrt(1 - 4 mu / 3)`: coalescence at mu = 3/4.
+#[test]
+fn hoffmann_flutters_above_three_quarters() {
+    let comm = Session::start(&[]).unwrap();
+    let at = |mu: f64| eigenvalues(&comm, IDENTITY, ZERO, [[2.0, 1.0 - 4.0 * mu / 3.0], [1.0, 2.0]], 0.0);
+    assert_near(&at(0.5), &[(0.0, 1.192749), (0.0, 1.605413)], 1e-6);
+    assert_near(&at(0.8), &[(-0.091098, 1.417145), (0.091098, 1.417145)], 1e-6);
+    assert_near(&at(0.9), &[(-0.157147, 1.422918), (0.157147, 1.422918)], 1e-6);
+    let exact = |mu: f64| {
+        let root = Complex64::new(1.0 - 4.0 * mu / 3.0, 0.0).sqrt();
+        (Complex64::new(-2.0, 0.0) + root).sqrt()
+    };
+    let z = exact(0.8);
+    assert_near(&at(0.8), &[(-z.re, z.im), (z.re, z.im)], 1e-13);
+}
+
+/// Damping can advance the instability: at the Hopf point of the unequally damped model a growth rate is zero.
+#[test]
+fn hulten_sinou_is_critical_at_its_hopf_points() {
+    let comm = Session::start(&[]).unwrap();
+    let (w1, w2) = (std::f64::consts::TAU * 100.0, std::f64::consts::TAU * 75.0);
+    for (e1, e2, mu, hertz) in [(0.02, 0.02, 0.28936713, 86.60254), (0.02, 0.06, 0.27179003, 93.02605)] {
+        let c = [[e1 * w1, 0.0], [0.0, e2 * w2]];
+        let k = [[w1 * w1, -mu * w2 * w2], [mu * w1 * w1, w2 * w2]];
+        let found = eigenvalues(&comm, IDENTITY, c, k, 0.0);
+        let critical = found.iter().max_by(|a, b| a.re.total_cmp(&b.re)).unwrap();
+        assert!(critical.re.abs() < 1e-5 * critical.im, "{critical}");
+        assert!((critical.im / std::f64::consts::TAU - hertz).abs() < 2e-5 * hertz, "{critical}");
+    }
+}
+
+/// The uncontrolled bicycle of Meijaard et al. rides by itself at 5 m/s and weaves at 4 m/s.
+#[test]
+fn bicycle_rides_by_itself_at_five_metres_a_second() {
+    let comm = Session::start(&[]).unwrap();
+    let m = [[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]];
+    let k0 = [[-80.95, -2.59951685249872], [-2.59951685249872, -0.80329488458618]];
+    let k2 = [[0.0, 76.59734589573222], [0.0, 2.65431523794604]];
+    let c1 = [[0.0, 33.86641391492494], [-0.85035641456978, 1.68540397397560]];
+    let at = |v: f64| {
+        let c = c1.map(|row| row.map(|x| v * x));
+        let mut k = [[0.0; 2]; 2];
+        for i in 0..2 {
+            for j in 0..2 {
+                k[i][j] = 9.81 * k0[i][j] + v * v * k2[i][j];
+            }
+        }
+        eigenvalues(&comm, m, c, k, 0.0)
+    };
+    assert_near(&at(5.0), &[(-14.07838969, 0.0), (-0.32286643, 0.0), (-0.77534188, 4.46486771)], 1e-8);
+    let weave = *at(4.0).last().unwrap();
+    assert_near(&[weave], &[(0.41325332, 3.07910819)], 1e-8);
+}
+
+/// NLEVP's `qep1`: 1/3, 1/2, 1, i, -i and an infinite eigenvalue; M is singular.
+#[test]
+fn qep1_gives_its_finite_eigenvalues() {
+    let comm = Session::start(&[]).unwrap();
+    let k = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let c = [[1.0, -6.0, 0.0], [2.0, -7.0, 0.0], [0.0, 0.0, 0.0]];
+    let m = [[0.0, 6.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut found = eigenvalues(&comm, m, c, k, 0.0);
+    found.retain(|z| z.norm() < 1e6);
+    assert_near(&found, &[(1.0 / 3.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 1.0)], 1e-10);
+}
