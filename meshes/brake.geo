@@ -16,31 +16,31 @@ EndIf
 // ---------------------------------------------------------------------------------------------- what the size decides
 k = size - 1;
 // element edge, mm                small   medium  full    million
-h_disc_()     = {                  26.0,   12.0,   6.4,    4.7 };
-h_lining_()   = {                  13.0,   7.0,    4.0,    3.2 };
-h_plate_()    = {                  15.0,   8.0,    4.6,    3.6 };
-h_piston_()   = {                  18.0,   9.0,    5.0,    3.8 };
-h_caliper_()  = {                  24.0,   12.0,   6.0,    4.6 };
-h_bracket_()  = {                  24.0,   12.0,   6.0,    4.4 };
-per_turn_()   = {                  6,      6,      7,      9   };  // elements around a fillet's full circle, at least
-per_hole_()   = {                  8,      8,      12,     16  };  // elements around a hole
-wall_h_()     = {                  12,     7.0,    4.5,    3.5 };  // and along it
-vanes_()      = {                  7,      17,     37,     37  };  // primes: no doublet of a low nodal diameter is split
-rmin_()       = {                  15,     7,      0,      0   };  // corner radii below this stay sharp
+h_disc_()     = {         34    ,  12.0  ,  5.6   ,  4.3    };
+h_lining_()   = {         13    ,  7.0   ,  3.85  ,  3.2    };
+h_plate_()    = {         15    ,  8.0   ,  4.2   ,  3.6    };
+h_piston_()   = {         14    ,  9.0   ,  5.0   ,  3.8    };
+h_caliper_()  = {         28    ,  13    ,  5.4   ,  4.6    };
+h_bracket_()  = {         30    ,  13    ,  5.3   ,  4.4    };
+per_turn_()   = {         6     ,  6     ,  7     ,  9      };  // elements around a fillet's full circle, at least
+per_hole_()   = {         8     ,  8     ,  12    ,  16     };  // elements around a hole
+wall_h_()     = {         20    ,  7.0   ,  4.5   ,  3.5    };  // and along it
+vanes_()      = {         7     ,  17    ,  37    ,  37     };  // primes: no doublet of a low nodal diameter is split
+rmin_()       = {         100   ,  7     ,  0     ,  0      };  // corner radii below this stay sharp
 h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);
 h_caliper = h_caliper_(k);  h_bracket = h_bracket_(k);  vanes = vanes_(k);  rmin = rmin_(k);
 
 // --------------------------------------------------------------------------------------------------------- dimensions
 // disc
-disc_R = 140;  disc_t = 24;  cheek_t = 7;        // radius, thickness over both cheeks, one cheek
+disc_R = 140;  disc_t = 24;  cheek_t = 8;        // radius, thickness over both cheeks, one cheek
 rub_r = 90;                                      // inner radius of the rubbing faces
 cheek_r = 86;                                    // bore of the inner cheek
 vane_r0 = (size == 1) ? cheek_r - 6 : 92;  vane_r1 = (size == 1) ? disc_R + 20 : 135;  vane_t = 180 / vanes;  // small: flush
 hat_R = 78;  hat_t = 7;  hat_z = 46;             // hat: outer radius, wall, height of its top
 bore_R = 32;  hub_n = 5;  hub_pcd = 108;  hub_d = 14.5;
 // pads
-lin_t = 11;  lin_R = 137;  lin_r = 93;           // lining: thickness, outer and inner radius
-lin_x0 = 47;  lin_x1 = 55;                       // half widths at the inner and outer corner
+lin_t = 11;  lin_R = 136;  lin_r = 94;           // lining: thickness, outer and inner radius
+lin_x0 = 46;  lin_x1 = 54;                       // half widths at the inner and outer corner
 cham_w = 8;  cham_d = 3.5;                       // chamfers at the leading and trailing edge
 slot_w = 4;  slot_d = 7;                         // radial slot
 bp_t = 5.5;  bp_R = 139.5;  bp_r = 90.5;  bp_x0 = 49;  bp_x1 = 57;
@@ -153,7 +153,7 @@ plane = 2;  w0 = 0;  w1 = 0;  Call RoundPoly;
 out() = Extrude { {0, 0, 1}, {0, 0, 0}, 2*Pi } { Surface{surf}; };
 disc = out(1);
 Recursive Delete { Surface{surf}; }
-cy = 0;  rr = cheek_r - 5;  rR = disc_R + 10;  w0 = -z0;  w1 = z0;  Call Ring;
+cy = 0;  rr = hat_R - hat_t - 5;  rR = disc_R + 10;  w0 = -z0;  w1 = z0;  Call Ring;
 boxes() = {};
 For i In {0:vanes-1}
   v = newv;  Box(v) = {vane_r0, -vane_t/2, -z0, vane_r1 - vane_r0, vane_t, 2*z0};
@@ -521,12 +521,12 @@ MeshSize { PointsOf { Surface{bore()}; } } = Min(2*Pi*pis_R/per_hole_(k), h_cali
 Mesh.MeshSizeExtendFromBoundary = 1;
 Mesh.MeshSizeFromPoints = 1;
 Mesh.MeshSizeFromCurvature = per_turn_(k);
-Mesh.Algorithm = 6;               // frontal-Delaunay
+Mesh.Algorithm = (size == 1) ? 1 : 6;   // MeshAdapt copes better with very coarse strips, else frontal-Delaunay
 Mesh.Algorithm3D = 1;             // Delaunay; HXT (10) is faster but in 4.8 not the same from run to run
 Mesh.ElementOrder = 2;
 Mesh.SecondOrderLinear = 0;
-Mesh.HighOrderOptimize = 0;
-Mesh.Optimize = 1;
+Mesh.HighOrderOptimize = 1;
+Mesh.Optimize = 3;                // passes
 Mesh.OptimizeThreshold = 0.35;
 General.NumThreads = 1;           // one thread and the default random seed: the same mesh every time
 Mesh.MaxNumThreads1D = 1;  Mesh.MaxNumThreads2D = 1;  Mesh.MaxNumThreads3D = 1;

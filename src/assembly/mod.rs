@@ -11,8 +11,10 @@
 
 mod dofs;
 mod pattern;
+mod structure;
 mod system;
 
 pub use dofs::DofMap;
 pub use pattern::{BlockRows, Pattern};
+pub use structure::{Connectors, Tets, held, loads};
 pub use system::{Connectivity, ElementMatrices, Elements, System};

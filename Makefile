@@ -1,0 +1,59 @@
+# squeal: `make demo` shows a brake that squeals, `make test` passes the tests. Both set up what they need.
+
+export OPENBLAS_NUM_THREADS := 1
+size_small   := 1
+size_medium  := 2
+size_full    := 3
+size_million := 4
+BINARY := target/release/squeal
+RANKS  ?= 2
+MPIRUN := mpirun --bind-to none -n $(RANKS)
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_btl_vader_single_copy_mechanism := none
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+
+.PHONY: help demo test full bench lint setup build clean
+.DELETE_ON_ERROR:
+
+help: ## this list
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+demo: setup results/demo/summary.txt ## the main job on the demo brake (medium mesh): table and paths of the results
+	@cat results/demo/summary.txt
+
+test: setup meshes/build/brake-small.msh ## all tests
+	@scripts/setup.sh --tests
+	cargo nextest run --workspace --release
+
+full: setup build meshes/build/brake-full.msh ## the paper's size: 177 thousand nodes on $(RANKS) ranks
+	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force
+
+bench: setup meshes/build/brake-medium.msh ## seconds, entries and memory of assembly, factorisation and eigensolution
+	cargo bench
+
+lint: setup ## formatting, clippy and documentation, warnings denied
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --release -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release
+
+setup: ## system packages, as far as they are missing
+	@scripts/setup.sh
+
+build: setup ## the optimised binary
+	cargo build --release
+
+clean: ## everything that can be made again
+	cargo clean
+	rm -rf meshes/build results
+
+$(BINARY): $(shell find src sys Cargo.toml Cargo.lock build.rs -type f 2>/dev/null)
+	cargo build --release
+	@touch $@
+
+meshes/build/brake-%.msh: meshes/brake.geo | setup
+	@mkdir -p $(@D)
+	gmsh -3 $< -setnumber size $(size_$*) -o $@ > $@.log
+
+results/demo/summary.txt: $(BINARY) meshes/brake-medium.toml meshes/build/brake-medium.msh
+	$(BINARY) stability meshes/brake-medium.toml --friction 0.1:0.9:0.1 --output results/demo --force

@@ -1,0 +1,68 @@
+//! Friction values and bands as people type them.
+
+/// A list of friction values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frictions(pub Vec<f64>);
+
+/// Friction beyond this is a typing error.
+const LARGEST: f64 = 2.0;
+
+/// `0.5`, `0.2,0.5` or `FROM:TO:STEP`, the end included.
+pub fn parse(text: &str) -> Result<Frictions, String> {
+    let values = match text.split(':').collect::<Vec<_>>()[..] {
+        [list] => list.split(',').map(number).collect::<Result<Vec<_>, _>>()?,
+        [from, to, step] => range(number(from)?, number(to)?, number(step)?)?,
+        _ => return Err("expected one value, a list 0.2,0.5 or a range FROM:TO:STEP".into()),
+    };
+    match values.iter().find(|mu| !(0.0..=LARGEST).contains(*mu)) {
+        Some(mu) => Err(format!("friction {mu} is out of range: 0 to {LARGEST}")),
+        None => Ok(Frictions(values)),
+    }
+}
+
+/// `FROM:TO` in Hz.
+pub fn band(text: &str) -> Result<[f64; 2], String> {
+    let (from, to) = text.split_once(':').ok_or("expected FROM:TO in Hz")?;
+    let band = [number(from)?, number(to)?];
+    if band[0] < 0.0 || band[0] >= band[1] {
+        return Err("the band is empty: FROM must be at least 0 and below TO".into());
+    }
+    Ok(band)
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
+    if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }
+}
+
+/// Values `from + i step` computed without accumulating rounding, up to `to` with a millionth of a step to spare.
+pub fn range(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
+    let n = (to - from) / step;
+    if step == 0.0 || n < 0.0 || !n.is_finite() || n > 1e5 {
+        return Err(format!("the range {from}:{to}:{step} is empty or endless"));
+    }
+    let digits = |i: usize| (1e12 * (from + i as f64 * step)).round() / 1e12;
+    Ok((0..=(n + 1e-6).floor() as usize).map(digits).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_include_their_end() {
+        let Frictions(values) = parse("0.1:0.9:0.1").unwrap();
+        assert_eq!(values, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]);
+        assert_eq!(parse("0.5").unwrap().0, [0.5]);
+        assert_eq!(parse("0.9:0.1:-0.4").unwrap().0, [0.9, 0.5, 0.1]);
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_a_reason() {
+        for text in ["", "a", "0.1:0.9", "0.1:0.9:-0.1", "0.1:0.9:0", "-0.1", "3", "nan"] {
+            assert!(parse(text).is_err(), "{text}");
+        }
+        assert!(band("6000:0").is_err() && band("0:0").is_err() && band("5").is_err());
+        assert_eq!(band("0:6000").unwrap(), [0.0, 6000.0]);
+    }
+}

@@ -1,0 +1,192 @@
+//! Checks that an equilibrium makes of itself: forces, moments, torque, contact resultants.
+
+use std::collections::BTreeMap;
+
+use crate::assembly::{DofMap, ElementMatrices, Elements};
+use crate::contact::interface::{Interface, Pair};
+use crate::contact::law::{Response, Status};
+
+use super::Counts;
+
+/// Force (N) and its moment about the origin (N m).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Wrench {
+    /// Force, N.
+    pub force: [f64; 3],
+    /// Moment about the origin, N m.
+    pub moment: [f64; 3],
+}
+
+impl Wrench {
+    /// Adds a force at a point.
+    pub fn add(&mut self, point: [f64; 3], force: [f64; 3]) {
+        let moment = cross(point, force);
+        for i in 0..3 {
+            self.force[i] += force[i];
+            self.moment[i] += moment[i];
+        }
+    }
+
+    /// Moment about the axis through a point, N m.
+    pub fn about(&self, through: [f64; 3], axis: [f64; 3]) -> f64 {
+        let lever = cross(through, self.force);
+        dot([0, 1, 2].map(|i| self.moment[i] - lever[i]), axis)
+    }
+}
+
+/// What a contact pair carries.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairForces {
+    /// Points by status.
+    pub counts: Counts,
+    /// Sum of the normal forces, N.
+    pub normal: f64,
+    /// Sum of the magnitudes of the tangential forces, N.
+    pub tangential: f64,
+    /// Force on the slave and its moment about the origin.
+    pub on_slave: Wrench,
+    /// Area of closed points, m2.
+    pub closed_area: f64,
+    /// Largest pressure of a point, Pa.
+    pub peak_pressure: f64,
+    /// Largest normal force of a point, N.
+    pub peak_force: f64,
+}
+
+/// Loads and supports of an equilibrium, which add up to nothing.
+#[derive(Debug, Clone)]
+pub struct Balance {
+    /// All loads.
+    pub applied: Wrench,
+    /// All supports.
+    pub support: Wrench,
+    /// Support of each body of nodes asked for.
+    pub reactions: Vec<(u32, [f64; 3])>,
+    /// The pairs, in the interface's order.
+    pub pairs: Vec<PairForces>,
+}
+
+impl Balance {
+    /// Adds up an equilibrium. `u` are nodal displacements, `points` nodal coordinates. Not collective: every rank computes all.
+    pub fn new(
+        points: &[[f64; 3]],
+        families: &[&dyn Elements],
+        loads: &[(u32, [f64; 3])],
+        interface: &Interface,
+        dofs: &DofMap,
+        u: &[[f64; 3]],
+        responses: &[Response],
+    ) -> Balance {
+        let mut internal = internal_forces_at_supports(families, dofs, u);
+        let mut subtract = |node: u32, f: [f64; 3]| {
+            if let Some(sum) = internal.get_mut(&node) {
+                (0..3).for_each(|i| sum[i] -= f[i]);
+            }
+        };
+        let mut applied = Wrench::default();
+        for &(node, force) in loads {
+            applied.add(points[node as usize], force);
+            subtract(node, force);
+        }
+        for (a, response) in responses.iter().enumerate() {
+            interface.trace.spread(a, response.force, &mut subtract);
+        }
+        let mut support = Wrench::default();
+        let held = |node: u32, f: [f64; 3]| {
+            let equations = dofs.equations(node);
+            [0, 1, 2].map(|i| if equations[i] < 0 { f[i] } else { 0.0 })
+        };
+        let reactions: Vec<_> = internal.into_iter().map(|(node, f)| (node, held(node, f))).collect();
+        reactions.iter().for_each(|&(node, f)| support.add(points[node as usize], f));
+        let pairs = interface.pairs.iter().map(|pair| PairForces::new(interface, pair, responses)).collect();
+        Balance { applied, support, reactions, pairs }
+    }
+
+    /// Moment of some nodes' supports about an axis, N m.
+    pub fn support_torque(
+        &self,
+        points: &[[f64; 3]],
+        of: impl Fn(u32) -> bool,
+        through: [f64; 3],
+        axis: [f64; 3],
+    ) -> f64 {
+        let mut wrench = Wrench::default();
+        let nodes = self.reactions.iter().filter(|(node, _)| of(*node));
+        nodes.for_each(|&(node, f)| wrench.add(points[node as usize], f));
+        wrench.about(through, axis)
+    }
+
+    /// What is left of the forces (N) and moments (N m).
+    pub fn residual(&self) -> [f64; 2] {
+        let left = |a: [f64; 3], b: [f64; 3]| norm([0, 1, 2].map(|i| a[i] + b[i]));
+        [left(self.applied.force, self.support.force), left(self.applied.moment, self.support.moment)]
+    }
+}
+
+/// `f = sum_e K_e u_e` at the nodes that have a held displacement.
+fn internal_forces_at_supports(
+    families: &[&dyn Elements],
+    dofs: &DofMap,
+    u: &[[f64; 3]],
+) -> BTreeMap<u32, [f64; 3]> {
+    let is_held = |n: u32| dofs.equations(n).iter().any(|&e| e < 0);
+    let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+    let mut element = ElementMatrices::default();
+    for family in families {
+        for e in (0..family.len()).filter(|&e| family.nodes(e).iter().any(|&n| is_held(n))) {
+            let nodes = family.nodes(e);
+            family.matrices(e, &mut element);
+            let values: Vec<f64> = nodes.iter().flat_map(|&n| u[n as usize]).collect();
+            for (a, &n) in nodes.iter().enumerate().filter(|&(_, &n)| is_held(n)) {
+                let sum = forces.entry(n).or_default();
+                for i in 0..3 {
+                    let row = &element.k[(3 * a + i) * values.len()..][..values.len()];
+                    sum[i] += row.iter().zip(&values).map(|(k, u)| k * u).sum::<f64>();
+                }
+            }
+        }
+    }
+    forces
+}
+
+impl PairForces {
+    fn new(interface: &Interface, pair: &Pair, responses: &[Response]) -> PairForces {
+        let own = &responses[pair.points.clone()];
+        let mut forces = PairForces {
+            counts: Counts::of(own),
+            normal: 0.0,
+            tangential: 0.0,
+            on_slave: Wrench::default(),
+            closed_area: 0.0,
+            peak_pressure: 0.0,
+            peak_force: 0.0,
+        };
+        for (a, response) in pair.points.clone().zip(own) {
+            if response.status == Status::Open {
+                continue;
+            }
+            let point = &interface.points[a];
+            let n = point.law.normal;
+            let p = response.normal_force;
+            forces.normal += p;
+            forces.tangential += norm([0, 1, 2].map(|i| response.force[i] - p * n[i]));
+            forces.on_slave.add(point.position, response.force);
+            forces.closed_area += point.law.weight;
+            forces.peak_pressure = forces.peak_pressure.max(p / point.law.weight);
+            forces.peak_force = forces.peak_force.max(p);
+        }
+        forces
+    }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+fn norm(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}

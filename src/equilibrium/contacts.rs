@@ -1,0 +1,134 @@
+//! Between the equations and the contact points.
+
+use crate::Result;
+use crate::assembly::{DofMap, System};
+use crate::contact::interface::Interface;
+use crate::contact::law::{Response, Stage, Status};
+use crate::petsc::{Gather, Matrix, Vector};
+
+/// Evaluates all contact points of an interface, on every rank alike, so that the contact state is known everywhere.
+pub struct Contacts<'a> {
+    interface: &'a Interface,
+    dofs: &'a DofMap,
+    gather: Gather,
+    /// For each displacement of the trace's nodes its place in the gathered array, -1 where held.
+    places: Vec<[i32; 3]>,
+}
+
+/// Points of a pair by status.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Without contact.
+    pub open: usize,
+    /// Closed and sticking.
+    pub stick: usize,
+    /// Closed and slipping.
+    pub slip: usize,
+}
+
+impl Counts {
+    /// Counts statuses.
+    pub fn of(responses: &[Response]) -> Counts {
+        let count = |status| responses.iter().filter(|r| r.status == status).count();
+        Counts { open: count(Status::Open), stick: count(Status::Stick), slip: count(Status::Slip) }
+    }
+
+    /// Points in contact.
+    pub fn closed(&self) -> usize {
+        self.stick + self.slip
+    }
+}
+
+impl<'a> Contacts<'a> {
+    /// Prepares the evaluation. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn new(interface: &'a Interface, system: &'a System) -> Result<Contacts<'a>> {
+        let dofs = &system.dofs;
+        let mut places = vec![[-1; 3]; dofs.n_nodes()];
+        let mut indices = Vec::new();
+        let mut seen = vec![false; dofs.n_nodes()];
+        for a in 0..interface.trace.len() {
+            for &node in interface.trace.point(a).0 {
+                if std::mem::replace(&mut seen[node as usize], true) {
+                    continue;
+                }
+                for (place, equation) in places[node as usize].iter_mut().zip(dofs.equations(node)) {
+                    if equation >= 0 {
+                        *place = indices.len() as i32;
+                        indices.push(equation);
+                    }
+                }
+            }
+        }
+        let gather = Gather::new(&system.load, &indices)?;
+        Ok(Contacts { interface, dofs, gather, places })
+    }
+
+    /// The interface.
+    pub fn interface(&self) -> &'a Interface {
+        self.interface
+    }
+
+    /// Relative displacements `g = B u` of all points. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn gaps(&mut self, u: &Vector) -> Result<Vec<[f64; 3]>> {
+        let (trace, places) = (&self.interface.trace, &self.places);
+        self.gather.run(u, |values| {
+            let value = |place: i32| if place < 0 { 0.0 } else { values[place as usize] };
+            (0..trace.len()).map(|a| trace.gap(a, |node| places[node as usize].map(value))).collect()
+        })
+    }
+
+    /// What every point does at these displacements. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn respond(&mut self, u: &Vector, stage: &Stage) -> Result<Vec<Response>> {
+        let gaps = self.gaps(u)?;
+        Ok(gaps.iter().enumerate().map(|(a, g)| self.interface.respond(a, *g, stage)).collect())
+    }
+
+    /// `r += factor B^T f` on this rank's rows. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn add_forces(&self, responses: &[Response], factor: f64, r: &mut Vector) -> Result<()> {
+        let owned = self.dofs.owned();
+        r.local_mut(|r| {
+            for (a, response) in responses.iter().enumerate() {
+                if response.status == Status::Open {
+                    continue;
+                }
+                self.interface.trace.spread(a, response.force, |node, f| {
+                    for (equation, f) in self.dofs.equations(node).into_iter().zip(f) {
+                        if owned.contains(&equation) {
+                            r[(equation - owned.start) as usize] += factor * f;
+                        }
+                    }
+                });
+            }
+        })
+    }
+
+    /// `A += sum B_a^T D_a B_a`. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn add_blocks(&self, blocks: impl Iterator<Item = [[f64; 3]; 3]>, matrix: &mut Matrix) -> Result<()> {
+        let (mut dense, mut indices) = (Vec::new(), Vec::new());
+        for (a, block) in blocks.enumerate() {
+            if block.as_flattened().iter().all(|&x| x == 0.0) {
+                continue;
+            }
+            self.interface.trace.expand_into(a, &block, &mut dense);
+            indices.clear();
+            self.dofs.indices_into(self.interface.trace.point(a).0, &mut indices);
+            matrix.add_block(&indices, &dense)?;
+        }
+        matrix.finish()
+    }
+}

@@ -1,0 +1,170 @@
+//! From rest to any friction, in steps that Newton can take.
+
+use super::contacts::Contacts;
+use super::newton::{self, Iteration, Step, Workspace};
+use crate::assembly::System;
+use crate::contact::interface::Interface;
+use crate::contact::law::{Response, Stage};
+use crate::petsc::{Factor, Matrix, Vector};
+use crate::{Error, Result};
+
+/// A converged state.
+pub struct Equilibrium {
+    /// Displacements of the free equations, m.
+    pub u: Vector,
+    /// What each contact point does, on every rank.
+    pub responses: Vec<Response>,
+    /// Friction of the swept pairs.
+    pub friction: f64,
+    /// The solves that led here from the state before.
+    pub steps: Vec<Step>,
+}
+
+/// Friction rises from rest by this much at first, then by twice as much.
+const FIRST_RISE: f64 = 0.1;
+/// A failing step is halved down to this.
+const SMALLEST_RISE: f64 = 0.005;
+
+/// The equilibria of one structure along rising or falling friction. Keeps the last state, from which the next starts.
+pub struct Path<'a> {
+    system: &'a System,
+    contacts: Contacts<'a>,
+    tangent: Matrix,
+    state: Option<(f64, Vector)>,
+    steps: Vec<Step>,
+}
+
+impl<'a> Path<'a> {
+    /// A path that starts at rest. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn new(system: &'a System, interface: &'a Interface) -> Result<Path<'a>> {
+        let contacts = Contacts::new(interface, system)?;
+        Ok(Path { system, contacts, tangent: system.k.duplicate()?, state: None, steps: Vec::new() })
+    }
+
+    /// The evaluator of the contact points.
+    pub fn contacts(&mut self) -> &mut Contacts<'a> {
+        &mut self.contacts
+    }
+
+    /// The last converged or attempted displacement, for output after a failure.
+    pub fn last(&self) -> Option<&Vector> {
+        self.state.as_ref().map(|(_, u)| u)
+    }
+
+    /// The equilibrium at a friction of the swept pairs. `progress` hears of (label, iteration, iterate). Collective.
+    ///
+    /// # Errors
+    /// PETSc's and MUMPS's; [`Error::NotConverged`] where even the smallest step fails.
+    pub fn advance(
+        &mut self,
+        friction: f64,
+        factor: &mut Factor,
+        progress: &mut dyn FnMut(&str, usize, &Iteration),
+    ) -> Result<Equilibrium> {
+        if self.state.is_none() {
+            self.settle(factor, progress)?;
+        }
+        loop {
+            let (reached, u) = self.state.take().expect("settled above");
+            let mut trial = u.duplicate()?;
+            self.state = Some((reached, u));
+            let goal = self.next_goal(reached, friction);
+            let responses = self.rise(reached, goal, &mut trial, factor, progress)?;
+            let (goal, responses) = responses;
+            self.state = Some((goal, trial));
+            if goal == friction {
+                return self.equilibrium(responses);
+            }
+        }
+    }
+
+    /// Rest to the frictionless equilibrium of the true laws.
+    fn settle(&mut self, factor: &mut Factor, progress: &mut dyn FnMut(&str, usize, &Iteration)) -> Result<()> {
+        let mut u = self.system.zeros()?;
+        for (stage, label) in
+            [(Stage::Settle, "settle"), (self.contacts.interface().stage(0.0), "contact without friction at the disc")]
+        {
+            let (step, _) = self.newton(&stage, label.into(), &mut u, factor, progress)?;
+            let converged = step.converged;
+            self.steps.push(step);
+            if !converged {
+                self.state = Some((0.0, u));
+                return Err(self.failure(0.0));
+            }
+        }
+        self.state = Some((0.0, u));
+        Ok(())
+    }
+
+    fn next_goal(&self, reached: f64, friction: f64) -> f64 {
+        let rise = if reached == 0.0 { FIRST_RISE } else { 2.0 * FIRST_RISE };
+        let goal = reached + (friction - reached).clamp(-rise, rise);
+        if (goal - friction).abs() < 1e-12 { friction } else { goal }
+    }
+
+    /// One step towards `goal`, halved until Newton takes it. Gives the friction reached.
+    fn rise(
+        &mut self,
+        reached: f64,
+        goal: f64,
+        trial: &mut Vector,
+        factor: &mut Factor,
+        progress: &mut dyn FnMut(&str, usize, &Iteration),
+    ) -> Result<(f64, Vec<Response>)> {
+        let mut goal = goal;
+        loop {
+            let stage = self.contacts.interface().stage(goal);
+            let (step, responses) = self.newton(&stage, format!("friction {goal:.4}"), trial, factor, progress)?;
+            let converged = step.converged;
+            self.steps.push(step);
+            if converged {
+                return Ok((goal, responses));
+            }
+            if (goal - reached).abs() <= SMALLEST_RISE {
+                return Err(self.failure(goal));
+            }
+            goal = 0.5 * (goal + reached);
+            trial.copy_from(self.last().expect("a path under way has a state"))?;
+        }
+    }
+
+    fn newton(
+        &mut self,
+        stage: &Stage,
+        label: String,
+        u: &mut Vector,
+        factor: &mut Factor,
+        progress: &mut dyn FnMut(&str, usize, &Iteration),
+    ) -> Result<(Step, Vec<Response>)> {
+        let name = label.clone();
+        let workspace = Workspace {
+            system: self.system,
+            contacts: &mut self.contacts,
+            factor,
+            tangent: &mut self.tangent,
+        };
+        newton::solve(workspace, u, stage, label, &mut |i, it| progress(&name, i, it))
+    }
+
+    fn equilibrium(&mut self, responses: Vec<Response>) -> Result<Equilibrium> {
+        let (friction, u) = self.state.as_ref().expect("a path under way has a state");
+        Ok(Equilibrium { u: u.duplicate()?, responses, friction: *friction, steps: std::mem::take(&mut self.steps) })
+    }
+
+    fn failure(&self, friction: f64) -> Error {
+        let step = self.steps.last().expect("a failure follows a step");
+        let names: Vec<String> = self.contacts.interface().pairs.iter().map(|pair| pair.name.clone()).collect();
+        let history: Vec<String> = step.iterations.iter().map(|it| format!("{:.1e}", it.residual)).collect();
+        let flicker = step.flickering(&names).map_or(String::new(), |pair| format!(" Flickering pair: {pair}."));
+        Error::NotConverged(format!(
+            "no equilibrium at friction {friction:.3} (step `{}`). Relative residuals: {}.{flicker} \
+             A finer mesh at the edge of contact, a softer contact law or more stick stiffness may help; `squeal check` shows gaps \
+             and free parts",
+            step.label,
+            history.join(" ")
+        ))
+    }
+}

@@ -1,0 +1,5 @@
+//! Results on disk and on screen: tables, CSV, VTU. Reads results, computes nothing of its own.
+
+pub mod folder;
+pub mod tables;
+pub mod vtu;

@@ -1,0 +1,73 @@
+//! From an equilibrium to the pencil about it.
+
+use crate::Result;
+use crate::assembly::System;
+use crate::contact::interface::Interface;
+use crate::equilibrium::{Contacts, Equilibrium};
+use crate::petsc::Matrix;
+
+use super::Pencil;
+
+/// The matrices linearised about an equilibrium with the status of every point frozen.
+pub struct Linearised {
+    /// `K + B^T D B` with friction's unsymmetric blocks.
+    pub k: Matrix,
+    /// The same without them: symmetric.
+    pub k_symmetric: Matrix,
+    /// `C`, with friction damping where it is asked for.
+    pub c: Option<Matrix>,
+}
+
+impl Linearised {
+    /// Room on the system's pattern. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn new(system: &System) -> Result<Linearised> {
+        Ok(Linearised { k: system.k.duplicate()?, k_symmetric: system.k.duplicate()?, c: None })
+    }
+
+    /// Linearises about `equilibrium`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`, all
+    /// other closed points stick. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn update(&mut self, system: &System, contacts: &mut Contacts, equilibrium: &Equilibrium) -> Result<()> {
+        let interface = contacts.interface();
+        let gaps = contacts.gaps(&equilibrium.u)?;
+        for (matrix, friction) in [(&mut self.k, equilibrium.friction), (&mut self.k_symmetric, 0.0)] {
+            let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, friction);
+            matrix.copy_from(&system.k)?;
+            contacts.add_blocks((0..gaps.len()).map(block), matrix)?;
+        }
+        Ok(())
+    }
+
+    /// The pencil.
+    pub fn pencil<'a>(&'a self, system: &'a System) -> Pencil<'a> {
+        Pencil {
+            m: &system.m,
+            c: self.c.as_ref().unwrap_or(&system.c),
+            k: &self.k,
+            k_symmetric: &self.k_symmetric,
+        }
+    }
+}
+
+/// Adds `B^T [mu p / |v| (I - n n^T - t t^T)] B` of the sliding points to C: the damping of friction's direction.
+///
+/// # Errors
+/// PETSc's.
+pub fn add_friction_damping(
+    linearised: &mut Linearised,
+    system: &System,
+    contacts: &Contacts,
+    interface: &Interface,
+    equilibrium: &Equilibrium,
+) -> Result<()> {
+    let mut c = system.c.duplicate()?;
+    let block = |a: usize| interface.friction_damping(a, &equilibrium.responses[a], equilibrium.friction);
+    contacts.add_blocks((0..interface.trace.len()).map(block), &mut c)?;
+    linearised.c = Some(c);
+    Ok(())
+}

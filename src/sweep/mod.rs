@@ -1,0 +1,71 @@
+//! Equilibria and modes along friction.
+//!
+//! [`Sweep`] owns what all values share: the system, its contact evaluation, the factors' analysis, the last equilibrium. Each
+//! call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
+
+use crate::Result;
+use crate::assembly::System;
+use crate::contact::interface::Interface;
+use crate::equilibrium::{Equilibrium, Iteration, Path};
+use crate::petsc::FactorStats;
+use crate::stability::{self, Band, Linearised, Solver};
+
+/// A structure under analysis at one friction after the other.
+pub struct Sweep<'a> {
+    system: &'a System,
+    path: Path<'a>,
+    solver: Solver,
+    linearised: Option<Linearised>,
+}
+
+/// What a sweep is busy with.
+pub enum Event<'a> {
+    /// A Newton iterate of the step named.
+    Newton(&'a str, usize, &'a Iteration),
+    /// The eigensolver has (converged, wanted, solves).
+    Modes(usize, usize, usize),
+}
+
+impl<'a> Sweep<'a> {
+    /// A sweep that starts from rest. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn new(system: &'a System, interface: &'a Interface) -> Result<Sweep<'a>> {
+        Ok(Sweep { system, path: Path::new(system, interface)?, solver: Solver::default(), linearised: None })
+    }
+
+    /// The equilibrium at a friction of the swept pairs, from the last one. Collective.
+    ///
+    /// # Errors
+    /// See [`Path::advance`].
+    pub fn equilibrium(&mut self, friction: f64, hear: &mut dyn FnMut(Event)) -> Result<Equilibrium> {
+        self.path.advance(friction, &mut self.solver.lu, &mut |label, i, it| hear(Event::Newton(label, i, it)))
+    }
+
+    /// All modes of a band (Hz) about an equilibrium. Collective.
+    ///
+    /// # Errors
+    /// See [`stability::solve`].
+    pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], hear: &mut dyn FnMut(Event)) -> Result<Band> {
+        if self.linearised.is_none() {
+            self.linearised = Some(Linearised::new(self.system)?);
+        }
+        let linearised = self.linearised.as_mut().expect("made above");
+        linearised.update(self.system, self.path.contacts(), equilibrium)?;
+        let pencil = linearised.pencil(self.system);
+        stability::solve(&pencil, &mut self.solver, band, &mut |converged, wanted, solves| {
+            hear(Event::Modes(converged, wanted, solves));
+        })
+    }
+
+    /// The last state tried, for output after a failure.
+    pub fn path(&self) -> &Path<'a> {
+        &self.path
+    }
+
+    /// Costs of the unsymmetric and the symmetric factor.
+    pub fn costs(&self) -> [FactorStats; 2] {
+        [self.solver.lu.stats(), self.solver.ldl.stats()]
+    }
+}
