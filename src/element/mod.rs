@@ -24,4 +24,9 @@
 //! | `D` | elasticity, 6x6 |
 //! | `w` | quadrature weight (they add up to the reference element's volume or area) |
 
+mod algebra;
+pub mod material;
 pub mod quadrature;
+#[cfg(test)]
+mod samples;
+pub mod tet10;
