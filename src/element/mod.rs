@@ -30,3 +30,4 @@ pub mod quadrature;
 #[cfg(test)]
 mod samples;
 pub mod tet10;
+pub mod tri6;
