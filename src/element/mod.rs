@@ -25,6 +25,7 @@
 //! | `w` | quadrature weight (they add up to the reference element's volume or area) |
 
 mod algebra;
+pub mod connector;
 pub mod coupling;
 pub mod material;
 pub mod quadrature;
