@@ -1,1 +1,35 @@
 //! Elements: pure functions from coordinates and constants to matrices.
+//!
+//! Nothing here knows a mesh, a file or PETSc. Each element takes the coordinates of its own nodes as plain arrays and
+//! fills dense matrices, row-major, with the dofs of one node side by side (dof `3a + i` is axis `i` of node `a`).
+//! Symmetric 3x3 tensors travel in Voigt order xx yy zz xy yz zx with engineering shear strains, so that
+//! `stress = elasticity * strain` with the elasticity as a `[[f64; 6]; 6]`, and energy density is `strain . stress / 2`.
+//!
+//! ```text
+//!   quadrature   points and weights on the reference tetrahedron and triangle
+//!   tet10        the body:     stiffness, mass, mass properties, recovered stress
+//!   tri6         its skin:     area, normal, consistent loads of traction and pressure
+//!   material     elasticity:   laws, rotation into global axes, positive definiteness
+//!   coupling     a cloud's mean rigid motion as 3x3 blocks on its nodes (distributing coupling)
+//!   connector    spring and damper between the mean motions of two clouds
+//! ```
+//!
+//! Symbols, the same in all files of this room:
+//!
+//! | symbol | meaning |
+//! |---|---|
+//! | `N_a` | shape function of node `a` |
+//! | `J` | Jacobian `d x_i / d xi_k`, row `i` column `k`; `detJ` its determinant |
+//! | `B_a` | 6x3 strain-displacement matrix of node `a` |
+//! | `D` | elasticity, 6x6 |
+//! | `w` | quadrature weight (they add up to the reference element's volume or area) |
+
+mod algebra;
+pub mod connector;
+pub mod coupling;
+pub mod material;
+pub mod quadrature;
+#[cfg(test)]
+mod samples;
+pub mod tet10;
+pub mod tri6;

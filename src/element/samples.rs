@@ -1,0 +1,141 @@
+//! What the tests of this room share: reproducible random numbers, elements and materials, and a rule that is exact to any
+//! degree.
+
+use super::quadrature::Point;
+use super::tet10::{EDGES, NODES, min_max_jacobian};
+
+/// A small linear congruential generator (Knuth's MMIX constants): the same numbers on every machine.
+pub struct Random(u64);
+
+impl Random {
+    pub fn seeded(seed: u64) -> Self {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        random.unit();
+        random
+    }
+
+    /// Uniform in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform in [-1, 1).
+    pub fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    /// Components uniform in [-1, 1).
+    pub fn vector(&mut self) -> [f64; 3] {
+        [self.signed(), self.signed(), self.signed()]
+    }
+
+    /// A point of the reference tetrahedron.
+    pub fn in_tetrahedron(&mut self) -> [f64; 3] {
+        loop {
+            let at = [self.unit(), self.unit(), self.unit()];
+            if at.iter().sum::<f64>() < 1.0 {
+                return at;
+            }
+        }
+    }
+}
+
+/// A straight-edged element of random shape, not too flat, about a metre across.
+pub fn straight_tet(random: &mut Random) -> [[f64; 3]; 10] {
+    loop {
+        let mut x = NODES;
+        for corner in &mut x[..4] {
+            for value in corner {
+                *value += 0.4 * random.signed();
+            }
+        }
+        straighten(&mut x);
+        if min_max_jacobian(&x).0 > 0.3 {
+            return x;
+        }
+    }
+}
+
+/// As [`straight_tet`], with every midside moved by up to `offset` in each axis, and `detJ > 0` at all samples.
+pub fn curved_tet(random: &mut Random, offset: f64) -> [[f64; 3]; 10] {
+    loop {
+        let mut x = straight_tet(random);
+        for midside in &mut x[4..] {
+            for value in midside {
+                *value += offset * random.signed();
+            }
+        }
+        if min_max_jacobian(&x).0 > 0.05 {
+            return x;
+        }
+    }
+}
+
+/// Puts the midsides into the middle of their edges.
+pub fn straighten(x: &mut [[f64; 3]; 10]) {
+    for (midside, [i, j]) in EDGES.iter().enumerate() {
+        x[4 + midside] = std::array::from_fn(|k| 0.5 * (x[*i][k] + x[*j][k]));
+    }
+}
+
+/// A positive definite elasticity without any symmetry of its own: `A A^T + I`, of order one.
+pub fn triclinic(random: &mut Random) -> [[f64; 6]; 6] {
+    let a: [[f64; 6]; 6] = std::array::from_fn(|_| std::array::from_fn(|_| random.signed()));
+    let mut d = [[0.0; 6]; 6];
+    for i in 0..6 {
+        for j in 0..6 {
+            d[i][j] =
+                (0..6).map(|k| a[i][k] * a[j][k]).sum::<f64>() + if i == j { 1.0 } else { 0.0 };
+        }
+    }
+    d
+}
+
+/// Gauss-Legendre points and weights on (0, 1), exact to degree `2n - 1`: Newton on the Legendre recurrence.
+fn gauss(n: usize) -> Vec<(f64, f64)> {
+    let legendre = |x: f64| {
+        let (mut previous, mut value) = (1.0, x);
+        for k in 2..=n {
+            let k = k as f64;
+            (previous, value) = (
+                value,
+                ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k,
+            );
+        }
+        (value, n as f64 * (x * value - previous) / (x * x - 1.0))
+    };
+    (0..n)
+        .map(|i| {
+            let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+            for _ in 0..20 {
+                let (value, slope) = legendre(x);
+                x -= value / slope;
+            }
+            let slope = legendre(x).1;
+            (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
+        })
+        .collect()
+}
+
+/// A rule on the reference tetrahedron, exact to degree `2n - 3`: the cube's Gauss rule with one face collapsed.
+///
+/// `(xi, eta, zeta) = (r, s (1-r), t (1-r)(1-s))`, with the volume factor `(1-r)^2 (1-s)`.
+pub fn collapsed_gauss(n: usize) -> Vec<Point<3>> {
+    let line = gauss(n);
+    let mut rule = Vec::with_capacity(n * n * n);
+    for &(r, wr) in &line {
+        for &(s, ws) in &line {
+            for &(t, wt) in &line {
+                rule.push(Point {
+                    at: [r, s * (1.0 - r), t * (1.0 - r) * (1.0 - s)],
+                    weight: wr * ws * wt * (1.0 - r).powi(2) * (1.0 - s),
+                });
+            }
+        }
+    }
+    rule
+}
