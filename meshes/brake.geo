@@ -16,18 +16,19 @@ EndIf
 // ---------------------------------------------------------------------------------------------- what the size decides
 k = size - 1;
 // element edge, mm                small   medium  full    million
-h_disc_()     = {         34    ,  12.0  ,  5.6   ,  4.3    };
-h_lining_()   = {         13    ,  7.0   ,  3.85  ,  3.2    };
-h_plate_()    = {         15    ,  8.0   ,  4.2   ,  3.6    };
+h_disc_()     = {         34    ,  12.0  ,  5.7   ,  4.2    };
+h_lining_()   = {         13    ,  7.0   ,  3.8   ,  3.0    };
+h_plate_()    = {         15    ,  8.0   ,  4.3   ,  3.4    };
 h_piston_()   = {         14    ,  9.0   ,  5.0   ,  3.8    };
-h_caliper_()  = {         28    ,  13    ,  5.4   ,  4.6    };
-h_bracket_()  = {         30    ,  13    ,  5.3   ,  4.4    };
+h_caliper_()  = {         28    ,  13    ,  4.5   ,  3.8    };
+h_bracket_()  = {         30    ,  13    ,  4.8   ,  4.0    };
 per_turn_()   = {         6     ,  6     ,  7     ,  9      };  // elements around a fillet's full circle, at least
 per_hole_()   = {         8     ,  8     ,  12    ,  16     };  // elements around a hole
 wall_h_()     = {         20    ,  7.0   ,  4.5   ,  3.5    };  // and along it
 vanes_()      = {         7     ,  17    ,  37    ,  37     };  // primes: no doublet of a low nodal diameter is split
+vane_n_()     = {         1     ,  1     ,  1     ,  2      };  // elements over a vane's height
 rmin_()       = {         100   ,  7     ,  0     ,  0      };  // corner radii below this stay sharp
-h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);
+vane_n = vane_n_(k);  h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);
 h_caliper = h_caliper_(k);  h_bracket = h_bracket_(k);  vanes = vanes_(k);  rmin = rmin_(k);
 
 // --------------------------------------------------------------------------------------------------------- dimensions
@@ -55,7 +56,7 @@ pin_x = 80;  pin_y = 133;  pin_R = 6;
 // bracket
 brk_z = 36;  brk_gap = 15;  brk_r = 143.5;       // abutments from |z| = brk_gap to brk_z; radius over the disc's rim
 boss_z = -48;  pinhole_z = -10;                  // inboard end of the pin bosses, bottom of the pin holes
-bolt_x = 68;  bolt_y = 50;  bolt_R = 6.5;
+bolt_x = 68;  bolt_y = 46;  bolt_R = 6.5;
 
 z_rub = disc_t / 2;  z_lin = z_rub + lin_t;  z_back = z_lin + bp_t;   // 12, 23, 28.5
 eps = 1e-3;
@@ -176,7 +177,7 @@ disc = out(0);
 // (the caliper's and, as an imprint, the outer backplate's)
 fpu() = {  52,  52,  45,  38,  16,  16, -16, -16, -38, -45, -52, -52};
 fpv() = { 146, 120, 98,   93,  93, 122, 122,  93,  93, 98,  120, 146};
-fpr() = {   0,   0,   8,   0,   5,  15.9, 15.9, 5,  0,   8,   0,   0};
+fpr() = {   0,   0,   8,   0,   5,  13,  13,   5,   0,   8,   0,   0};
 
 // ---------------------------------------------------------------------------------------------------------------- pads
 // Backplate and lining are fragmented together and share nodes. The back of the backplate carries an imprint of what
@@ -266,7 +267,7 @@ z_fin = z_back + fin_t;
 plane = 0;
 // bridge
 pu() = {56, 56, 34, -34, -56, -56};  pv() = {120, 147, 163, 163, 147, 120};  pr() = {0, 8, 12, 12, 8, 0};
-w0 = -72;  w1 = z_fin;  Call RoundPoly;
+w0 = lug_z0;  w1 = z_fin;  Call RoundPoly;
 bridge = vol;
 cy = 0;  rr = 0;  rR = bri_r;  w0 = -100;  w1 = 100;  Call Ring;
 v = newv;  Box(v) = {-20, 120, -20, 40, 60, 40};                       // window
@@ -279,8 +280,8 @@ plane = 0;
 pu() = fpu();  pv() = fpv();  pr() = fpr();  w0 = z_back;  w1 = z_fin;  Call RoundPoly;
 fingers = vol;
 // shoulders between the housing and the bridge
-pu() = {53, 53, 33, -33, -53, -53};  pv() = {148, 132, 96, 96, 132, 148};  pr() = {0, 12, 0, 0, 12, 0};
-w0 = -68;  w1 = cyl_z1;  Call RoundPoly;
+pu() = {56, 56, 33, -33, -56, -56};  pv() = {140, 132, 96, 96, 132, 140};  pr() = {0, 12, 0, 0, 12, 0};
+w0 = lug_z0;  w1 = cyl_z1;  Call RoundPoly;
 shoulder = vol;
 // housing
 cy = pis_y;  rr = 0;  rR = cyl_R;  w0 = cyl_z0;  w1 = cyl_z1;  Call Ring;
@@ -288,7 +289,7 @@ house = vol;
 // lugs
 lugs() = {};
 For e In {-1:1:2}
-  pu() = {e*20, e*91, e*91, e*74, e*20};  pv() = {144, 144, 122, 122, 97};  pr() = {0, 10.9, 10.9, 8, 0};
+  pu() = {e*20, e*91, e*91, e*74, e*20};  pv() = {144, 144, 122, 122, 97};  pr() = {0, 9, 9, 8, 0};
   w0 = lug_z0;  w1 = lug_z1;  Call RoundPoly;
   lugs() += {vol};
 EndFor
@@ -307,8 +308,8 @@ caliper = out(0);
 plane = 0;  arms() = {};
 For e In {-1:1:2}
   // column over the rim, with the channel for the ears
-  pu() = {e*ear_x0, e*ear_x0, e*ear_x1, e*ear_x1, e*ear_x0, e*ear_x0, e*69,  e*91,  e*91,  e*86, e*76};
-  pv() = {62,       ear_y0,   ear_y0,   ear_y1,   ear_y1,   136,      146,   146,   118,   96,   62};
+  pu() = {e*ear_x0, e*ear_x0, e*ear_x1, e*ear_x1, e*ear_x0, e*ear_x0, e*69,  e*91,  e*91,  e*86, e*75};
+  pv() = {56,       ear_y0,   ear_y0,   ear_y1,   ear_y1,   136,      146,   146,   118,   96,   56};
   pr() = {0,        0,        0,        0,        0,        0,        0,     11,    20,    20,   0};
   w0 = -brk_z;  w1 = brk_z;  Call RoundPoly;
   cy = 0;  v1 = vol;  rr = 0;  rR = brk_r;  w0 = -brk_gap;  w1 = brk_gap;  Call Ring;
@@ -320,8 +321,8 @@ For e In {-1:1:2}
   arms() += {vol};
   // inboard leg with the mounting bolt
   pu() = {e*55, e*ear_x0, e*78, e*82, e*81, e*55};
-  pv() = {66,   86,       86,   70,   37,   37};
-  pr() = {0,    0,        0,    0,    12.9,   12.9};
+  pv() = {66,   86,       86,   70,   33,   33};
+  pr() = {0,    0,        0,    0,    10,   10};
   w0 = -brk_z;  w1 = -18;  Call RoundPoly;
   arms() += {vol};
 EndFor
@@ -330,7 +331,7 @@ For e In {-1:1:2}
   cy = 0;  rr = (e < 0) ? 64 : hat_R + 3;  rR = 88;
   w0 = (e < 0) ? -brk_z : 17;  w1 = (e < 0) ? -21 : 29;  Call Ring;
   v1 = vol;
-  pu() = {-66, -66, 66, 66};  pv() = {(e < 0) ? 46 : 61, 95, 95, (e < 0) ? 46 : 61};
+  pu() = {-66, -66, 66, 66};  pv() = {(e < 0) ? 46 : 56, 95, 95, (e < 0) ? 46 : 56};
   pr() = {0, 0, 0, 0};  Call RoundPoly;
   out() = BooleanIntersection { Volume{v1}; Delete; }{ Volume{vol}; Delete; };
   arms() += {out(0)};
@@ -518,6 +519,14 @@ For i In {0:#walls()-1}
   MeshSize { PointsOf { Surface{walls(i)}; } } = wall_h_(k);
 EndFor
 MeshSize { PointsOf { Surface{bore()}; } } = Min(2*Pi*pis_R/per_hole_(k), h_caliper);
+// element counts over the height of a vane's edges
+near() = Curve In BoundingBox {-disc_R - 1, -disc_R - 1, -z0 - 0.01, disc_R + 1, disc_R + 1, z0 + 0.01};
+For i In {0:#near()-1}
+  b() = BoundingBox Curve{near(i)};
+  If (b(5) - b(2) > z0 && b(3) - b(0) < 0.1 && b(4) - b(1) < 0.1)
+    Transfinite Curve{near(i)} = 1 + vane_n;
+  EndIf
+EndFor
 Mesh.MeshSizeExtendFromBoundary = 1;
 Mesh.MeshSizeFromPoints = 1;
 Mesh.MeshSizeFromCurvature = per_turn_(k);

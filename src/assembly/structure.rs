@@ -1,6 +1,6 @@
 //! The full finite element structure as families of elements: tetrahedra by part, and connectors.
 
-use crate::element::connector::{Properties, connector_matrices};
+use crate::element::connector::{ConnectorError, Properties, RelativeMotion, relative_motion, weighted_product};
 use crate::element::coupling::Cloud;
 use crate::element::{tet10, tri6};
 use crate::mesh::{Mesh, Surface};
@@ -75,29 +75,81 @@ impl Elements for Tets<'_> {
     }
 }
 
+/// A connector on its mesh: two clouds of nodes with weights, and what acts between their mean motions.
+pub struct Link {
+    /// Nodes and weights of the two clouds. A surface's are its midside nodes with their contact weights, any other set's all
+    /// nodes with equal weights.
+    pub clouds: [(Vec<u32>, Vec<f64>); 2],
+    /// The common reference point, m.
+    pub reference: [f64; 3],
+    /// Stiffness and damping.
+    pub properties: Properties,
+}
+
+impl Link {
+    /// The motion of the second cloud relative to the first: six rows on the nodes of both.
+    ///
+    /// # Errors
+    /// Where a cloud lies on a line.
+    pub fn motion(&self, mesh: &Mesh) -> std::result::Result<RelativeMotion, ConnectorError> {
+        let points = self.clouds.each_ref().map(|(nodes, _)| coordinates(mesh, nodes));
+        let cloud = |i: usize| Cloud { nodes: &points[i], weights: &self.clouds[i].1 };
+        relative_motion([cloud(0), cloud(1)], self.reference)
+    }
+
+    /// The nodes of both clouds, as the columns of [`Link::motion`] have them.
+    pub fn nodes(&self) -> Vec<u32> {
+        self.clouds.iter().flat_map(|(nodes, _)| nodes.iter().copied()).collect()
+    }
+
+    fn new(connector: &Connector, mesh: &Mesh) -> std::result::Result<Link, String> {
+        let set = |name: &String| cloud(mesh, name).ok_or_else(|| format!("the mesh has no {name:?}"));
+        let clouds = [set(&connector.between[0])?, set(&connector.between[1])?];
+        let centres = clouds.each_ref().map(|(nodes, weights)| centroid(&coordinates(mesh, nodes), weights));
+        let middle = [0, 1, 2].map(|i| 0.5 * (centres[0][i] + centres[1][i]));
+        let properties = Properties {
+            stiffness: connector.stiffness,
+            rotational_stiffness: connector.rotational_stiffness,
+            damping: connector.damping,
+            rotational_damping: [0.0; 3],
+        };
+        let link = Link { clouds, reference: connector.at.unwrap_or(middle), properties };
+        link.motion(mesh).map_err(|error| error.to_string())?;
+        Ok(link)
+    }
+}
+
+/// The model's connectors on its mesh.
+///
+/// # Errors
+/// [`Error::Input`] where a set is missing, or lies on a line.
+pub fn links(model: &Model, mesh: &Mesh) -> Result<Vec<Link>> {
+    let link = |connector: &Connector| {
+        Link::new(connector, mesh).map_err(|message| {
+            let (file, line, name) = (model.file.display(), connector.line, &connector.name);
+            Error::input(format!("{file}:{line}: connector {name:?}: {message}"))
+        })
+    };
+    model.connectors.iter().map(link).collect()
+}
+
 /// Springs and dampers between mean motions of node sets.
 pub struct Connectors {
     members: Vec<(Vec<u32>, ElementMatrices)>,
 }
 
 impl Connectors {
-    /// Couples the clouds of the model's connectors. A surface's cloud are its midside nodes with their contact weights,
-    /// any other set's its nodes with equal weights.
-    ///
-    /// # Errors
-    /// [`Error::Input`] where a set is missing, or lies on a line.
-    pub fn new(model: &Model, mesh: &Mesh) -> Result<Connectors> {
-        let member = |connector: &Connector| {
-            couple(connector, mesh).map_err(|message| {
-                Error::input(format!(
-                    "{}:{}: connector {:?}: {message}",
-                    model.file.display(),
-                    connector.line,
-                    connector.name
-                ))
-            })
+    /// Computes the matrices of links.
+    pub fn new(links: &[Link], mesh: &Mesh) -> Connectors {
+        let member = |link: &Link| {
+            let rows = link.motion(mesh).expect("checked when the link was made").rows;
+            let p = &link.properties;
+            let k = weighted_product(&rows, p.stiffness, p.rotational_stiffness);
+            let c = weighted_product(&rows, p.damping, p.rotational_damping);
+            let m = vec![0.0; k.len()];
+            (link.nodes(), ElementMatrices { k, m, c })
         };
-        Ok(Connectors { members: model.connectors.iter().map(member).collect::<Result<_>>()? })
+        Connectors { members: links.iter().map(member).collect() }
     }
 }
 
@@ -117,26 +169,8 @@ impl Elements for Connectors {
     }
 }
 
-fn couple(connector: &Connector, mesh: &Mesh) -> std::result::Result<(Vec<u32>, ElementMatrices), String> {
-    let mut clouds = Vec::new();
-    for name in &connector.between {
-        let (nodes, weights) = cloud(mesh, name).ok_or_else(|| format!("the mesh has no {name:?}"))?;
-        let points: Vec<[f64; 3]> = nodes.iter().map(|&n| mesh.nodes[n as usize]).collect();
-        clouds.push((nodes, points, weights));
-    }
-    let middle = clouds.iter().map(|(_, x, w)| centroid(x, w)).fold([0.0; 3], |m, c| [0, 1, 2].map(|i| m[i] + 0.5 * c[i]));
-    let properties = Properties {
-        stiffness: connector.stiffness,
-        rotational_stiffness: connector.rotational_stiffness,
-        damping: connector.damping,
-        rotational_damping: [0.0; 3],
-    };
-    let view = |i: usize| Cloud { nodes: &clouds[i].1, weights: &clouds[i].2 };
-    let matrices = connector_matrices([view(0), view(1)], connector.at.unwrap_or(middle), &properties)
-        .map_err(|error| error.to_string())?;
-    let nodes = clouds.iter().flat_map(|(nodes, ..)| nodes.iter().copied()).collect();
-    let m = vec![0.0; matrices.stiffness.len()];
-    Ok((nodes, ElementMatrices { k: matrices.stiffness, m, c: matrices.damping }))
+fn coordinates(mesh: &Mesh, nodes: &[u32]) -> Vec<[f64; 3]> {
+    nodes.iter().map(|&n| mesh.nodes[n as usize]).collect()
 }
 
 fn centroid(points: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::assembly::{self, Connectivity, Connectors, Elements, System, Tets};
+use crate::assembly::{self, Connectivity, Connectors, Elements, Link, System, Tets};
 use crate::contact::interface::Interface;
 use crate::mesh::{self, Mesh};
 use crate::model::{self, Model};
@@ -16,6 +16,7 @@ pub struct Brake {
     pub interface: Interface,
     pub loads: Vec<(u32, [f64; 3])>,
     pub held: Vec<[bool; 3]>,
+    pub links: Vec<Link>,
 }
 
 /// The families of elements of a brake.
@@ -43,11 +44,12 @@ impl Brake {
         let interface = Interface::build(&model, &mesh)?;
         let loads = assembly::loads(&model, &mesh)?;
         let held = assembly::held(&model, &mesh)?;
-        Ok(Brake { model, mesh, interface, loads, held })
+        let links = assembly::links(&model, &mesh)?;
+        Ok(Brake { model, mesh, interface, loads, held, links })
     }
 
     pub fn families(&self) -> Result<Families<'_>> {
-        Ok(Families { tets: Tets::new(&self.model, &self.mesh)?, connectors: Connectors::new(&self.model, &self.mesh)? })
+        Ok(Families { tets: Tets::new(&self.model, &self.mesh)?, connectors: Connectors::new(&self.links, &self.mesh) })
     }
 
     /// Assembles M, C, K and the load. Collective.

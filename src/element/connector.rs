@@ -60,32 +60,18 @@ pub struct ConnectorMatrices {
 ///
 /// # Panics
 /// If nodes and weights of a cloud differ in number.
-pub fn relative_motion(
-    clouds: [Cloud; 2],
-    reference: [f64; 3],
-) -> Result<RelativeMotion, ConnectorError> {
-    let motion = |cloud: usize| {
-        mean_motion(clouds[cloud], reference).map_err(|source| ConnectorError { cloud, source })
-    };
+pub fn relative_motion(clouds: [Cloud; 2], reference: [f64; 3]) -> Result<RelativeMotion, ConnectorError> {
+    let motion =
+        |cloud: usize| mean_motion(clouds[cloud], reference).map_err(|source| ConnectorError { cloud, source });
     let (first, second) = (motion(0)?, motion(1)?);
     let row = |r: usize| {
         let blocks = |motion: &MeanMotion, sign: f64| -> Vec<f64> {
-            let of_nodes = if r < 3 {
-                &motion.displacement
-            } else {
-                &motion.rotation
-            };
-            of_nodes
-                .iter()
-                .flat_map(|block| block[r % 3])
-                .map(|entry| sign * entry)
-                .collect()
+            let of_nodes = if r < 3 { &motion.displacement } else { &motion.rotation };
+            of_nodes.iter().flat_map(|block| block[r % 3]).map(|entry| sign * entry).collect()
         };
         [blocks(&first, -1.0), blocks(&second, 1.0)].concat()
     };
-    Ok(RelativeMotion {
-        rows: std::array::from_fn(row),
-    })
+    Ok(RelativeMotion { rows: std::array::from_fn(row) })
 }
 
 /// Stiffness and damping matrices of a connector between two clouds with a common reference point (m).
@@ -103,21 +89,13 @@ pub fn connector_matrices(
     let motion = relative_motion(clouds, reference)?;
     Ok(ConnectorMatrices {
         n_dofs: motion.rows[0].len(),
-        stiffness: weighted_product(
-            &motion.rows,
-            properties.stiffness,
-            properties.rotational_stiffness,
-        ),
-        damping: weighted_product(
-            &motion.rows,
-            properties.damping,
-            properties.rotational_damping,
-        ),
+        stiffness: weighted_product(&motion.rows, properties.stiffness, properties.rotational_stiffness),
+        damping: weighted_product(&motion.rows, properties.damping, properties.rotational_damping),
     })
 }
 
 /// `G^T diag(along, about) G`, row-major.
-fn weighted_product(rows: &[Vec<f64>; 6], along: [f64; 3], about: [f64; 3]) -> Vec<f64> {
+pub fn weighted_product(rows: &[Vec<f64>; 6], along: [f64; 3], about: [f64; 3]) -> Vec<f64> {
     let n = rows[0].len();
     let mut matrix = vec![0.0; n * n];
     for (row, k) in rows.iter().zip(along.into_iter().chain(about)) {
@@ -158,25 +136,15 @@ mod tests {
     impl Case {
         fn random(random: &mut Random) -> Self {
             let mut nodes = |n: usize, z: f64| -> Vec<[f64; 3]> {
-                (0..n)
-                    .map(|_| random.vector())
-                    .map(|v| [0.1 * v[0], 0.1 * v[1], z + 0.05 * v[2]])
-                    .collect()
+                (0..n).map(|_| random.vector()).map(|v| [0.1 * v[0], 0.1 * v[1], z + 0.05 * v[2]]).collect()
             };
             let nodes = [nodes(5, 0.0), nodes(7, 0.3)];
             let weights = [vec![1.0, 2.0, 3.0, 1.0, 2.0], vec![0.5; 7]];
-            Case {
-                nodes,
-                weights,
-                reference: random.vector(),
-            }
+            Case { nodes, weights, reference: random.vector() }
         }
 
         fn clouds(&self) -> [Cloud<'_>; 2] {
-            [0, 1].map(|c| Cloud {
-                nodes: &self.nodes[c],
-                weights: &self.weights[c],
-            })
+            [0, 1].map(|c| Cloud { nodes: &self.nodes[c], weights: &self.weights[c] })
         }
 
         fn all_nodes(&self) -> Vec<[f64; 3]> {
@@ -189,18 +157,8 @@ mod tests {
         }
     }
 
-    fn rigid(
-        nodes: &[[f64; 3]],
-        shift: [f64; 3],
-        turn: [f64; 3],
-        origin: [f64; 3],
-    ) -> DVector<f64> {
-        DVector::from_iterator(
-            3 * nodes.len(),
-            nodes
-                .iter()
-                .flat_map(|&x| rigid_displacement(shift, turn, origin, x)),
-        )
+    fn rigid(nodes: &[[f64; 3]], shift: [f64; 3], turn: [f64; 3], origin: [f64; 3]) -> DVector<f64> {
+        DVector::from_iterator(3 * nodes.len(), nodes.iter().flat_map(|&x| rigid_displacement(shift, turn, origin, x)))
     }
 
     #[test]
@@ -208,12 +166,7 @@ mod tests {
         let mut random = Random::seeded(71);
         let case = Case::random(&mut random);
         let k = case.stiffness();
-        let u = rigid(
-            &case.all_nodes(),
-            random.vector(),
-            random.vector(),
-            random.vector(),
-        );
+        let u = rigid(&case.all_nodes(), random.vector(), random.vector(), random.vector());
         assert!((&k * &u).norm() < 1e-12 * k.norm() * u.norm());
     }
 
@@ -254,25 +207,14 @@ mod tests {
         let case = Case::random(&mut random);
         let (shift, turn) = (random.vector(), random.vector());
         let mut u = DVector::zeros(36);
-        u.rows_mut(15, 21)
-            .copy_from(&rigid(&case.nodes[1], shift, turn, case.reference));
+        u.rows_mut(15, 21).copy_from(&rigid(&case.nodes[1], shift, turn, case.reference));
         let matrices = connector_matrices(case.clouds(), case.reference, &BUSHING).unwrap();
         for (matrix, along, about) in [
-            (
-                &matrices.stiffness,
-                BUSHING.stiffness,
-                BUSHING.rotational_stiffness,
-            ),
-            (
-                &matrices.damping,
-                BUSHING.damping,
-                BUSHING.rotational_damping,
-            ),
+            (&matrices.stiffness, BUSHING.stiffness, BUSHING.rotational_stiffness),
+            (&matrices.damping, BUSHING.damping, BUSHING.rotational_damping),
         ] {
             let energy = u.dot(&(DMatrix::from_row_slice(36, 36, matrix) * &u));
-            let exact: f64 = (0..3)
-                .map(|i| along[i] * shift[i].powi(2) + about[i] * turn[i].powi(2))
-                .sum();
+            let exact: f64 = (0..3).map(|i| along[i] * shift[i].powi(2) + about[i] * turn[i].powi(2)).sum();
             assert!((energy / exact - 1.0).abs() < 1e-12);
         }
     }
@@ -282,17 +224,7 @@ mod tests {
         let case = Case::random(&mut Random::seeded(75));
         let line = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
         let [first, _] = case.clouds();
-        let error = relative_motion(
-            [
-                first,
-                Cloud {
-                    nodes: &line,
-                    weights: &[1.0; 3],
-                },
-            ],
-            [0.0; 3],
-        )
-        .unwrap_err();
+        let error = relative_motion([first, Cloud { nodes: &line, weights: &[1.0; 3] }], [0.0; 3]).unwrap_err();
         assert_eq!(error.cloud, 1);
         assert!(error.to_string().starts_with("second cloud"));
     }

@@ -31,9 +31,7 @@ pub enum CouplingError {
     #[error("the cloud is empty: it has no node with a positive weight")]
     Empty,
     /// A weight is negative or not a finite number.
-    #[error(
-        "node {node} of the cloud has the weight {weight}; weights are finite and not negative"
-    )]
+    #[error("node {node} of the cloud has the weight {weight}; weights are finite and not negative")]
     Weight {
         /// Index within the cloud.
         node: usize,
@@ -89,13 +87,9 @@ impl MeanMotion {
     pub fn spread(&self, force: [f64; 3], moment: [f64; 3]) -> Vec<[f64; 3]> {
         let blocks = self.displacement.iter().zip(&self.rotation);
         let share = |u: &[[f64; 3]; 3], p: &[[f64; 3]; 3], i: usize| {
-            (0..3)
-                .map(|k| u[k][i] * force[k] + p[k][i] * moment[k])
-                .sum()
+            (0..3).map(|k| u[k][i] * force[k] + p[k][i] * moment[k]).sum()
         };
-        blocks
-            .map(|(u, p)| std::array::from_fn(|i| share(u, p, i)))
-            .collect()
+        blocks.map(|(u, p)| std::array::from_fn(|i| share(u, p, i))).collect()
     }
 }
 
@@ -116,24 +110,15 @@ pub fn mean_motion(cloud: Cloud, reference: [f64; 3]) -> Result<MeanMotion, Coup
     let arms: Vec<[f64; 3]> = cloud.nodes.iter().map(|&x| sub(x, centre)).collect();
     let inverse = inverse_inertia(&arms, &weights, cloud.nodes)?;
     let lever = skew(sub(reference, centre));
-    let mut motion = MeanMotion {
-        displacement: Vec::new(),
-        rotation: Vec::new(),
-    };
+    let mut motion = MeanMotion { displacement: Vec::new(), rotation: Vec::new() };
     for (&r, &w) in arms.iter().zip(&weights) {
         // P_n = w^ T^-1 [r]x,   U_n = w^ I - [x_R - x_bar]x P_n
         let p = product(&inverse, &skew(scale(w, r)));
         let turned = product(&lever, &p);
         let entry = |i: usize, j: usize| {
-            if i == j {
-                w - turned[i][j]
-            } else {
-                -turned[i][j]
-            }
+            if i == j { w - turned[i][j] } else { -turned[i][j] }
         };
-        motion.displacement.push(std::array::from_fn(|i| {
-            std::array::from_fn(|j| entry(i, j))
-        }));
+        motion.displacement.push(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))));
         motion.rotation.push(p);
     }
     Ok(motion)
@@ -144,25 +129,14 @@ fn normalised(cloud: Cloud) -> Result<Vec<f64>, CouplingError> {
     assert_eq!(cloud.nodes.len(), cloud.weights.len(), "one weight a node");
     let bad = |w: &f64| !w.is_finite() || *w < 0.0;
     if let Some(node) = cloud.weights.iter().position(bad) {
-        return Err(CouplingError::Weight {
-            node,
-            weight: cloud.weights[node],
-        });
+        return Err(CouplingError::Weight { node, weight: cloud.weights[node] });
     }
     let total: f64 = cloud.weights.iter().sum();
-    if total > 0.0 {
-        Ok(cloud.weights.iter().map(|w| w / total).collect())
-    } else {
-        Err(CouplingError::Empty)
-    }
+    if total > 0.0 { Ok(cloud.weights.iter().map(|w| w / total).collect()) } else { Err(CouplingError::Empty) }
 }
 
 /// `T^-1` with `T = sum w^ ((r.r) I - r r^T)`; an error where the cloud is a line or a point.
-fn inverse_inertia(
-    arms: &[[f64; 3]],
-    weights: &[f64],
-    nodes: &[[f64; 3]],
-) -> Result<[[f64; 3]; 3], CouplingError> {
+fn inverse_inertia(arms: &[[f64; 3]], weights: &[f64], nodes: &[[f64; 3]]) -> Result<[[f64; 3]; 3], CouplingError> {
     let mut t = [[0.0; 3]; 3];
     for (&r, w) in arms.iter().zip(weights) {
         for i in 0..3 {
@@ -185,12 +159,7 @@ fn inverse_inertia(
 }
 
 /// A rigid motion's displacement at `x`: `u = shift + turn x (x - origin)`.
-pub fn rigid_displacement(
-    shift: [f64; 3],
-    turn: [f64; 3],
-    origin: [f64; 3],
-    x: [f64; 3],
-) -> [f64; 3] {
+pub fn rigid_displacement(shift: [f64; 3], turn: [f64; 3], origin: [f64; 3], x: [f64; 3]) -> [f64; 3] {
     let swing = cross(turn, sub(x, origin));
     std::array::from_fn(|i| shift[i] + swing[i])
 }
@@ -202,9 +171,7 @@ mod tests {
     use crate::element::samples::Random;
 
     fn random_cloud(random: &mut Random, n: usize) -> (Vec<[f64; 3]>, Vec<f64>) {
-        let nodes = (0..n)
-            .map(|_| random.vector().map(|v| 0.3 + 0.05 * v))
-            .collect();
+        let nodes = (0..n).map(|_| random.vector().map(|v| 0.3 + 0.05 * v)).collect();
         (nodes, (0..n).map(|_| 0.1 + random.unit()).collect())
     }
 
@@ -214,18 +181,8 @@ mod tests {
         for n in [3, 4, 30] {
             let (nodes, weights) = random_cloud(&mut random, n);
             let (reference, shift, turn) = (random.vector(), random.vector(), random.vector());
-            let motion = mean_motion(
-                Cloud {
-                    nodes: &nodes,
-                    weights: &weights,
-                },
-                reference,
-            )
-            .unwrap();
-            let u: Vec<_> = nodes
-                .iter()
-                .map(|&x| rigid_displacement(shift, turn, reference, x))
-                .collect();
+            let motion = mean_motion(Cloud { nodes: &nodes, weights: &weights }, reference).unwrap();
+            let u: Vec<_> = nodes.iter().map(|&x| rigid_displacement(shift, turn, reference, x)).collect();
             let (displacement, rotation) = motion.evaluate(&u);
             assert!(norm(sub(displacement, shift)) < 1e-12, "{n} nodes");
             assert!(norm(sub(rotation, turn)) < 1e-11, "{n} nodes");
@@ -237,14 +194,7 @@ mod tests {
         let mut random = Random::seeded(62);
         let (nodes, weights) = random_cloud(&mut random, 17);
         let (reference, force, moment) = (random.vector(), random.vector(), random.vector());
-        let motion = mean_motion(
-            Cloud {
-                nodes: &nodes,
-                weights: &weights,
-            },
-            reference,
-        )
-        .unwrap();
+        let motion = mean_motion(Cloud { nodes: &nodes, weights: &weights }, reference).unwrap();
         let (mut resultant, mut about_reference) = ([0.0; 3], [0.0; 3]);
         for (f, &x) in motion.spread(force, moment).iter().zip(&nodes) {
             let turning = cross(sub(x, reference), *f);
@@ -262,14 +212,7 @@ mod tests {
         // The residual u_n - rigid(x_n) is orthogonal, in the weights, to every rigid motion.
         let mut random = Random::seeded(63);
         let (nodes, weights) = random_cloud(&mut random, 9);
-        let motion = mean_motion(
-            Cloud {
-                nodes: &nodes,
-                weights: &weights,
-            },
-            [0.3; 3],
-        )
-        .unwrap();
+        let motion = mean_motion(Cloud { nodes: &nodes, weights: &weights }, [0.3; 3]).unwrap();
         let u: Vec<_> = nodes.iter().map(|_| random.vector()).collect();
         let (shift, turn) = motion.evaluate(&u);
         let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
@@ -286,20 +229,8 @@ mod tests {
 
     #[test]
     fn a_force_at_the_centroid_is_shared_by_weight() {
-        let nodes = [
-            [-1.0, -1.0, 0.0],
-            [1.0, -1.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [-1.0, 1.0, 0.0],
-        ];
-        let motion = mean_motion(
-            Cloud {
-                nodes: &nodes,
-                weights: &[2.0; 4],
-            },
-            [0.0; 3],
-        )
-        .unwrap();
+        let nodes = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+        let motion = mean_motion(Cloud { nodes: &nodes, weights: &[2.0; 4] }, [0.0; 3]).unwrap();
         for f in motion.spread([0.0, 0.0, 8.0], [0.0; 3]) {
             assert!(norm(sub(f, [0.0, 0.0, 2.0])) < 1e-15);
         }
@@ -310,18 +241,10 @@ mod tests {
         let mut random = Random::seeded(64);
         for _ in 0..50 {
             let (start, along) = (random.vector(), random.vector().map(|v| 1e-3 * v));
-            let line: Vec<[f64; 3]> = (0..5)
-                .map(|n| std::array::from_fn(|i| start[i] + n as f64 * along[i]))
-                .collect();
+            let line: Vec<[f64; 3]> = (0..5).map(|n| std::array::from_fn(|i| start[i] + n as f64 * along[i])).collect();
             for nodes in [&line[..], &line[..2], &line[..1], &[start; 4]] {
-                let cloud = Cloud {
-                    nodes,
-                    weights: &[0.7; 5][..nodes.len()],
-                };
-                assert!(matches!(
-                    mean_motion(cloud, start),
-                    Err(CouplingError::Collinear { .. })
-                ));
+                let cloud = Cloud { nodes, weights: &[0.7; 5][..nodes.len()] };
+                assert!(matches!(mean_motion(cloud, start), Err(CouplingError::Collinear { .. })));
             }
         }
     }
@@ -329,47 +252,15 @@ mod tests {
     #[test]
     fn thin_but_plane_clouds_are_accepted() {
         let nodes = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1e-3, 0.0]];
-        assert!(
-            mean_motion(
-                Cloud {
-                    nodes: &nodes,
-                    weights: &[1.0; 3]
-                },
-                [0.0; 3]
-            )
-            .is_ok()
-        );
+        assert!(mean_motion(Cloud { nodes: &nodes, weights: &[1.0; 3] }, [0.0; 3]).is_ok());
     }
 
     #[test]
     fn missing_and_bad_weights_are_named() {
         let nodes = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let with = |weights: &[f64]| {
-            mean_motion(
-                Cloud {
-                    nodes: &nodes,
-                    weights,
-                },
-                [0.0; 3],
-            )
-        };
+        let with = |weights: &[f64]| mean_motion(Cloud { nodes: &nodes, weights }, [0.0; 3]);
         assert_eq!(with(&[0.0; 3]), Err(CouplingError::Empty));
-        assert_eq!(
-            with(&[1.0, -1.0, 1.0]),
-            Err(CouplingError::Weight {
-                node: 1,
-                weight: -1.0
-            })
-        );
-        assert_eq!(
-            mean_motion(
-                Cloud {
-                    nodes: &[],
-                    weights: &[]
-                },
-                [0.0; 3]
-            ),
-            Err(CouplingError::Empty)
-        );
+        assert_eq!(with(&[1.0, -1.0, 1.0]), Err(CouplingError::Weight { node: 1, weight: -1.0 }));
+        assert_eq!(mean_motion(Cloud { nodes: &[], weights: &[] }, [0.0; 3]), Err(CouplingError::Empty));
     }
 }

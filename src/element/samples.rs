@@ -16,10 +16,7 @@ impl Random {
 
     /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -88,8 +85,7 @@ pub fn triclinic(random: &mut Random) -> [[f64; 6]; 6] {
     let mut d = [[0.0; 6]; 6];
     for i in 0..6 {
         for j in 0..6 {
-            d[i][j] =
-                (0..6).map(|k| a[i][k] * a[j][k]).sum::<f64>() + if i == j { 1.0 } else { 0.0 };
+            d[i][j] = (0..6).map(|k| a[i][k] * a[j][k]).sum::<f64>() + if i == j { 1.0 } else { 0.0 };
         }
     }
     d
@@ -101,10 +97,7 @@ fn gauss(n: usize) -> Vec<(f64, f64)> {
         let (mut previous, mut value) = (1.0, x);
         for k in 2..=n {
             let k = k as f64;
-            (previous, value) = (
-                value,
-                ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k,
-            );
+            (previous, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k);
         }
         (value, n as f64 * (x * value - previous) / (x * x - 1.0))
     };

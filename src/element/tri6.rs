@@ -49,14 +49,8 @@ pub const fn derivatives(xi: f64, eta: f64) -> [[f64; 2]; 6] {
 /// Second derivatives `[d2N_a/dxi2, d2N_a/dxi deta, d2N_a/deta2]`, the same at every point; one row a node.
 ///
 /// What Newton's method needs to project a point onto a curved facet.
-pub const SECOND_DERIVATIVES: [[f64; 3]; 6] = [
-    [4.0, 4.0, 4.0],
-    [4.0, 0.0, 0.0],
-    [0.0, 0.0, 4.0],
-    [-8.0, -4.0, 0.0],
-    [0.0, 4.0, 0.0],
-    [0.0, -4.0, -8.0],
-];
+pub const SECOND_DERIVATIVES: [[f64; 3]; 6] =
+    [[4.0, 4.0, 4.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0], [-8.0, -4.0, 0.0], [0.0, 4.0, 0.0], [0.0, -4.0, -8.0]];
 
 /// The point of the facet at `(xi, eta)`, m: `x = sum_a N_a x_a`.
 pub fn position(x: &[[f64; 3]; 6], xi: f64, eta: f64) -> [f64; 3] {
@@ -147,19 +141,13 @@ static DERIVATIVES: [[[f64; 2]; 6]; 7] = {
 fn area_normals(x: &[[f64; 3]; 6]) -> impl Iterator<Item = (&'static [f64; 6], [f64; 3])> + '_ {
     let weighted = |(q, point): (usize, &Point<2>)| {
         let [along_xi, along_eta] = tangents_from(x, &DERIVATIVES[q]);
-        (
-            &SHAPES[q],
-            cross(along_xi, along_eta).map(|c| point.weight * c),
-        )
+        (&SHAPES[q], cross(along_xi, along_eta).map(|c| point.weight * c))
     };
     TRIANGLE_7.iter().enumerate().map(weighted)
 }
 
 fn tangents_from(x: &[[f64; 3]; 6], d: &[[f64; 2]; 6]) -> [[f64; 3]; 2] {
-    [
-        combine(x, &d.map(|row| row[0])),
-        combine(x, &d.map(|row| row[1])),
-    ]
+    [combine(x, &d.map(|row| row[0])), combine(x, &d.map(|row| row[1]))]
 }
 
 /// `sum_a c_a x_a`
@@ -186,22 +174,10 @@ mod tests {
     use crate::element::tet10;
     use proptest::prelude::*;
 
-    const NODES: [[f64; 2]; 6] = [
-        [0., 0.],
-        [1., 0.],
-        [0., 1.],
-        [0.5, 0.],
-        [0.5, 0.5],
-        [0., 0.5],
-    ];
+    const NODES: [[f64; 2]; 6] = [[0., 0.], [1., 0.], [0., 1.], [0.5, 0.], [0.5, 0.5], [0., 0.5]];
 
     /// Facets of a tet10, outward, in the node order of a tri6.
-    const FACES: [[usize; 6]; 4] = [
-        [0, 2, 1, 6, 5, 4],
-        [0, 1, 3, 4, 8, 7],
-        [1, 2, 3, 5, 9, 8],
-        [2, 0, 3, 6, 7, 9],
-    ];
+    const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
 
     fn skin(x: &[[f64; 3]; 10]) -> [[[f64; 3]; 6]; 4] {
         FACES.map(|face| face.map(|a| x[a]))
@@ -274,9 +250,7 @@ mod tests {
             for j in 0..n {
                 let (s, z) = (i as f64 * step, j as f64 * step);
                 sum += area(&facet(|xi, eta| at(s + step * xi, z + step * eta)));
-                sum += area(&facet(|xi, eta| {
-                    at(s + step * (1.0 - xi), z + step * (1.0 - eta))
-                }));
+                sum += area(&facet(|xi, eta| at(s + step * (1.0 - xi), z + step * (1.0 - eta))));
             }
         }
         sum / std::f64::consts::FRAC_PI_2 - 1.0
@@ -287,10 +261,7 @@ mod tests {
         let errors = [2, 4, 8].map(quarter_cylinder_error);
         assert!(errors[0].abs() < 5e-4, "{errors:?}");
         for pair in errors.windows(2) {
-            assert!(
-                ((pair[0] / pair[1]).abs().log2() - 4.0).abs() < 0.3,
-                "{errors:?}"
-            );
+            assert!(((pair[0] / pair[1]).abs().log2() - 4.0).abs() < 0.3, "{errors:?}");
         }
     }
 
@@ -306,15 +277,9 @@ mod tests {
         for [start, end, middle] in [[0, 1, 3], [1, 2, 4], [2, 0, 5]] {
             let (a, b, m) = (x[start], x[end], x[middle]);
             let derivative = |s: f64| -> [f64; 3] {
-                std::array::from_fn(|i| {
-                    (4.0 * s - 3.0) * a[i] + (4.0 * s - 1.0) * b[i] + (4.0 - 8.0 * s) * m[i]
-                })
+                std::array::from_fn(|i| (4.0 * s - 3.0) * a[i] + (4.0 * s - 1.0) * b[i] + (4.0 - 8.0 * s) * m[i])
             };
-            for (p, s, weight) in [
-                (a, 0.0, 1.0 / 6.0),
-                (m, 0.5, 4.0 / 6.0),
-                (b, 1.0, 1.0 / 6.0),
-            ] {
+            for (p, s, weight) in [(a, 0.0, 1.0 / 6.0), (m, 0.5, 4.0 / 6.0), (b, 1.0, 1.0 / 6.0)] {
                 add(&mut rim, 0.5 * weight, cross(p, derivative(s)));
             }
         }
@@ -330,18 +295,10 @@ mod tests {
             let mut flux = 0.0; // volume = 1/3 integral of x . n dA, degree 4
             for face in skin(&x) {
                 add(&mut closed, 1.0, area_vector(&face));
-                flux += nodal_area_vectors(&face)
-                    .iter()
-                    .zip(&face)
-                    .map(|(v, p)| dot(*v, *p))
-                    .sum::<f64>()
-                    / 3.0;
+                flux += nodal_area_vectors(&face).iter().zip(&face).map(|(v, p)| dot(*v, *p)).sum::<f64>() / 3.0;
             }
             assert!(norm(closed) < 1e-14);
-            assert!(
-                (flux / tet10::volume(&x) - 1.0).abs() < 1e-13,
-                "normals must point outward"
-            );
+            assert!((flux / tet10::volume(&x) - 1.0).abs() < 1e-13, "normals must point outward");
         }
     }
 

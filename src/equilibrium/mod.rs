@@ -10,8 +10,10 @@ mod balance;
 mod contacts;
 mod newton;
 mod path;
+mod support;
 
 pub use balance::{Balance, PairForces};
 pub use contacts::{Contacts, Counts};
 pub use newton::{Iteration, Step};
 pub use path::{Equilibrium, Path};
+pub use support::{FreeMotion, free_motions};

@@ -45,12 +45,7 @@ impl Linearised {
 
     /// The pencil.
     pub fn pencil<'a>(&'a self, system: &'a System) -> Pencil<'a> {
-        Pencil {
-            m: &system.m,
-            c: self.c.as_ref().unwrap_or(&system.c),
-            k: &self.k,
-            k_symmetric: &self.k_symmetric,
-        }
+        Pencil { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k: &self.k, k_symmetric: &self.k_symmetric }
     }
 }
 

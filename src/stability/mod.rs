@@ -5,7 +5,9 @@
 //! checks their number against the inertia of the symmetric problem, so that none is missed.
 
 mod band;
+mod linearise;
 mod mode;
 
 pub use band::{Band, Count, Solver, solve};
+pub use linearise::Linearised;
 pub use mode::{Mode, Pencil, UNSTABLE_RATIO};

@@ -60,11 +60,7 @@ impl TransverselyIsotropic {
     pub fn elasticity(&self, axis: [f64; 3]) -> [[f64; 6]; 6] {
         let (plane, axial) = (1.0 / self.young, 1.0 / self.young_axial);
         let (across, along) = (-self.poisson * plane, -self.poisson_axial * axial);
-        let normal = [
-            [plane, across, along],
-            [across, plane, along],
-            [along, along, axial],
-        ];
+        let normal = [[plane, across, along], [across, plane, along], [along, along, axial]];
         let shear_plane = 0.5 * self.young / (1.0 + self.poisson);
         let local = from_compliance(&normal, [shear_plane, self.shear_axial, self.shear_axial]);
         rotate(&local, &frame_about(axis))
@@ -94,11 +90,7 @@ impl Orthotropic {
     /// The elasticity in global axes; the rows of `axes` are the material's x, y, z in global coordinates (see [`frame`]).
     pub fn elasticity(&self, axes: &[[f64; 3]; 3]) -> [[f64; 6]; 6] {
         let [sx, sy, sz] = self.young.map(|young| 1.0 / young);
-        let (xy, yz, xz) = (
-            -self.poisson_xy * sx,
-            -self.poisson_yz * sy,
-            -self.poisson_xz * sx,
-        );
+        let (xy, yz, xz) = (-self.poisson_xy * sx, -self.poisson_yz * sy, -self.poisson_xz * sx);
         let normal = [[sx, xy, xz], [xy, sy, yz], [xz, yz, sz]];
         let local = from_compliance(&normal, [self.shear_xy, self.shear_yz, self.shear_zx]);
         rotate(&local, axes)
@@ -142,13 +134,8 @@ mod tests {
     use crate::element::samples::Random;
     use nalgebra::Matrix6;
 
-    const LINING: TransverselyIsotropic = TransverselyIsotropic {
-        young: 8e9,
-        poisson: 0.25,
-        young_axial: 2e9,
-        poisson_axial: 0.08,
-        shear_axial: 1.7e9,
-    };
+    const LINING: TransverselyIsotropic =
+        TransverselyIsotropic { young: 8e9, poisson: 0.25, young_axial: 2e9, poisson_axial: 0.08, shear_axial: 1.7e9 };
 
     fn matrix(d: &[[f64; 6]; 6]) -> Matrix6<f64> {
         Matrix6::from_fn(|i, j| d[i][j])
@@ -169,9 +156,7 @@ mod tests {
     #[test]
     fn transversely_isotropic_constants_are_those_of_axial_and_plane_tension_about_any_axis() {
         // Axis y: tension along y contracts x and z by poisson_axial; tension along x contracts z by poisson.
-        let compliance = matrix(&LINING.elasticity([0.0, 3.0, 0.0]))
-            .try_inverse()
-            .unwrap();
+        let compliance = matrix(&LINING.elasticity([0.0, 3.0, 0.0])).try_inverse().unwrap();
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-13, "{a} is not {b}");
         close(compliance[(1, 1)], 1.0 / 2e9);
         close(compliance[(0, 1)] / compliance[(1, 1)], -0.08);
@@ -211,18 +196,9 @@ mod tests {
         };
         let d = law.elasticity(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         let s = matrix(&d).try_inverse().unwrap();
-        let expected = [
-            (0, 0, 1.0 / 140e9),
-            (1, 0, -0.3 / 140e9),
-            (2, 0, -0.25 / 140e9),
-            (2, 1, -0.4 / 10e9),
-            (2, 2, 1.0 / 9e9),
-        ];
-        for (i, j, value) in
-            expected
-                .into_iter()
-                .chain([(3, 3, 0.2e-9), (4, 4, 1.0 / 3e9), (5, 5, 0.25e-9)])
-        {
+        let expected =
+            [(0, 0, 1.0 / 140e9), (1, 0, -0.3 / 140e9), (2, 0, -0.25 / 140e9), (2, 1, -0.4 / 10e9), (2, 2, 1.0 / 9e9)];
+        for (i, j, value) in expected.into_iter().chain([(3, 3, 0.2e-9), (4, 4, 1.0 / 3e9), (5, 5, 0.25e-9)]) {
             assert!((s[(i, j)] / value - 1.0).abs() < 1e-13, "S[{i}][{j}]");
         }
         check(&d).unwrap();
@@ -238,24 +214,11 @@ mod tests {
 
     #[test]
     fn constants_outside_their_bounds_are_refused() {
-        for (young, poisson) in [
-            (-1.0, 0.3),
-            (0.0, 0.3),
-            (1.0, 0.5),
-            (1.0, 0.6),
-            (1.0, -1.0),
-            (f64::NAN, 0.3),
-        ] {
-            assert!(
-                check(&isotropic(young, poisson)).is_err(),
-                "E = {young}, nu = {poisson}"
-            );
+        for (young, poisson) in [(-1.0, 0.3), (0.0, 0.3), (1.0, 0.5), (1.0, 0.6), (1.0, -1.0), (f64::NAN, 0.3)] {
+            assert!(check(&isotropic(young, poisson)).is_err(), "E = {young}, nu = {poisson}");
         }
         // nu_zp^2 E/E_z (as seen from the plane) beyond (1 - nu)/2
-        let wild = TransverselyIsotropic {
-            poisson_axial: 0.5,
-            ..LINING
-        };
+        let wild = TransverselyIsotropic { poisson_axial: 0.5, ..LINING };
         assert!(check(&wild.elasticity([0.0, 0.0, 1.0])).is_err());
         assert!(check(&LINING.elasticity([0.0; 3])).is_err());
     }

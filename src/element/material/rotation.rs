@@ -21,8 +21,7 @@ const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 
 /// the upper triangle is computed and mirrored, so the result is exactly symmetric.
 pub fn rotate(elasticity: &[[f64; 6]; 6], axes: &[[f64; 3]; 3]) -> [[f64; 6]; 6] {
     let bond = bond(axes);
-    let half: [[f64; 6]; 6] =
-        bond.map(|row| std::array::from_fn(|j| (0..6).map(|k| row[k] * elasticity[k][j]).sum()));
+    let half: [[f64; 6]; 6] = bond.map(|row| std::array::from_fn(|j| (0..6).map(|k| row[k] * elasticity[k][j]).sum()));
     let mut rotated = [[0.0; 6]; 6];
     for i in 0..6 {
         for j in i..6 {
@@ -37,13 +36,7 @@ pub fn rotate(elasticity: &[[f64; 6]; 6], axes: &[[f64; 3]; 3]) -> [[f64; 6]; 6]
 fn bond(axes: &[[f64; 3]; 3]) -> [[f64; 6]; 6] {
     let q = |i: usize, m: usize| axes[m][i];
     PAIRS.map(|(i, k)| {
-        PAIRS.map(|(m, n)| {
-            if m == n {
-                q(i, m) * q(k, m)
-            } else {
-                q(i, m) * q(k, n) + q(i, n) * q(k, m)
-            }
-        })
+        PAIRS.map(|(m, n)| if m == n { q(i, m) * q(k, m) } else { q(i, m) * q(k, n) + q(i, n) * q(k, m) })
     })
 }
 
@@ -53,9 +46,7 @@ fn bond(axes: &[[f64; 3]; 3]) -> [[f64; 6]; 6] {
 pub fn frame_about(axis: [f64; 3]) -> [[f64; 3]; 3] {
     let z = scale(1.0 / norm(axis), axis);
     // The coordinate direction least along z is never parallel to it.
-    let least = (0..3)
-        .min_by(|&i, &j| z[i].abs().total_cmp(&z[j].abs()))
-        .unwrap_or(0);
+    let least = (0..3).min_by(|&i, &j| z[i].abs().total_cmp(&z[j].abs())).unwrap_or(0);
     let mut helper = [0.0; 3];
     helper[least] = 1.0;
     let across = cross(helper, z);
@@ -87,12 +78,7 @@ mod tests {
     const VOIGT: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
 
     /// `C_ijkl = Q_ip Q_jq Q_kr Q_ls C'_pqrs`, the definition.
-    fn rotated_tensor(
-        d: &[[f64; 6]; 6],
-        axes: &[[f64; 3]; 3],
-        ij: (usize, usize),
-        kl: (usize, usize),
-    ) -> f64 {
+    fn rotated_tensor(d: &[[f64; 6]; 6], axes: &[[f64; 3]; 3], ij: (usize, usize), kl: (usize, usize)) -> f64 {
         let q = |i: usize, m: usize| axes[m][i];
         let mut sum = 0.0;
         for p in 0..81 {
@@ -106,10 +92,7 @@ mod tests {
     fn rotation_is_that_of_the_fourth_order_tensor() {
         let mut random = Random::seeded(45);
         for _ in 0..10 {
-            let (d, axes) = (
-                triclinic(&mut random),
-                frame(random.vector(), random.vector()).unwrap(),
-            );
+            let (d, axes) = (triclinic(&mut random), frame(random.vector(), random.vector()).unwrap());
             let rotated = rotate(&d, &axes);
             for (i, &ij) in PAIRS.iter().enumerate() {
                 for (j, &kl) in PAIRS.iter().enumerate() {
@@ -122,10 +105,7 @@ mod tests {
     #[test]
     fn rotation_there_and_back_is_the_identity() {
         let mut random = Random::seeded(46);
-        let (d, axes) = (
-            triclinic(&mut random),
-            frame(random.vector(), random.vector()).unwrap(),
-        );
+        let (d, axes) = (triclinic(&mut random), frame(random.vector(), random.vector()).unwrap());
         let transposed = std::array::from_fn(|i| std::array::from_fn(|j| axes[j][i]));
         let back = rotate(&rotate(&d, &axes), &transposed);
         for i in 0..6 {
@@ -154,9 +134,7 @@ mod tests {
             assert!((dot(about[2], a) - norm(a)).abs() < 1e-14);
             let pair = frame(a, b).unwrap();
             assert_right_handed(&pair);
-            assert!(
-                dot(pair[0], a) > 0.0 && dot(pair[1], b) > 0.0 && dot(pair[2], b).abs() < 1e-14
-            );
+            assert!(dot(pair[0], a) > 0.0 && dot(pair[1], b) > 0.0 && dot(pair[2], b).abs() < 1e-14);
         }
         for axis in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]] {
             assert_right_handed(&frame_about(axis));

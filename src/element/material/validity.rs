@@ -54,10 +54,7 @@ pub fn check(elasticity: &[[f64; 6]; 6]) -> Result<(), MaterialError> {
         for column in 0..row {
             let scale = d[row][row].abs().max(d[column][column].abs());
             if (d[row][column] - d[column][row]).abs() > ASYMMETRY * scale {
-                return Err(MaterialError::NotSymmetric {
-                    row: column,
-                    column: row,
-                });
+                return Err(MaterialError::NotSymmetric { row: column, column: row });
             }
         }
     }
@@ -97,14 +94,8 @@ mod tests {
             let mut d = triclinic(&mut random);
             let shift = 3.0 * random.unit();
             (0..6).for_each(|i| d[i][i] -= shift);
-            let smallest = Matrix6::from_fn(|i, j| d[i][j])
-                .symmetric_eigenvalues()
-                .min();
-            assert_eq!(
-                check(&d).is_ok(),
-                smallest > 0.0,
-                "smallest eigenvalue {smallest}"
-            );
+            let smallest = Matrix6::from_fn(|i, j| d[i][j]).symmetric_eigenvalues().min();
+            assert_eq!(check(&d).is_ok(), smallest > 0.0, "smallest eigenvalue {smallest}");
         }
     }
 
@@ -112,10 +103,7 @@ mod tests {
     fn asymmetry_and_missing_numbers_are_named() {
         let mut d = isotropic(1.0, 0.3);
         d[0][1] += 1e-6;
-        assert_eq!(
-            check(&d),
-            Err(MaterialError::NotSymmetric { row: 0, column: 1 })
-        );
+        assert_eq!(check(&d), Err(MaterialError::NotSymmetric { row: 0, column: 1 }));
         d[4][2] = f64::NAN;
         let error = check(&d).unwrap_err();
         assert_eq!(error, MaterialError::NotFinite { row: 4, column: 2 });

@@ -43,18 +43,12 @@ mod tests {
     fn monomial_error<const D: usize>(rule: &[Point<D>], degree: u32) -> f64 {
         let mut worst = 0.0_f64;
         for code in 0..(degree + 1).pow(D as u32) {
-            let power: [u32; D] =
-                std::array::from_fn(|i| code / (degree + 1).pow(i as u32) % (degree + 1));
+            let power: [u32; D] = std::array::from_fn(|i| code / (degree + 1).pow(i as u32) % (degree + 1));
             if power.iter().sum::<u32>() != degree {
                 continue;
             }
-            let exact =
-                power.iter().map(|&p| factorial(p)).product::<f64>() / factorial(degree + D as u32);
-            let value = |q: &Point<D>| {
-                (0..D)
-                    .map(|i| q.at[i].powi(power[i] as i32))
-                    .product::<f64>()
-            };
+            let exact = power.iter().map(|&p| factorial(p)).product::<f64>() / factorial(degree + D as u32);
+            let value = |q: &Point<D>| (0..D).map(|i| q.at[i].powi(power[i] as i32)).product::<f64>();
             let sum: f64 = rule.iter().map(|q| q.weight * value(q)).sum();
             worst = worst.max((sum / exact - 1.0).abs());
         }
@@ -67,11 +61,7 @@ mod tests {
             assert!(error < 2e-14, "degree {degree}: {error:e}");
         }
         let next = monomial_error(rule, exact_to + 1);
-        assert!(
-            next > 1e-4,
-            "also exact to degree {}: the table says less than it could",
-            exact_to + 1
-        );
+        assert!(next > 1e-4, "also exact to degree {}: the table says less than it could", exact_to + 1);
     }
 
     #[test]
@@ -93,11 +83,7 @@ mod tests {
     fn all_points_lie_inside_and_all_weights_are_positive() {
         fn check<const D: usize>(rule: &[Point<D>]) {
             for q in rule {
-                assert!(
-                    q.weight > 0.0
-                        && q.at.iter().all(|&x| x > 0.0)
-                        && q.at.iter().sum::<f64>() < 1.0
-                );
+                assert!(q.weight > 0.0 && q.at.iter().all(|&x| x > 0.0) && q.at.iter().sum::<f64>() < 1.0);
             }
         }
         check(&TETRAHEDRON_4);

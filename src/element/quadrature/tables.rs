@@ -20,8 +20,8 @@ pub const TETRAHEDRON_14: [Point<3>; 14] = {
     let far = corner_orbit(0.3108859192633006, 0.018781320953002643);
     let edge = edge_orbit(0.04550370412564965, 0.007091003462846911);
     [
-        near[0], near[1], near[2], near[3], far[0], far[1], far[2], far[3], edge[0], edge[1],
-        edge[2], edge[3], edge[4], edge[5],
+        near[0], near[1], near[2], near[3], far[0], far[1], far[2], far[3], edge[0], edge[1], edge[2], edge[3],
+        edge[4], edge[5],
     ]
 };
 
@@ -31,10 +31,7 @@ pub const TETRAHEDRON_14: [Point<3>; 14] = {
 pub const TRIANGLE_7: [Point<2>; 7] = {
     let near = triangle_orbit(0.10128650732345634, 0.06296959027241357);
     let far = triangle_orbit(0.4701420641051151, 0.0661970763942531);
-    let centre = Point {
-        at: [1.0 / 3.0, 1.0 / 3.0],
-        weight: 9.0 / 80.0,
-    };
+    let centre = Point { at: [1.0 / 3.0, 1.0 / 3.0], weight: 9.0 / 80.0 };
     [near[0], near[1], near[2], far[0], far[1], far[2], centre]
 };
 
@@ -42,22 +39,10 @@ pub const TRIANGLE_7: [Point<2>; 7] = {
 const fn corner_orbit(a: f64, weight: f64) -> [Point<3>; 4] {
     let b = 1.0 - 3.0 * a;
     [
-        Point {
-            at: [a, a, a],
-            weight,
-        },
-        Point {
-            at: [b, a, a],
-            weight,
-        },
-        Point {
-            at: [a, b, a],
-            weight,
-        },
-        Point {
-            at: [a, a, b],
-            weight,
-        },
+        Point { at: [a, a, a], weight },
+        Point { at: [b, a, a], weight },
+        Point { at: [a, b, a], weight },
+        Point { at: [a, a, b], weight },
     ]
 }
 
@@ -65,39 +50,17 @@ const fn corner_orbit(a: f64, weight: f64) -> [Point<3>; 4] {
 const fn edge_orbit(a: f64, weight: f64) -> [Point<3>; 6] {
     let b = 0.5 - a;
     [
-        Point {
-            at: [a, b, b],
-            weight,
-        },
-        Point {
-            at: [b, a, b],
-            weight,
-        },
-        Point {
-            at: [b, b, a],
-            weight,
-        },
-        Point {
-            at: [b, a, a],
-            weight,
-        },
-        Point {
-            at: [a, b, a],
-            weight,
-        },
-        Point {
-            at: [a, a, b],
-            weight,
-        },
+        Point { at: [a, b, b], weight },
+        Point { at: [b, a, b], weight },
+        Point { at: [b, b, a], weight },
+        Point { at: [b, a, a], weight },
+        Point { at: [a, b, a], weight },
+        Point { at: [a, a, b], weight },
     ]
 }
 
 /// The three images of barycentric `(1 - 2a, a, a)`.
 const fn triangle_orbit(a: f64, weight: f64) -> [Point<2>; 3] {
     let b = 1.0 - 2.0 * a;
-    [
-        Point { at: [a, a], weight },
-        Point { at: [b, a], weight },
-        Point { at: [a, b], weight },
-    ]
+    [Point { at: [a, a], weight }, Point { at: [b, a], weight }, Point { at: [a, b], weight }]
 }

@@ -66,16 +66,10 @@ impl MassProperties {
     /// `P_ij = S_ij - s_i p_j - p_i s_j + m p_i p_j`.
     pub fn inertia_about(&self, point: [f64; 3]) -> [[f64; 3]; 3] {
         let (m, s, p) = (self.mass, self.first_moment, point);
-        let moment = |i: usize, j: usize| {
-            self.second_moment[i][j] - s[i] * p[j] - p[i] * s[j] + m * p[i] * p[j]
-        };
+        let moment = |i: usize, j: usize| self.second_moment[i][j] - s[i] * p[j] - p[i] * s[j] + m * p[i] * p[j];
         let trace = moment(0, 0) + moment(1, 1) + moment(2, 2);
         let inertia = |i: usize, j: usize| {
-            if i == j {
-                trace - moment(i, j)
-            } else {
-                -moment(i, j)
-            }
+            if i == j { trace - moment(i, j) } else { -moment(i, j) }
         };
         std::array::from_fn(|i| std::array::from_fn(|j| inertia(i, j)))
     }
@@ -104,8 +98,7 @@ pub fn mass_properties(x: &[[f64; 3]; 10], density: f64) -> MassProperties {
     let mut about_corner = MassProperties::default();
     for q in 0..14 {
         let dm = density * weighted_det(&arms, q);
-        let r: [f64; 3] =
-            std::array::from_fn(|i| (0..10).map(|a| SHAPES_14[q][a] * arms[a][i]).sum());
+        let r: [f64; 3] = std::array::from_fn(|i| (0..10).map(|a| SHAPES_14[q][a] * arms[a][i]).sum());
         about_corner += MassProperties {
             mass: dm,
             first_moment: r.map(|ri| dm * ri),
@@ -115,10 +108,7 @@ pub fn mass_properties(x: &[[f64; 3]; 10], density: f64) -> MassProperties {
     let (m, s) = (about_corner.mass, about_corner.first_moment);
     // x = o + r:  s_i' = s_i + m o_i,  S_ij' = S_ij + s_i o_j + o_i s_j + m o_i o_j
     let shifted = |i: usize, j: usize| {
-        about_corner.second_moment[i][j]
-            + s[i] * origin[j]
-            + origin[i] * s[j]
-            + m * origin[i] * origin[j]
+        about_corner.second_moment[i][j] + s[i] * origin[j] + origin[i] * s[j] + m * origin[i] * origin[j]
     };
     MassProperties {
         mass: m,
@@ -191,10 +181,7 @@ mod tests {
             for a in 0..10 {
                 let rule = collapsed_gauss(6);
                 let det = |at| cofactor_columns(&jacobian(&x, &gradients(at))).1;
-                let exact: f64 = rule
-                    .iter()
-                    .map(|q| q.weight * det(q.at) * shape(q.at)[a] * 3.0)
-                    .sum();
+                let exact: f64 = rule.iter().map(|q| q.weight * det(q.at) * shape(q.at)[a] * 3.0).sum();
                 assert!((m.row(a).sum() - exact).abs() < 1e-14 * m.sum());
             }
         }
@@ -245,8 +232,7 @@ mod tests {
         for i in 0..3 {
             assert!((ours.first_moment[i] - exact.first_moment[i]).abs() < 1e-13 * exact.mass);
             for j in 0..3 {
-                worst = worst
-                    .max((ours.second_moment[i][j] - exact.second_moment[i][j]).abs() / exact.mass);
+                worst = worst.max((ours.second_moment[i][j] - exact.second_moment[i][j]).abs() / exact.mass);
             }
         }
         worst
@@ -269,8 +255,7 @@ mod tests {
         for i in 0..3 {
             for j in 0..3 {
                 let squares: f64 = (0..4).map(|c| x[c][i] * x[c][j]).sum();
-                let sums =
-                    (0..4).map(|c| x[c][i]).sum::<f64>() * (0..4).map(|c| x[c][j]).sum::<f64>();
+                let sums = (0..4).map(|c| x[c][i]).sum::<f64>() * (0..4).map(|c| x[c][j]).sum::<f64>();
                 let exact = properties.mass / 20.0 * (squares + sums);
                 assert!((properties.second_moment[i][j] - exact).abs() < 1e-13 * properties.mass);
             }

@@ -12,14 +12,7 @@ use std::collections::BTreeMap;
 type Kernel = fn(&[[f64; 3]; 10], &[[f64; 6]; 6], &mut [f64]);
 
 /// Corners of the six tetrahedra of a cube (Kuhn's subdivision along the diagonal 0-7; corner bits are x, y, z).
-const KUHN: [[usize; 4]; 6] = [
-    [0, 1, 3, 7],
-    [0, 3, 2, 7],
-    [0, 2, 6, 7],
-    [0, 6, 4, 7],
-    [0, 4, 5, 7],
-    [0, 5, 1, 7],
-];
+const KUHN: [[usize; 4]; 6] = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
 
 struct Patch {
     nodes: Vec<[f64; 3]>,
@@ -46,11 +39,7 @@ impl Patch {
                 }));
             }
         }
-        let mut patch = Patch {
-            nodes: vec![[0.0; 3]; numbers.len()],
-            inner: vec![false; numbers.len()],
-            tets,
-        };
+        let mut patch = Patch { nodes: vec![[0.0; 3]; numbers.len()], inner: vec![false; numbers.len()], tets };
         for (grid, &n) in &numbers {
             patch.nodes[n] = grid.map(|g| 0.25 * g as f64);
             patch.inner[n] = grid.iter().all(|&g| g > 0 && g < 4);
@@ -69,8 +58,7 @@ impl Patch {
                 let (n, a, b) = (tet[4 + midside], self.nodes[tet[*i]], self.nodes[tet[*j]]);
                 if !std::mem::replace(&mut bent[n], true) {
                     let shift = random.vector();
-                    self.nodes[n] =
-                        std::array::from_fn(|k| 0.5 * (a[k] + b[k]) + offset * shift[k]);
+                    self.nodes[n] = std::array::from_fn(|k| 0.5 * (a[k] + b[k]) + offset * shift[k]);
                 }
             }
         }
@@ -107,18 +95,9 @@ fn the_patch_fills_the_cube_with_well_shaped_elements() {
     let patch = Patch::new(&mut Random::seeded(81), 0.0);
     assert_eq!((patch.nodes.len(), patch.tets.len()), (125, 48));
     assert_eq!(patch.inner.iter().filter(|inner| **inner).count(), 27);
-    let volume: f64 = patch
-        .tets
-        .iter()
-        .map(|tet| super::volume(&patch.coordinates(tet)))
-        .sum();
+    let volume: f64 = patch.tets.iter().map(|tet| super::volume(&patch.coordinates(tet))).sum();
     assert!((volume - 1.0).abs() < 1e-14);
-    assert!(
-        patch
-            .tets
-            .iter()
-            .all(|tet| min_max_jacobian(&patch.coordinates(tet)).0 > 0.0)
-    );
+    assert!(patch.tets.iter().all(|tet| min_max_jacobian(&patch.coordinates(tet)).0 > 0.0));
 }
 
 #[test]
@@ -147,8 +126,5 @@ fn curved_patch_with_four_points_errs_with_the_square_of_the_offset() {
         Patch::new(&mut random, offset).residual(&mut random, stiffness)
     };
     let (coarse, fine) = (residual(0.02), residual(0.01));
-    assert!(
-        coarse < 2e-3 && ((coarse / fine).log2() - 2.0).abs() < 0.2,
-        "{coarse:e} {fine:e}"
-    );
+    assert!(coarse < 2e-3 && ((coarse / fine).log2() - 2.0).abs() < 0.2, "{coarse:e} {fine:e}");
 }

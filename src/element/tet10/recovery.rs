@@ -23,25 +23,14 @@ fn strain_from(x: &[[f64; 3]; 10], u: &[[f64; 3]; 10], reference: &[[f64; 3]; 10
     let (g, _) = physical_gradients(x, reference);
     // h_ij = du_i/dx_j = sum_a u_a,i dN_a/dx_j
     let h = |i: usize, j: usize| (0..10).map(|a| u[a][i] * g[a][j]).sum::<f64>();
-    [
-        h(0, 0),
-        h(1, 1),
-        h(2, 2),
-        h(0, 1) + h(1, 0),
-        h(1, 2) + h(2, 1),
-        h(2, 0) + h(0, 2),
-    ]
+    [h(0, 0), h(1, 1), h(2, 2), h(0, 1) + h(1, 0), h(1, 2) + h(2, 1), h(2, 0) + h(0, 2)]
 }
 
 /// Stress (Pa, Voigt xx yy zz xy yz zx) at the ten nodes, extrapolated linearly from the points of the stiffness rule.
 ///
 /// `x` and the nodal displacements `u` in m. Exact for a quadratic displacement on straight edges. Neighbouring elements
 /// give different values at a shared node: average them for a smooth picture, but not across parts.
-pub fn stress_at_nodes(
-    x: &[[f64; 3]; 10],
-    elasticity: &[[f64; 6]; 6],
-    u: &[[f64; 3]; 10],
-) -> [[f64; 6]; 10] {
+pub fn stress_at_nodes(x: &[[f64; 3]; 10], elasticity: &[[f64; 6]; 6], u: &[[f64; 3]; 10]) -> [[f64; 6]; 10] {
     let at_points: [[f64; 6]; 4] = std::array::from_fn(|q| {
         let e = strain_from(x, u, &GRADIENTS_4[q]);
         elasticity.map(|d| (0..6).map(|c| d[c] * e[c]).sum())
@@ -77,14 +66,7 @@ mod tests {
         let x = curved_tet(&mut random, 0.08);
         let h = [random.vector(), random.vector(), random.vector()];
         let u = x.map(|p| h.map(|row| dot(row, p)));
-        let exact = [
-            h[0][0],
-            h[1][1],
-            h[2][2],
-            h[0][1] + h[1][0],
-            h[1][2] + h[2][1],
-            h[2][0] + h[0][2],
-        ];
+        let exact = [h[0][0], h[1][1], h[2][2], h[0][1] + h[1][0], h[1][2] + h[2][1], h[2][0] + h[0][2]];
         for _ in 0..20 {
             let e = strain(&x, &u, random.in_tetrahedron());
             assert!((0..6).all(|r| (e[r] - exact[r]).abs() < 1e-12));

@@ -129,11 +129,7 @@ pub fn min_max_jacobian(x: &[[f64; 3]; 10]) -> (f64, f64) {
         .map(|gradients| cofactor_columns(&jacobian(x, gradients)).1)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), det| {
             // A coordinate that is NaN makes every sample NaN, which `min` would pass over.
-            if det.is_nan() {
-                (f64::NAN, f64::NAN)
-            } else {
-                (low.min(det), high.max(det))
-            }
+            if det.is_nan() { (f64::NAN, f64::NAN) } else { (low.min(det), high.max(det)) }
         })
 }
 

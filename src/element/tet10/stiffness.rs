@@ -57,12 +57,7 @@ fn integrate<const Q: usize>(
         let (physical, det) = physical_gradients(x, &reference[q]);
         gradients[q] = physical;
         // S[r][3b+j] = w detJ sum_l D[r][V(j,l)] dN_b/dx_l
-        weighted_db_into(
-            elasticity,
-            &physical,
-            rule[q].weight * det,
-            &mut weighted_db[q],
-        );
+        weighted_db_into(elasticity, &physical, rule[q].weight * det, &mut weighted_db[q]);
     }
     for a in 0..10 {
         for i in 0..3 {
@@ -85,33 +80,23 @@ fn integrate<const Q: usize>(
 ///
 /// `dN_a/dx = J^-T dN_a/dxi = sum_k (column k of cof J) dN_a/dxi_k / detJ`
 #[inline]
-pub(super) fn physical_gradients(
-    x: &[[f64; 3]; 10],
-    reference: &[[f64; 3]; 10],
-) -> ([[f64; 3]; 10], f64) {
+pub(super) fn physical_gradients(x: &[[f64; 3]; 10], reference: &[[f64; 3]; 10]) -> ([[f64; 3]; 10], f64) {
     let (cofactors, det) = cofactor_columns(&jacobian(x, reference));
     let inverse_det = 1.0 / det;
     // J^-T, row i: the i-th components of the cofactor columns over detJ
-    let inverse: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|k| cofactors[k][i] * inverse_det));
+    let inverse: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|k| cofactors[k][i] * inverse_det));
     (reference.map(|g| inverse.map(|row| dot(row, g))), det)
 }
 
 /// `S = factor D B`, 6 rows of 30.
 #[inline]
-fn weighted_db_into(
-    elasticity: &[[f64; 6]; 6],
-    gradients: &[[f64; 3]; 10],
-    factor: f64,
-    s: &mut [[f64; 30]; 6],
-) {
+fn weighted_db_into(elasticity: &[[f64; 6]; 6], gradients: &[[f64; 3]; 10], factor: f64, s: &mut [[f64; 30]; 6]) {
     for r in 0..6 {
         let d = elasticity[r].map(|entry| factor * entry);
         for b in 0..10 {
             for j in 0..3 {
                 let [v0, v1, v2] = VOIGT[j];
-                s[r][3 * b + j] =
-                    d[v0] * gradients[b][0] + d[v1] * gradients[b][1] + d[v2] * gradients[b][2];
+                s[r][3 * b + j] = d[v0] * gradients[b][0] + d[v1] * gradients[b][1] + d[v2] * gradients[b][2];
             }
         }
     }
@@ -138,11 +123,7 @@ mod tests {
     use std::time::Instant;
 
     /// `K = sum_q w detJ B^T D B` written as plain matrix products on any list of points.
-    fn plain_stiffness(
-        x: &[[f64; 3]; 10],
-        elasticity: &[[f64; 6]; 6],
-        rule: &[Point<3>],
-    ) -> DMatrix<f64> {
+    fn plain_stiffness(x: &[[f64; 3]; 10], elasticity: &[[f64; 6]; 6], rule: &[Point<3>]) -> DMatrix<f64> {
         let d = DMatrix::from_fn(6, 6, |i, j| elasticity[i][j]);
         let mut k = DMatrix::zeros(30, 30);
         for q in rule {
@@ -150,14 +131,7 @@ mod tests {
             let mut b = DMatrix::zeros(6, 30);
             for a in 0..10 {
                 let [gx, gy, gz] = g[a];
-                let rows = [
-                    [gx, 0., 0.],
-                    [0., gy, 0.],
-                    [0., 0., gz],
-                    [gy, gx, 0.],
-                    [0., gz, gy],
-                    [gz, 0., gx],
-                ];
+                let rows = [[gx, 0., 0.], [0., gy, 0.], [0., 0., gz], [gy, gx, 0.], [0., gz, gy], [gz, 0., gx]];
                 for r in 0..6 {
                     for j in 0..3 {
                         b[(r, 3 * a + j)] = rows[r][j];
@@ -207,9 +181,7 @@ mod tests {
             let mut eigenvalues: Vec<f64> = k.symmetric_eigenvalues().iter().copied().collect();
             eigenvalues.sort_by(f64::total_cmp);
             let largest = eigenvalues[29];
-            assert!(
-                eigenvalues[5].abs() < 1e-13 * largest && eigenvalues[0].abs() < 1e-13 * largest
-            );
+            assert!(eigenvalues[5].abs() < 1e-13 * largest && eigenvalues[0].abs() < 1e-13 * largest);
             assert!(eigenvalues[6] > 1e-5 * largest, "{eigenvalues:?}");
         }
     }
@@ -220,9 +192,7 @@ mod tests {
         let x = curved_tet(&mut random, 0.08);
         let k = dense(&x, &triclinic(&mut random));
         let (shift, turn) = (random.vector(), random.vector());
-        let u = DMatrix::from_fn(30, 1, |dof, _| {
-            shift[dof % 3] + cross(turn, x[dof / 3])[dof % 3]
-        });
+        let u = DMatrix::from_fn(30, 1, |dof, _| shift[dof % 3] + cross(turn, x[dof / 3])[dof % 3]);
         assert!((&k * &u).norm() < 1e-13 * k.norm() * u.norm());
     }
 
@@ -233,17 +203,8 @@ mod tests {
         let (x, d) = (straight_tet(&mut random), triclinic(&mut random));
         let h = [random.vector(), random.vector(), random.vector()];
         let u = DMatrix::from_fn(30, 1, |dof, _| dot(h[dof % 3], x[dof / 3]));
-        let e = [
-            h[0][0],
-            h[1][1],
-            h[2][2],
-            h[0][1] + h[1][0],
-            h[1][2] + h[2][1],
-            h[2][0] + h[0][2],
-        ];
-        let density: f64 = (0..6)
-            .map(|r| e[r] * (0..6).map(|c| d[r][c] * e[c]).sum::<f64>())
-            .sum();
+        let e = [h[0][0], h[1][1], h[2][2], h[0][1] + h[1][0], h[1][2] + h[2][1], h[2][0] + h[0][2]];
+        let density: f64 = (0..6).map(|r| e[r] * (0..6).map(|c| d[r][c] * e[c]).sum::<f64>()).sum();
         let exact = density * mass_properties(&x, 1.0).mass;
         assert!(((u.transpose() * dense(&x, &d) * &u)[(0, 0)] / exact - 1.0).abs() < 1e-12);
     }
@@ -277,11 +238,7 @@ mod tests {
                     start.elapsed().as_secs_f64() / elements.len() as f64
                 })
                 .fold(f64::INFINITY, f64::min);
-            println!(
-                "{name}: {:.2} us an element, {:.0} tets/s",
-                best * 1e6,
-                1.0 / best
-            );
+            println!("{name}: {:.2} us an element, {:.0} tets/s", best * 1e6, 1.0 / best);
         };
         let (mut k, mut m) = ([0.0; 900], [0.0; 100]);
         let mut sink = 0.0;

@@ -1,0 +1,123 @@
+//! `squeal check`: what a model is, before anything is computed.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use crate::element::tet10::{MassProperties, mass_properties};
+use crate::equilibrium::free_motions;
+use crate::mesh::quality;
+use crate::petsc::{Comm, Factor, FactorKind};
+use crate::{Error, Result};
+
+use super::brake::Brake;
+
+pub fn run(comm: &Comm, path: &Path) -> Result<()> {
+    let brake = Brake::read(comm, path)?;
+    let mut text = format!("{}\n\n", brake.model.title);
+    parts(&mut text, &brake);
+    pairs(&mut text, &brake);
+    supports(&mut text, &brake);
+    if comm.is_root() {
+        print!("{text}");
+    }
+    let free = free_motions(&brake.mesh, &brake.interface, &brake.held, &brake.links);
+    if !free.is_empty() {
+        let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
+        return Err(Error::input(format!(
+            "{}: held by nothing:\n{}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions",
+            path.display(),
+            list.join("\n")
+        )));
+    }
+    memory(comm, &brake)
+}
+
+/// Parts with nodes, mass, centre and principal moments of inertia, and mesh quality.
+fn parts(text: &mut String, brake: &Brake) {
+    let mesh = &brake.mesh;
+    let _ = writeln!(text, "mesh: {} nodes, {} tetrahedra", mesh.nodes.len(), mesh.tets.len());
+    let width = mesh.parts.iter().map(String::len).max().unwrap_or(4).max(4);
+    let _ = writeln!(
+        text,
+        "{:width$}  {:>8}  {:>9}  {:>26}  {:>32}  {:>17}",
+        "part", "tets", "mass kg", "centre mm", "inertia kg mm2 (xx yy zz)", "quality min / med"
+    );
+    let quality = quality::by_part(mesh);
+    for (i, name) in mesh.parts.iter().enumerate() {
+        let part = brake.model.parts.iter().find(|part| part.name == *name).expect("checked against the mesh");
+        let mut properties = MassProperties::default();
+        let own = mesh.tets.iter().zip(&mesh.tet_part).filter(|(_, p)| **p as usize == i);
+        for (tet, _) in own.clone() {
+            properties += mass_properties(&tet.map(|n| mesh.nodes[n as usize]), part.material.density);
+        }
+        let centre = properties.centre();
+        let inertia = properties.inertia_about(centre);
+        let millimetres = centre.map(|x| format!("{:.2}", 1e3 * x)).join(" ");
+        let moments = [0, 1, 2].map(|k| format!("{:.2}", 1e6 * inertia[k][k])).join(" ");
+        let _ = writeln!(
+            text,
+            "{name:width$}  {:>8}  {:>9.4}  {millimetres:>26}  {moments:>32}  {:>8.3} {:>8.3}",
+            own.count(),
+            properties.mass,
+            quality[i].minimum,
+            quality[i].median
+        );
+    }
+    text.push('\n');
+}
+
+/// Contact pairs with points, areas, gaps.
+fn pairs(text: &mut String, brake: &Brake) {
+    let pairs = &brake.interface.pairs;
+    let width = pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
+    let _ = writeln!(
+        text,
+        "{:width$}  {:>11}  {:>6}  {:>7}  {:>8}  {:>9}  {:>19}  {:>8}",
+        "pair", "kind", "points", "dropped", "touching", "area mm2", "gap mm (min max)", "friction"
+    );
+    for pair in pairs {
+        let s = &pair.statistics;
+        let gaps = format!("{:.2e} {:.2e}", 1e3 * s.gap[0], 1e3 * s.gap[1]);
+        let _ = writeln!(
+            text,
+            "{:width$}  {:>11}  {:>6}  {:>7}  {:>8}  {:>9.2}  {gaps:>19}  {:>8}",
+            pair.name,
+            format!("{:?}", pair.kind).to_lowercase(),
+            pair.points.len(),
+            s.dropped.len(),
+            s.touching,
+            1e6 * s.area,
+            pair.friction
+        );
+    }
+    text.push('\n');
+}
+
+fn supports(text: &mut String, brake: &Brake) {
+    let held = brake.held.as_flattened().iter().filter(|&&h| h).count();
+    let total = brake.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i]));
+    let _ = writeln!(text, "{} held displacements, {} connectors", held, brake.links.len());
+    for load in &brake.model.loads {
+        let _ = writeln!(text, "load {:?} on {}: {:?}", load.name, load.on, load.kind);
+    }
+    let _ = writeln!(text, "sum of the loads: {:.3} {:.3} {:.3} N\n", total[0], total[1], total[2]);
+}
+
+/// Analyses the matrix without factorising it.
+fn memory(comm: &Comm, brake: &Brake) -> Result<()> {
+    let families = brake.families()?;
+    let system = brake.assemble(comm, &families)?;
+    let mut factor = Factor::new(FactorKind::Unsymmetric);
+    factor.analyse(&system.k)?;
+    let stats = factor.stats();
+    let entries = system.k.n_entries()?;
+    if comm.is_root() {
+        println!(
+            "{} equations, {:.1} M entries in K; the LU factor will take about {:.1} GB",
+            system.dofs.n_global(),
+            1e-6 * entries,
+            stats.estimated_mb / 1024.0
+        );
+    }
+    Ok(())
+}

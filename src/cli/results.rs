@@ -1,0 +1,216 @@
+//! What the computing commands share: the equilibrium of one friction with its checks, tables and pictures.
+
+use std::io::Write;
+
+use crate::equilibrium::{Balance, Equilibrium};
+use crate::petsc::Vector;
+use crate::report::folder::Folder;
+use crate::report::tables::PairRow;
+use crate::report::vtu::{Cells, Grid, Values};
+use crate::stability::Mode;
+use crate::{Error, Result};
+
+use super::brake::{Brake, Families};
+use crate::assembly::System;
+use crate::contact::law::{Response, Status};
+
+/// An equilibrium with its balance, ready to be written.
+pub struct State {
+    /// Nodal displacements, m.
+    pub u: Vec<[f64; 3]>,
+    pub balance: Balance,
+    pub friction: f64,
+}
+
+impl State {
+    /// Gathers displacements and adds up forces. Collective.
+    pub fn new(brake: &Brake, families: &Families, system: &System, equilibrium: &Equilibrium) -> Result<State> {
+        let u = system.nodal(&[&equilibrium.u])?.remove(0);
+        let balance = Balance::new(
+            &brake.mesh.nodes,
+            &families.list(),
+            &brake.loads,
+            &brake.interface,
+            &system.dofs,
+            &u,
+            &equilibrium.responses,
+        );
+        Ok(State { u, balance, friction: equilibrium.friction })
+    }
+
+    /// Rows of the contact table.
+    pub fn pair_rows(&self, brake: &Brake) -> Vec<PairRow> {
+        let rows = brake.interface.pairs.iter().zip(&self.balance.pairs);
+        rows.map(|(pair, forces)| PairRow {
+            friction: self.friction,
+            pair: pair.name.clone(),
+            forces: forces.clone(),
+        })
+        .collect()
+    }
+
+    /// The checks in words: balance of forces and moments, torque of each rotation.
+    pub fn checks(&self, brake: &Brake) -> String {
+        let [force, moment] = self.balance.residual();
+        let clamp = self.balance.pairs.iter().map(|pair| pair.normal.abs()).fold(0.0, f64::max);
+        let mut text = format!(
+            "loads and supports balance to {force:.1e} N and {moment:.1e} N m (largest contact force {clamp:.1} N)\n"
+        );
+        for rotation in &brake.model.rotations {
+            let nodes = part_nodes(brake, &rotation.part);
+            let of = |node: u32| nodes[node as usize];
+            let held = self.balance.support_torque(&brake.mesh.nodes, of, rotation.through, rotation.axis);
+            let friction = -self.friction_torque(brake, rotation);
+            text += &format!(
+                "torque that holds {}: {held:.3} N m; of friction on it: {friction:.3} N m\n",
+                rotation.part
+            );
+        }
+        text
+    }
+
+    /// Moment that the sliding pairs' friction exerts on a rotating part about its axis, N m: minus that on the slaves.
+    pub fn friction_torque(&self, brake: &Brake, rotation: &crate::model::Rotation) -> f64 {
+        let pairs = brake.interface.pairs.iter().zip(&self.balance.pairs);
+        let own = pairs.filter(|(pair, _)| pair.is_sliding() && brake.mesh.part_of_surface(&pair.master) == Some(&rotation.part));
+        -own.map(|(_, forces)| forces.on_slave.about(rotation.through, rotation.axis)).sum::<f64>()
+    }
+
+    /// Writes volume and contact surface as VTU.
+    pub fn write(&self, folder: &Folder, brake: &Brake, responses: &[Response]) -> Result<()> {
+        let contact = ContactFields::new(brake, responses);
+        let name = format!("equilibrium_mu{:.3}.vtu", self.friction);
+        let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
+        let grid = Grid {
+            points: &brake.mesh.nodes,
+            cells: Cells::Tets(&brake.mesh.tets),
+            point_data: contact.arrays(vec![("displacement", Values::Vectors(&self.u))]),
+            cell_data: vec![("part", Values::Integers(&parts))],
+        };
+        folder.write(&name, |mut out| grid.write(&mut out))?;
+        let (facets, pairs) = contact_facets(brake);
+        let grid = Grid {
+            points: &brake.mesh.nodes,
+            cells: Cells::Triangles(&facets),
+            point_data: contact.arrays(vec![("displacement", Values::Vectors(&self.u))]),
+            cell_data: vec![("pair", Values::Integers(&pairs))],
+        };
+        folder.write(&format!("contact_mu{:.3}.vtu", self.friction), |mut out| grid.write(&mut out))
+    }
+}
+
+fn part_nodes(brake: &Brake, part: &str) -> Vec<bool> {
+    let mut inside = vec![false; brake.mesh.nodes.len()];
+    let index = brake.mesh.parts.iter().position(|name| name == part);
+    for (tet, &p) in brake.mesh.tets.iter().zip(&brake.mesh.tet_part) {
+        if Some(p as usize) == index {
+            tet.iter().for_each(|&n| inside[n as usize] = true);
+        }
+    }
+    inside
+}
+
+/// Slave facets of all pairs, and the pair of each.
+fn contact_facets(brake: &Brake) -> (Vec<[u32; 6]>, Vec<i32>) {
+    let slaves = brake.interface.pairs.iter().enumerate();
+    slaves
+        .flat_map(|(i, pair)| brake.mesh.surfaces[&pair.slave].facets.iter().map(move |facet| (*facet, i as i32)))
+        .unzip()
+}
+
+/// Contact results at nodes: exact at the contact points (midside nodes), the mean of the neighbours at corners.
+struct ContactFields {
+    pressure: Vec<f64>,
+    traction: Vec<[f64; 3]>,
+    status: Vec<i32>,
+}
+
+impl ContactFields {
+    fn new(brake: &Brake, responses: &[Response]) -> ContactFields {
+        let n = brake.mesh.nodes.len();
+        let mut fields = ContactFields { pressure: vec![0.0; n], traction: vec![[0.0; 3]; n], status: vec![-1; n] };
+        for (point, response) in brake.interface.points.iter().zip(responses) {
+            let node = point.node as usize;
+            fields.pressure[node] = response.normal_force / point.law.weight;
+            fields.traction[node] = response.force.map(|f| f / point.law.weight);
+            fields.status[node] = match response.status {
+                Status::Open => 0,
+                Status::Slip => 1,
+                Status::Stick => 2,
+            };
+        }
+        fields.fill_corners(brake);
+        fields
+    }
+
+    fn fill_corners(&mut self, brake: &Brake) {
+        let mut count = vec![0.0; self.pressure.len()];
+        for facet in contact_facets(brake).0 {
+            for (corner, sides) in [(0, [3, 5]), (1, [3, 4]), (2, [4, 5])] {
+                let corner = facet[corner] as usize;
+                for side in sides.map(|s| facet[s] as usize) {
+                    count[corner] += 1.0;
+                    self.pressure[corner] += self.pressure[side];
+                    (0..3).for_each(|i| self.traction[corner][i] += self.traction[side][i]);
+                    self.status[corner] = self.status[corner].max(self.status[side]);
+                }
+            }
+        }
+        for (node, &n) in count.iter().enumerate().filter(|(_, n)| **n > 0.0) {
+            self.pressure[node] /= n;
+            self.traction[node] = self.traction[node].map(|t| t / n);
+        }
+    }
+
+    fn arrays<'a>(&'a self, mut first: Vec<(&'a str, Values<'a>)>) -> Vec<(&'a str, Values<'a>)> {
+        first.push(("contact_pressure", Values::Scalars(&self.pressure)));
+        first.push(("contact_traction", Values::Vectors(&self.traction)));
+        first.push(("contact_status", Values::Integers(&self.status)));
+        first
+    }
+}
+
+/// Writes a mode's shape, real and imaginary part. Collective; the root writes.
+pub fn write_mode(folder: Option<&Folder>, brake: &Brake, system: &System, friction: f64, mode: &Mode) -> Result<()> {
+    let shape = system.nodal(&[&mode.re, &mode.im])?;
+    let Some(folder) = folder else { return Ok(()) };
+    let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
+    let grid = Grid {
+        points: &brake.mesh.nodes,
+        cells: Cells::Tets(&brake.mesh.tets),
+        point_data: vec![("real", Values::Vectors(&shape[0])), ("imaginary", Values::Vectors(&shape[1]))],
+        cell_data: vec![("part", Values::Integers(&parts))],
+    };
+    folder.write(&format!("mode_mu{friction:.3}_{:.0}Hz.vtu", mode.frequency()), |mut out| grid.write(&mut out))
+}
+
+/// Writes the displacement at which a solve gave up. Collective; the root writes.
+pub fn write_last(folder: Option<&Folder>, brake: &Brake, system: &System, u: &Vector) -> Result<()> {
+    let u = system.nodal(&[u])?.remove(0);
+    let Some(folder) = folder else { return Ok(()) };
+    let grid = Grid {
+        points: &brake.mesh.nodes,
+        cells: Cells::Tets(&brake.mesh.tets),
+        point_data: vec![("displacement", Values::Vectors(&u))],
+        cell_data: vec![],
+    };
+    folder.write("last_state.vtu", |mut out| grid.write(&mut out))
+}
+
+/// Turns a CSV error into one of ours.
+pub fn csv_table(
+    folder: &Folder,
+    name: &str,
+    body: impl FnOnce(&mut dyn Write) -> csv::Result<()>,
+) -> Result<()> {
+    folder.write(name, |out| body(out).map_err(std::io::Error::other))
+}
+
+/// The folder on the root; the refusal on all ranks alike.
+pub fn folder(comm: &crate::petsc::Comm, run: &super::Run, command: &str) -> Result<Option<Folder>> {
+    let made = if comm.is_root() { Folder::create(&run.folder(command), run.force).map(Some) } else { Ok(None) };
+    match comm.agree(made) {
+        Err(Error::Elsewhere(code)) => Err(Error::Elsewhere(code)),
+        other => other,
+    }
+}

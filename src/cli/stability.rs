@@ -1,0 +1,120 @@
+//! `squeal stability`: complex modes for one friction or a sweep.
+
+use std::time::Instant;
+
+use crate::Result;
+use crate::petsc::{Comm, FactorStats, ORDERING};
+use crate::report::tables::{self, ModeRow};
+use crate::stability::Count;
+use crate::sweep::Sweep;
+
+use super::Run;
+use super::brake::Brake;
+use super::progress::Progress;
+use super::results::{self, State};
+use super::statics::{equilibrium_text, save_last, say};
+
+pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
+    let start = Instant::now();
+    let brake = Brake::read(comm, &run.model)?;
+    let frictions = brake.frictions(run.friction.as_ref())?;
+    let band = band.unwrap_or(brake.model.band);
+    let folder = results::folder(comm, run, "stability")?;
+    let progress = Progress::new(comm, frictions.len());
+    progress.say("assembling");
+    let families = brake.families()?;
+    let system = brake.assemble(comm, &families)?;
+    let mut sweep = Sweep::new(&system, &brake.interface)?;
+    let (mut modes, mut pairs, mut steps, mut counts) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut details = String::new();
+    for &friction in &frictions {
+        let outcome = sweep.equilibrium(friction, &mut |event| say(&progress, &event));
+        let equilibrium = match outcome {
+            Ok(equilibrium) => equilibrium,
+            Err(error) => return Err(save_last(error, comm, &brake, &system, &sweep, folder)),
+        };
+        let state = State::new(&brake, &families, &system, &equilibrium)?;
+        details += &equilibrium_text(&brake, &state, &equilibrium.steps);
+        pairs.extend(state.pair_rows(&brake));
+        if let Some(folder) = &folder {
+            state.write(folder, &brake, &equilibrium.responses)?;
+        }
+        let found = sweep.modes(&equilibrium, band, &mut |event| say(&progress, &event))?;
+        for mode in found.modes.iter().filter(|mode| mode.is_unstable()) {
+            results::write_mode(folder.as_ref(), &brake, &system, friction, mode)?;
+        }
+        let rows: Vec<ModeRow> =
+            found.modes.iter().enumerate().map(|(i, mode)| ModeRow::new(friction, i, mode)).collect();
+        details += &modes_text(&rows, &found.count, found.n_solves);
+        modes.extend(rows);
+        counts.push((friction, found.count));
+        steps.extend(equilibrium.steps.into_iter().map(|step| (friction, step)));
+        progress.advance();
+    }
+    progress.finish();
+    if let Some(folder) = folder {
+        let place = run.folder("stability");
+        let mut summary = format!("{}: complex modes {}-{} Hz\n\n", brake.model.title, band[0], band[1]);
+        summary += &tables::sweep(&modes, &counts);
+        summary += &format!("\n{}\n", tables::verdict(&modes));
+        summary += &costs_text(&sweep.costs(), start.elapsed().as_secs_f64(), comm.size());
+        summary += &files_text(&place.display().to_string());
+        folder.write("modes.csv", |out| tables::modes(out, &modes))?;
+        results::csv_table(&folder, "contact.csv", |out| tables::pairs(out, &pairs))?;
+        results::csv_table(&folder, "convergence.csv", |out| tables::convergence(out, &steps))?;
+        folder.write("details.txt", |out| out.write_all(details.as_bytes()))?;
+        folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
+        folder.finish()?;
+        print!("{summary}");
+    }
+    Ok(())
+}
+
+/// The modes of one friction value, for people.
+fn modes_text(rows: &[ModeRow], count: &Count, n_solves: usize) -> String {
+    let mut text = format!(
+        "  {} modes; below {:.1} Hz {} found, {} by inertia; {n_solves} solves\n  mode  frequency Hz  growth 1/s  damping %  backward error\n",
+        rows.len(),
+        count.below,
+        count.found,
+        count.expected
+    );
+    for row in rows {
+        let mark = if row.unstable { "  unstable" } else { "" };
+        text += &format!(
+            "  {:>4}  {:>12.3}  {:>+10.3}  {:>9.4}  {:>14.1e}{mark}\n",
+            row.mode,
+            row.frequency,
+            row.growth_rate,
+            100.0 * row.damping_ratio,
+            row.backward_error
+        );
+    }
+    text
+}
+
+fn costs_text(costs: &[FactorStats; 2], seconds: f64, ranks: usize) -> String {
+    let mut text = format!("\n{seconds:.1} s on {ranks} rank{}\n", if ranks == 1 { "" } else { "s" });
+    for (name, cost) in ["LU", "LDL^T"].iter().zip(costs) {
+        if cost.n_factorisations > 0 {
+            text += &format!(
+                "{name}: {} analyses {:.1} s, {} factorisations {:.1} s, {:.0} M entries, {:.0} MB, ordering {}\n",
+                cost.n_analyses,
+                cost.analysis_seconds,
+                cost.n_factorisations,
+                cost.factorisation_seconds,
+                1e-6 * cost.entries,
+                cost.used_mb,
+                ORDERING.get(cost.ordering as usize).unwrap_or(&"?")
+            );
+        }
+    }
+    text
+}
+
+fn files_text(place: &str) -> String {
+    format!(
+        "\nresults:\n  {place}/modes.csv        all modes\n  {place}/contact.csv      contact pairs\n  \
+         {place}/details.txt      equilibria and modes in words\n  {place}/equilibrium_*.vtu, contact_*.vtu, mode_*.vtu for ParaView\n"
+    )
+}

@@ -1,0 +1,122 @@
+//! `squeal static`: equilibria.
+
+use crate::equilibrium::Step;
+use crate::petsc::Comm;
+use crate::report::tables;
+use crate::sweep::{Event, Sweep};
+use crate::{Error, Result};
+
+use super::brake::Brake;
+use super::progress::Progress;
+use super::results::{self, State};
+use super::Run;
+
+pub fn run(comm: &Comm, run: &Run) -> Result<()> {
+    let brake = Brake::read(comm, &run.model)?;
+    let frictions = brake.frictions(run.friction.as_ref())?;
+    let folder = results::folder(comm, run, "static")?;
+    let progress = Progress::new(comm, frictions.len());
+    progress.say("assembling");
+    let families = brake.families()?;
+    let system = brake.assemble(comm, &families)?;
+    let mut sweep = Sweep::new(&system, &brake.interface)?;
+    let (mut rows, mut steps) = (Vec::new(), Vec::new());
+    let mut summary = format!("{}\n", brake.model.title);
+    for &friction in &frictions {
+        let outcome = sweep.equilibrium(friction, &mut |event| say(&progress, &event));
+        let equilibrium = match outcome {
+            Ok(equilibrium) => equilibrium,
+            Err(error) => return Err(save_last(error, comm, &brake, &system, &sweep, folder)),
+        };
+        let state = State::new(&brake, &families, &system, &equilibrium)?;
+        summary += &equilibrium_text(&brake, &state, &equilibrium.steps);
+        rows.extend(state.pair_rows(&brake));
+        if let Some(folder) = &folder {
+            state.write(folder, &brake, &equilibrium.responses)?;
+        }
+        steps.extend(equilibrium.steps.into_iter().map(|step| (friction, step)));
+        progress.advance();
+    }
+    progress.finish();
+    if let Some(folder) = folder {
+        results::csv_table(&folder, "contact.csv", |out| tables::pairs(out, &rows))?;
+        results::csv_table(&folder, "convergence.csv", |out| tables::convergence(out, &steps))?;
+        summary += &format!("results in {}\n", run.folder("static").display());
+        folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
+        folder.finish()?;
+        print!("{summary}");
+    }
+    Ok(())
+}
+
+/// What a sweep is doing, for a person who waits.
+pub fn say(progress: &Progress, event: &Event) {
+    match event {
+        Event::Newton(label, i, it) => {
+            progress.say(format!("{label}: iteration {i}, residual {:.1e}, {} closed", it.residual, it.counts.closed()));
+        }
+        Event::Modes(converged, wanted, solves) => {
+            progress.say(format!("modes: {converged} of {wanted} eigenvalues, {solves} solves"));
+        }
+    }
+}
+
+/// The report of one equilibrium.
+pub fn equilibrium_text(brake: &Brake, state: &State, steps: &[Step]) -> String {
+    let mut text = format!("\nfriction {:.3}\n", state.friction);
+    for step in steps {
+        let last = step.iterations.last().expect("a step has its start");
+        text += &format!(
+            "  {}: {} iterations, residual {:.1e}, {} open, {} sticking, {} slipping\n",
+            step.label,
+            step.iterations.len() - 1,
+            last.residual,
+            last.counts.open,
+            last.counts.stick,
+            last.counts.slip
+        );
+    }
+    let width = brake.interface.pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
+    text += &format!(
+        "  {:width$}  {:>6} {:>6} {:>6}  {:>12} {:>14} {:>10}\n",
+        "pair", "open", "stick", "slip", "normal N", "tangential N", "peak MPa"
+    );
+    for (pair, forces) in brake.interface.pairs.iter().zip(&state.balance.pairs) {
+        let counts = forces.counts;
+        text += &format!(
+            "  {:width$}  {:>6} {:>6} {:>6}  {:>12.2} {:>14.2} {:>10.3}\n",
+            pair.name,
+            counts.open,
+            counts.stick,
+            counts.slip,
+            forces.normal,
+            forces.tangential,
+            1e-6 * forces.peak_pressure
+        );
+    }
+    let checks: Vec<String> = state.checks(brake).lines().map(|line| format!("  {line}\n")).collect();
+    text + &checks.concat()
+}
+
+/// Keeps the state in which a solve gave up, and says where.
+pub fn save_last(
+    error: Error,
+    comm: &Comm,
+    brake: &Brake,
+    system: &crate::assembly::System,
+    sweep: &Sweep,
+    folder: Option<crate::report::folder::Folder>,
+) -> Error {
+    let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return error };
+    let saved = results::write_last(folder.as_ref(), brake, system, u).and_then(|()| match folder {
+        Some(folder) => {
+            folder.write("summary.txt", |out| writeln!(out, "not converged: {reason}"))?;
+            folder.finish()
+        }
+        None => Ok(()),
+    });
+    match comm.agree(saved) {
+        Ok(()) => Error::NotConverged(format!("{reason}. The last state is in last_state.vtu of the output folder")),
+        Err(_) => error,
+    }
+}
