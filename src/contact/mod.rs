@@ -1,6 +1,7 @@
-//! Contact: where surfaces meet (search) and how a body is seen there (trace).
+//! Contact: where surfaces meet (search), how a body is seen there (trace), and what acts (laws).
 
 mod facet;
+pub mod law;
 mod projection;
 pub mod search;
 #[cfg(test)]
