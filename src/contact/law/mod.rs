@@ -42,7 +42,7 @@ pub struct Point {
     /// Whether the point may open.
     pub separation: bool,
     /// Pressure by penetration.
-    pub law: NormalLaw,
+    pub normal_law: NormalLaw,
     /// What acts in the tangent plane.
     pub tangential: Tangential,
 }
@@ -166,7 +166,7 @@ mod testing {
                     gap,
                     touching: gap <= 0.0,
                     separation,
-                    law,
+                    normal_law: law,
                     tangential,
                 }
             },

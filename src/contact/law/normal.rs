@@ -18,7 +18,7 @@ pub(super) struct Normal {
 /// - cubic: `p = w (k1 d + k3 d^3)`
 pub(super) fn two_sided(point: &Point, d: f64) -> Normal {
     let w = point.weight;
-    match point.law {
+    match point.normal_law {
         NormalLaw::Linear { stiffness: k } => Normal {
             force: w * k * d,
             stiffness: w * k,
@@ -49,7 +49,7 @@ mod tests {
             gap: 0.0,
             touching: true,
             separation: true,
-            law: NormalLaw::Linear { stiffness: 3.0 },
+            normal_law: NormalLaw::Linear { stiffness: 3.0 },
             tangential: super::super::Tangential::Frictionless,
         };
         let linear = Normal {
@@ -58,7 +58,7 @@ mod tests {
         };
         assert_eq!(normal(&point, 0.5), Some(linear));
         assert_eq!(normal(&point, -0.5), None);
-        point.law = NormalLaw::Cubic { k1: 3.0, k3: 4.0 };
+        point.normal_law = NormalLaw::Cubic { k1: 3.0, k3: 4.0 };
         let cubic = Normal {
             force: 4.0,
             stiffness: 12.0,

@@ -239,7 +239,7 @@ mod tests {
             gap: 0.0,
             touching: true,
             separation: true,
-            law: crate::model::NormalLaw::Linear { stiffness: 2e13 },
+            normal_law: crate::model::NormalLaw::Linear { stiffness: 2e13 },
             tangential: Tangential::Sliding {
                 direction: [1.0, 0.0, 0.0],
                 speed: 0.5,
