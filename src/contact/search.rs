@@ -163,11 +163,10 @@ impl Target {
             if squared.sqrt() > nearest + tolerance {
                 break;
             }
-            if let Some(hit) = self.facing(candidate.data, x, &point.normal) {
-                if hit.projection.distance <= reach {
-                    nearest = nearest.min(hit.projection.distance);
-                    hits.push(hit);
-                }
+            let hit = self.facing(candidate.data, x, &point.normal);
+            if let Some(hit) = hit.filter(|hit| hit.projection.distance <= reach) {
+                nearest = nearest.min(hit.projection.distance);
+                hits.push(hit);
             }
         }
         hits.into_iter()
@@ -201,12 +200,6 @@ fn found_point(node: u32, nodes: &[[f64; 3]], point: &Midside, hit: &Hit) -> Fou
         gap: (Vector3::from(position) - hit.projection.position).dot(&hit.normal),
         distance: hit.projection.distance,
     }
-}
-
-/// How many of `points` are nodes of the master themselves, as in a mesh whose bodies were merged where they touch.
-pub(super) fn shared_nodes(points: &[FoundPoint], master: &Surface) -> usize {
-    let nodes: std::collections::BTreeSet<u32> = master.facets.iter().flatten().copied().collect();
-    points.iter().filter(|p| nodes.contains(&p.node)).count()
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Surfaces for the tests of this room.
 
 use super::facet::{Facet, NODES};
-use crate::mesh::Surface;
+use crate::mesh::{Mesh, Surface};
+use crate::model::{Contact, Model, NormalLaw, Rotation};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -77,6 +78,62 @@ pub fn oriented(surface: &Surface, nodes: &[[f64; 3]], outward: [f64; 3]) -> Sur
             .collect(),
         tets: surface.tets.clone(),
     }
+}
+
+/// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.
+pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
+    let rotation = Rotation {
+        part: "disc".into(),
+        axis: [0.0, 0.0, 1.0],
+        through: [0.0; 3],
+        speed: 5.0,
+        line: 1,
+    };
+    Model {
+        file: "brake.toml".into(),
+        title: String::new(),
+        mesh_file: "brake.msh".into(),
+        mesh_unit: 1.0,
+        parts: Vec::new(),
+        fixes: Vec::new(),
+        rotations: if turning { vec![rotation] } else { Vec::new() },
+        contacts,
+        connectors: Vec::new(),
+        loads: Vec::new(),
+        band: [0.0, 1.0],
+        swept: Vec::new(),
+        frictions: Vec::new(),
+    }
+}
+
+/// A linear contact of 2e13 N/m3 that may open, with friction 0.5.
+pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
+    Contact {
+        name: name.into(),
+        slave: slave.into(),
+        master: master.into(),
+        law: NormalLaw::Linear { stiffness: 2e13 },
+        friction: 0.5,
+        stick: None,
+        separation: true,
+        search_distance: None,
+        line: 12,
+    }
+}
+
+/// A mesh of surfaces only: each comes with the name of the part it lies on.
+pub fn skin(nodes: Vec<[f64; 3]>, surfaces: Vec<(&str, &str, Surface)>) -> Mesh {
+    let mut mesh = Mesh {
+        nodes,
+        ..Mesh::default()
+    };
+    for (name, part, mut surface) in surfaces {
+        surface.tets = vec![mesh.tet_part.len() as u32; surface.facets.len()];
+        mesh.tet_part.push(mesh.parts.len() as u32);
+        mesh.parts.push(part.into());
+        mesh.surfaces.insert(name.into(), surface);
+    }
+    mesh
 }
 
 /// Nodes (m) and 6-node physical surfaces of an ASCII Gmsh 4.1 mesh, unoriented; enough for the test mesh.
