@@ -1,1 +1,44 @@
-//! Contact: where surfaces meet (search), how a body is seen there (trace), and what acts (laws).
+//! Contact: where surfaces meet, how a body is seen there, and what acts.
+//!
+//! ```text
+//! Model + Mesh --search--> points: w, n, gap0 --+
+//!                     \--> trace:  g = B u -----+--> Interface
+//!                            Model --> laws ----+
+//! ```
+//!
+//! A contact point `a` sits at a midside node of the slave, with the weight `w = sum A_facet/3`: a uniform pressure
+//! on a quadratic triangle loads only the midsides, so this is its exact quadrature, and no weight is negative. At
+//! the reference geometry the point is projected once on the master, which gives the unit normal n (outward from the
+//! master), the initial gap, and the shape values N_j of the master's facet ([`search`]). From then on contact sees
+//! the bodies only through the relative displacement of the two,
+//!
+//! ```text
+//! g_a = u_a - sum_j N_j u_j      that is    g = B u      B: the trace
+//! ```
+//!
+//! and its answer is a force f(g) on the slave with `D = -df/dg` ([`law`]). To residual and tangent of the whole they
+//! bring
+//!
+//! ```text
+//! F_contact = -B^T f         K_contact = B^T D B
+//! ```
+//!
+//! ([`Trace::spread`] and [`Trace::expand_into`]). Reference nodes that follow a cloud of nodes, and super-elements,
+//! differ in B and in nothing else.
+//!
+//! This room is pure: it knows neither PETSc nor files.
+
+mod facet;
+pub mod interface;
+pub mod law;
+mod motion;
+mod pairing;
+mod projection;
+pub mod search;
+#[cfg(test)]
+mod testing;
+pub mod trace;
+
+pub use interface::{ContactPoint, Interface, Kind, Pair, Stage, Statistics};
+pub use law::{Point, Response, Status, Tangential};
+pub use trace::Trace;

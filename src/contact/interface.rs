@@ -1,0 +1,154 @@
+//! The interface: all contact pairs of a model on its mesh, ready to be evaluated point by point.
+
+use super::law::{self, Response, Status};
+use super::trace::Trace;
+use crate::error::Result;
+use crate::mesh::Mesh;
+use crate::model::{Model, NormalLaw};
+use std::ops::Range;
+
+/// Contact as the equations see it: points, their laws, and the trace that ties them to the bodies.
+#[derive(Debug, Clone, Default)]
+pub struct Interface {
+    /// Contact pairs, in the order of the model.
+    pub pairs: Vec<Pair>,
+    /// Contact points, pair by pair.
+    pub points: Vec<ContactPoint>,
+    /// `g = B u`; its point `a` is `points[a]`, its nodes are the mesh's.
+    pub trace: Trace,
+}
+
+/// A contact pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// Name in tables.
+    pub name: String,
+    /// Surface whose midside nodes are the contact points.
+    pub slave: String,
+    /// Surface they meet.
+    pub master: String,
+    /// Normal law.
+    pub law: NormalLaw,
+    /// Coefficient of friction in the model file.
+    pub friction: f64,
+    /// What acts in the tangent plane.
+    pub kind: Kind,
+    /// Whether the pair may open.
+    pub separation: bool,
+    /// Whether a sweep changes its friction.
+    pub swept: bool,
+    /// Its points in [`Interface::points`].
+    pub points: Range<usize>,
+    /// What the search found.
+    pub statistics: Statistics,
+}
+
+/// What acts in the tangent plane of a pair; [`law::Tangential`] says how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing.
+    Frictionless,
+    /// Sliding for ever: one of the two parts turns.
+    Sliding,
+    /// Elastic stick with a Coulomb bound.
+    StickSlip,
+    /// Elastic stick without bound.
+    Stick,
+}
+
+/// What the search found for a pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statistics {
+    /// Midside nodes of the slave that are too far from the master.
+    pub dropped: Vec<u32>,
+    /// Area of the slave surface, m2.
+    pub area: f64,
+    /// Sum of the points' weights, m2: the area in contact when all points are closed.
+    pub weight: f64,
+    /// Smallest and largest initial gap, m.
+    pub gap: [f64; 2],
+    /// Number of points that touch before any load.
+    pub touching: usize,
+}
+
+/// A contact point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint {
+    /// Index of its pair.
+    pub pair: usize,
+    /// The slave's node.
+    pub node: u32,
+    /// Position of that node, m.
+    pub position: [f64; 3],
+    /// Its law, with weight, normal and gap.
+    pub law: law::Point,
+}
+
+/// Which law acts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stage {
+    /// While the brake is brought together: [`law::settle`].
+    Settle,
+    /// The true law, with a coefficient of friction for each pair: [`law::respond`].
+    Solve {
+        /// By pair.
+        friction: Vec<f64>,
+    },
+}
+
+impl Interface {
+    /// Finds the contact points of every pair of the model.
+    ///
+    /// A pair slides where the parts of its two surfaces have different imposed velocities; t is the direction of the
+    /// master's velocity `omega x (x - through)` against the slave's.
+    ///
+    /// # Errors
+    /// With the model file's line: an unknown or empty surface, a pair without any point (with the closest distance
+    /// found), surfaces that share nodes, a surface over parts that turn differently, `stick` on a
+    /// sliding pair, friction without `stick` on another.
+    pub fn build(model: &Model, mesh: &Mesh) -> Result<Interface> {
+        let mut interface = Interface::default();
+        for contact in &model.contacts {
+            super::pairing::add_pair(&mut interface, model, mesh, contact)?;
+        }
+        Ok(interface)
+    }
+
+    /// The coefficient of friction of each pair as the model file has it.
+    pub fn frictions(&self) -> Vec<f64> {
+        self.pairs.iter().map(|pair| pair.friction).collect()
+    }
+
+    /// What point `a` answers to its relative displacement g (m, from [`Trace::gap`]).
+    ///
+    /// # Panics
+    /// Where `a` is no point or the stage has not one friction a pair, as the methods below.
+    pub fn respond(&self, a: usize, g: [f64; 3], stage: &Stage) -> Response {
+        let point = &self.points[a];
+        match stage {
+            Stage::Settle => law::settle(&point.law, g),
+            Stage::Solve { friction } => law::respond(&point.law, friction[point.pair], g),
+        }
+    }
+
+    /// Tangent D (N/m, by rows) of point `a` for stability, its status frozen: [`law::linearise`].
+    pub fn linearise(
+        &self,
+        a: usize,
+        g: [f64; 3],
+        status: Status,
+        friction: &[f64],
+    ) -> [[f64; 3]; 3] {
+        let point = &self.points[a];
+        law::linearise(&point.law, friction[point.pair], g, status)
+    }
+
+    /// Friction damping block (N s/m, by rows) of point `a` under its normal force (N): [`law::friction_damping`].
+    pub fn friction_damping(&self, a: usize, normal_force: f64, friction: &[f64]) -> [[f64; 3]; 3] {
+        let point = &self.points[a];
+        law::friction_damping(&point.law, friction[point.pair], normal_force)
+    }
+}
+
+#[cfg(test)]
+mod tests;

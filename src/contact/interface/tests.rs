@@ -1,0 +1,268 @@
+//! Interfaces of the test brake and of plates, and what is refused.
+
+use super::*;
+use crate::contact::testing::{contact, flipped, model, oriented, patch, read_surfaces, skin};
+use crate::model::Contact;
+use nalgebra::Vector3;
+
+/// The two pads on their disc.
+fn brake() -> (Interface, Mesh) {
+    let text = include_str!("../../../tests/data/pads_on_disc.msh");
+    let (nodes, found) = read_surfaces(text, 1e-3);
+    let facing = |name: &str, z: f64| oriented(&found[name], &nodes, [0.0, 0.0, z]);
+    let surfaces = vec![
+        ("disc_inner_face", "disc", facing("disc_inner_face", -1.0)),
+        ("disc_outer_face", "disc", facing("disc_outer_face", 1.0)),
+        (
+            "lining_inner_face",
+            "lining_inner",
+            facing("lining_inner_face", 1.0),
+        ),
+        (
+            "lining_outer_face",
+            "lining_outer",
+            facing("lining_outer_face", -1.0),
+        ),
+    ];
+    let mesh = skin(nodes.clone(), surfaces);
+    let pads = vec![
+        contact("inner", "lining_inner_face", "disc_inner_face"),
+        contact("outer", "lining_outer_face", "disc_outer_face"),
+    ];
+    let interface = Interface::build(&model(pads, true), &mesh).unwrap();
+    (interface, mesh)
+}
+
+/// A plate "pad" on a plate "disc" at a distance, both unit squares.
+fn plates(distance: f64) -> Mesh {
+    let mut nodes = Vec::new();
+    let pad = flipped(&patch(&mut nodes, [3, 3], |u, v| [u, v, distance]));
+    let disc = patch(&mut nodes, [4, 4], |u, v| [u, v, 0.0]);
+    skin(
+        nodes,
+        vec![("pad_face", "pad", pad), ("disc_face", "disc", disc)],
+    )
+}
+
+fn pad() -> Contact {
+    contact("pad", "pad_face", "disc_face")
+}
+
+fn refused(contact: Contact, turning: bool, mesh: &Mesh) -> String {
+    Interface::build(&model(vec![contact], turning), mesh)
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn pads_on_a_disc_slide_along_the_circles_of_the_disc() {
+    let (interface, _) = brake();
+    assert_eq!(interface.points.len(), 236);
+    assert_eq!(interface.trace.len(), 236);
+    assert_eq!(interface.pairs[1].points, 118..236);
+    for pair in &interface.pairs {
+        let found = &pair.statistics;
+        assert_eq!((pair.kind, pair.swept), (Kind::Sliding, true));
+        assert_eq!((found.dropped.len(), found.touching), (0, 118));
+        assert!((found.weight / 4.495969950628393e-3 - 1.0).abs() < 1e-12);
+    }
+    for point in &interface.points {
+        let law::Tangential::Sliding { direction, speed } = point.law.tangential else {
+            panic!("{point:?} does not slide");
+        };
+        let [x, y, _] = point.position;
+        let radius = x.hypot(y);
+        let circle = Vector3::new(-y, x, 0.0) / radius;
+        assert!((Vector3::from(direction) - circle).norm() < 1e-14);
+        assert!((speed - 5.0 * radius).abs() < 1e-14);
+    }
+}
+
+/// Sum of forces and of moments about the origin that all points put on the slaves, and on all nodes together.
+fn resultants(
+    interface: &Interface,
+    mesh: &Mesh,
+    stage: &Stage,
+    g: impl Fn(&ContactPoint) -> [f64; 3],
+) -> ([Vector3<f64>; 2], [Vector3<f64>; 2]) {
+    let mut slaves = [Vector3::zeros(); 2];
+    let mut all = [Vector3::zeros(); 2];
+    for (a, point) in interface.points.iter().enumerate() {
+        let force = interface.respond(a, g(point), stage).force;
+        slaves[0] += Vector3::from(force);
+        slaves[1] += Vector3::from(point.position).cross(&Vector3::from(force));
+        interface.trace.spread(a, force, |node, f| {
+            all[0] += Vector3::from(f);
+            all[1] += Vector3::from(mesh.nodes[node as usize]).cross(&Vector3::from(f));
+        });
+    }
+    (slaves, all)
+}
+
+#[test]
+fn friction_turns_the_pads_with_the_disc_and_every_force_has_its_opposite() {
+    let (interface, mesh) = brake();
+    let stage = Stage::Solve {
+        friction: vec![0.4, 0.2],
+    };
+    let depth = 1e-8;
+    let press = |p: &ContactPoint| p.law.normal.map(|n| -depth * n);
+    let ([force, moment], [all, all_moments]) = resultants(&interface, &mesh, &stage, press);
+    // sum p = k d A on each pad; the torque on them is mu sum p r about +z
+    let pressed = 2e13 * depth * 4.495969950628393e-3;
+    let arms: Vec<f64> = interface
+        .pairs
+        .iter()
+        .map(|pair| {
+            let points = interface.points[pair.points.clone()].iter();
+            points
+                .map(|p| p.law.weight * p.position[0].hypot(p.position[1]))
+                .sum()
+        })
+        .collect();
+    let torque = 2e13 * depth * (0.4 * arms[0] + 0.2 * arms[1]);
+    assert!(force.z.abs() < 1e-9 * pressed);
+    // The gaps are rounding of positions, 1e-10 of the depth.
+    assert!((moment.z / torque - 1.0).abs() < 1e-9);
+    assert!(all.norm() < 1e-12 * pressed && all_moments.norm() < 1e-12 * pressed);
+}
+
+#[test]
+fn a_brake_that_settles_has_no_friction() {
+    let (interface, mesh) = brake();
+    let press = |p: &ContactPoint| p.law.normal.map(|n| -1e-8 * n);
+    let ([_, moment], _) = resultants(&interface, &mesh, &Stage::Settle, press);
+    assert!(moment.z.abs() < 1e-12);
+    // All pads touch, so pulling them off is resisted, too.
+    let lift = |p: &ContactPoint| p.law.normal.map(|n| 1e-8 * n);
+    for (a, point) in interface.points.iter().enumerate() {
+        let answer = interface.respond(a, lift(point), &Stage::Settle);
+        assert!(answer.normal_force < 0.0 && answer.status == Status::Slip);
+        let solved = Stage::Solve {
+            friction: interface.frictions(),
+        };
+        assert_eq!(
+            interface.respond(a, lift(point), &solved).status,
+            Status::Open
+        );
+    }
+}
+
+#[test]
+fn pairs_at_rest_stick_and_each_pair_has_its_own_friction() {
+    let stuck = Contact {
+        stick: Some(1e13),
+        ..pad()
+    };
+    let mut other = stuck.clone();
+    other.name = "other".into();
+    let interface = Interface::build(&model(vec![stuck, other], false), &plates(0.0)).unwrap();
+    assert!(
+        interface
+            .pairs
+            .iter()
+            .all(|p| p.kind == Kind::StickSlip && !p.swept)
+    );
+    assert_eq!(interface.frictions(), [0.5, 0.5]);
+    let stage = Stage::Solve {
+        friction: vec![0.5, 0.1],
+    };
+    // trial w k_t 1e-8 against mu w k_n 2e-8: sticks at 0.5, slips at 0.1
+    let g = [1e-8, 0.0, -2e-8];
+    let second = interface.pairs[1].points.start;
+    assert_eq!(interface.respond(0, g, &stage).status, Status::Stick);
+    let slip = interface.respond(second, g, &stage);
+    assert_eq!(slip.status, Status::Slip);
+    assert!((slip.force[0] + 0.1 * slip.normal_force).abs() < 1e-12 * slip.normal_force);
+    // For stability both stick.
+    let frozen = interface.linearise(second, g, slip.status, &[0.5, 0.1]);
+    assert!((frozen[0][0] / (1e13 * interface.points[second].law.weight) - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn points_at_a_distance_do_not_touch() {
+    let wide = Contact {
+        search_distance: Some(1.0),
+        ..pad()
+    };
+    let interface = Interface::build(&model(vec![wide], true), &plates(0.01)).unwrap();
+    let found = &interface.pairs[0].statistics;
+    assert_eq!(found.touching, 0);
+    assert!((found.gap[0] - 0.01).abs() < 1e-15 && (found.gap[1] - 0.01).abs() < 1e-15);
+    let rest = [0.0; 3];
+    assert_eq!(
+        interface.respond(0, rest, &Stage::Settle).status,
+        Status::Open
+    );
+}
+
+#[test]
+fn a_named_sweep_takes_only_the_pairs_it_names() {
+    let mut second = pad();
+    second.name = "second".into();
+    let mut brake = model(vec![pad(), second], true);
+    brake.swept = vec!["second".into()];
+    let interface = Interface::build(&brake, &plates(0.0)).unwrap();
+    let swept: Vec<_> = interface.pairs.iter().map(|p| p.swept).collect();
+    assert_eq!(swept, [false, true]);
+}
+
+#[test]
+fn a_pair_without_points_is_refused_with_the_closest_distance() {
+    let message = refused(pad(), true, &plates(0.7));
+    assert!(message.starts_with("brake.toml:12: contact \"pad\": none of the 33 points"));
+    assert!(message.contains("closest is 7.000e-1 m"), "{message}");
+    let near = Contact {
+        search_distance: Some(0.5),
+        ..pad()
+    };
+    assert!(refused(near, true, &plates(0.7)).contains("search distance of 5.000e-1 m"));
+}
+
+#[test]
+fn surfaces_that_look_the_same_way_are_refused() {
+    let mut mesh = plates(0.0);
+    let face = mesh.surfaces.get_mut("pad_face").unwrap();
+    *face = flipped(face);
+    assert!(refused(pad(), true, &mesh).contains("no facet of \"disc_face\" faces"));
+}
+
+#[test]
+fn unknown_surfaces_are_refused_with_those_that_exist() {
+    let message = refused(contact("pad", "pad_face", "disk_face"), true, &plates(0.0));
+    assert!(message.contains("no surface \"disk_face\"; it has \"disc_face\", \"pad_face\""));
+}
+
+#[test]
+fn merged_surfaces_are_refused() {
+    let mut mesh = plates(0.0);
+    let merged = flipped(&mesh.surfaces["disc_face"]);
+    mesh.surfaces.get_mut("pad_face").unwrap().facets = merged.facets;
+    mesh.surfaces.get_mut("pad_face").unwrap().tets = vec![0; 32];
+    assert!(refused(pad(), true, &mesh).contains("56 nodes belong to both surfaces"));
+}
+
+#[test]
+fn stick_belongs_to_pairs_at_rest_and_to_no_others() {
+    let stuck = Contact {
+        stick: Some(1e13),
+        ..pad()
+    };
+    assert!(refused(stuck, true, &plates(0.0)).contains("Remove `stick`"));
+    assert!(refused(pad(), false, &plates(0.0)).contains("Give stick in N/m3"));
+    let free = Contact {
+        friction: 0.0,
+        ..pad()
+    };
+    let interface = Interface::build(&model(vec![free], false), &plates(0.0)).unwrap();
+    assert_eq!(interface.pairs[0].kind, Kind::Frictionless);
+}
+
+#[test]
+fn a_surface_over_parts_that_turn_differently_is_refused() {
+    let mut mesh = plates(0.0);
+    mesh.surfaces.get_mut("disc_face").unwrap().tets[3] = 0;
+    assert!(
+        refused(pad(), true, &mesh).contains("\"disc_face\" lies on parts that turn differently")
+    );
+}

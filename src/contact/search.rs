@@ -1,0 +1,206 @@
+//! The search: where the contact points of a slave surface meet the master.
+//!
+//! Contact points are the midside nodes of the slave's facets, each with the weight `w = sum A_facet/3` over the
+//! facets around it. Each is projected on the closest of the master's facets that *face* it,
+//! `n_slave . n_master < -0.5`: without that condition points beside an edge grab the wrong wall.
+//!
+//! A tree of the facets' boxes yields candidates in the order of their boxes' distance, and the search of a point
+//! ends at the first box beyond the best facet found. The result does not depend on the order of the tree: among facets
+//! whose distances agree (a point that projects on a common edge) the lowest index is taken.
+
+use super::facet::{Facet, NODES, shape};
+use super::projection::{Projection, project};
+use crate::mesh::Surface;
+use nalgebra::Vector3;
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
+use std::collections::BTreeMap;
+
+/// Facets face each other where the product of their unit normals is below this.
+const FACING: f64 = -0.5;
+
+/// Distances that differ by less than this fraction of the slave's facet size are equal.
+const TIE: f64 = 1e-9;
+
+/// What the search may be told.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// Points farther than this from the master are dropped, m.
+    ///
+    /// Where none is given, each point has half the mean edge length of the slave's facets around it. The reason:
+    /// a point stands for the patch of surface up to about half an edge away; if the master is farther than that
+    /// no part of the patch lies over it. The gap between two meshes of one curved wall of radius R, about `h^2/8R`,
+    /// stays below `h/2` as long as `h < 4R`.
+    pub search_distance: Option<f64>,
+}
+
+/// A contact point and where it meets the master.
+#[derive(Debug, Clone, Copy)]
+pub struct FoundPoint {
+    /// The slave's midside node.
+    pub node: u32,
+    /// `w = sum A_facet/3`, m2.
+    pub weight: f64,
+    /// Position of the slave node, m.
+    pub position: [f64; 3],
+    /// Mean edge length of the slave's facets around the node, m.
+    pub size: f64,
+    /// Index of the master's facet in its surface.
+    pub facet: usize,
+    /// Shape functions of the facet's six nodes at the projection.
+    pub shape: [f64; 6],
+    /// The master's outward unit normal n at the projection.
+    pub normal: [f64; 3],
+    /// Initial gap `(x - x_projection).n`, m; negative where the surfaces overlap.
+    pub gap: f64,
+    /// Distance `|x - x_projection|`, m; above `|gap|` where the point lies beyond an edge of the master.
+    pub distance: f64,
+}
+
+/// What a search has found.
+#[derive(Debug, Clone, Default)]
+pub struct Found {
+    /// The points that meet the master, by rising node index.
+    pub points: Vec<FoundPoint>,
+    /// The slave's midside nodes that do not, by rising index.
+    pub dropped: Vec<u32>,
+    /// Area of the slave surface, m2; the weights of all points, dropped ones included, add up to it.
+    pub area: f64,
+}
+
+/// Finds the contact points of `slave` on `master`. Both refer to `nodes`, m.
+///
+/// A degenerate facet of the master (no normal) faces nothing and is passed over.
+pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Options) -> Found {
+    let target = Target::new(master, nodes);
+    let (candidates, area) = midside_nodes(slave, nodes);
+    let mut found = Found {
+        area,
+        ..Found::default()
+    };
+    for (node, point) in candidates {
+        let reach = options.search_distance.unwrap_or(0.5 * point.size());
+        match target.closest(&Vector3::from(nodes[node as usize]), &point, reach) {
+            Some(hit) => found.points.push(found_point(node, nodes, &point, &hit)),
+            None => found.dropped.push(node),
+        }
+    }
+    found
+}
+
+/// What the slave's facets around a midside node add up to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Midside {
+    /// `sum A/3`.
+    weight: f64,
+    /// `sum A n`, not normalised.
+    normal: Vector3<f64>,
+    /// Sum of the facets' sizes and their number.
+    sizes: (f64, f64),
+}
+
+impl Midside {
+    /// Mean edge length around the node.
+    fn size(&self) -> f64 {
+        self.sizes.0 / self.sizes.1
+    }
+}
+
+/// All midside nodes of a surface, by rising index, and the surface's area.
+fn midside_nodes(surface: &Surface, nodes: &[[f64; 3]]) -> (BTreeMap<u32, Midside>, f64) {
+    let mut found: BTreeMap<u32, Midside> = BTreeMap::new();
+    let mut total = 0.0;
+    for facet in &surface.facets {
+        let geometry = Facet::gather(nodes, facet);
+        let (area, size) = (geometry.area(), geometry.size());
+        total += area;
+        for k in 3..6 {
+            let point = found.entry(facet[k]).or_default();
+            point.weight += area / 3.0;
+            point.normal += area * geometry.normal(NODES[k]);
+            point.sizes.0 += size;
+            point.sizes.1 += 1.0;
+        }
+    }
+    (found, total)
+}
+
+/// The master's facets with a tree of their boxes.
+struct Target {
+    facets: Vec<Facet>,
+    tree: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>,
+}
+
+/// A facet of the master with a point's projection on it.
+struct Hit {
+    facet: usize,
+    projection: Projection,
+    normal: Vector3<f64>,
+}
+
+impl Target {
+    fn new(master: &Surface, nodes: &[[f64; 3]]) -> Self {
+        let facets: Vec<_> = master
+            .facets
+            .iter()
+            .map(|f| Facet::gather(nodes, f))
+            .collect();
+        let boxes = facets.iter().enumerate().map(|(index, facet)| {
+            let [low, high] = facet.bounds();
+            GeomWithData::new(Rectangle::from_corners(low.into(), high.into()), index)
+        });
+        let tree = RTree::bulk_load(boxes.collect());
+        Target { facets, tree }
+    }
+
+    /// The closest facing facet within `reach` of `x`; the lowest index of those equally close.
+    fn closest(&self, x: &Vector3<f64>, point: &Midside, reach: f64) -> Option<Hit> {
+        let tolerance = TIE * point.size();
+        let mut hits: Vec<Hit> = Vec::new();
+        let mut nearest = reach;
+        let boxes = self.tree.nearest_neighbor_iter_with_distance_2((*x).into());
+        for (candidate, squared) in boxes {
+            if squared.sqrt() > nearest + tolerance {
+                break;
+            }
+            let hit = self.facing(candidate.data, x, &point.normal);
+            if let Some(hit) = hit.filter(|hit| hit.projection.distance <= reach) {
+                nearest = nearest.min(hit.projection.distance);
+                hits.push(hit);
+            }
+        }
+        hits.into_iter()
+            .filter(|hit| hit.projection.distance <= nearest + tolerance)
+            .min_by_key(|hit| hit.facet)
+    }
+
+    /// Projects on a facet, unless its normal there does not face the slave's.
+    fn facing(&self, facet: usize, x: &Vector3<f64>, slave: &Vector3<f64>) -> Option<Hit> {
+        let projection = project(&self.facets[facet], x);
+        let normal = self.facets[facet].normal(projection.at);
+        (normal.dot(&slave.normalize()) < FACING).then_some(Hit {
+            facet,
+            projection,
+            normal,
+        })
+    }
+}
+
+/// Puts together what is known of a point that met the master.
+fn found_point(node: u32, nodes: &[[f64; 3]], point: &Midside, hit: &Hit) -> FoundPoint {
+    let position = nodes[node as usize];
+    FoundPoint {
+        node,
+        weight: point.weight,
+        position,
+        size: point.size(),
+        facet: hit.facet,
+        shape: shape(hit.projection.at),
+        normal: hit.normal.into(),
+        gap: (Vector3::from(position) - hit.projection.position).dot(&hit.normal),
+        distance: hit.projection.distance,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,194 @@
+//! Surfaces for the tests of this room.
+
+use super::facet::{Facet, NODES};
+use crate::mesh::{Mesh, Surface};
+use crate::model::{Contact, Model, NormalLaw, Rotation};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+
+/// A triangle of about unit size whose six nodes all lie a little off their places.
+pub fn bent_facet() -> impl Strategy<Value = Facet> {
+    let offsets = prop::array::uniform6(prop::array::uniform3(-0.08..0.08));
+    offsets.prop_map(|offsets| Facet {
+        nodes: std::array::from_fn(|j| {
+            Vector3::new(NODES[j][0], NODES[j][1], 0.0) + Vector3::from(offsets[j])
+        }),
+    })
+}
+
+/// A structured patch of `2 nu nv` quadratic facets: every node is `map(u, v)` with u, v in [0, 1], appended to
+/// `nodes`. Outward is the side of `map_u x map_v`.
+pub fn patch(
+    nodes: &mut Vec<[f64; 3]>,
+    [nu, nv]: [usize; 2],
+    map: impl Fn(f64, f64) -> [f64; 3],
+) -> Surface {
+    let first = nodes.len();
+    let (width, height) = (2 * nu + 1, 2 * nv + 1);
+    for j in 0..height {
+        for i in 0..width {
+            nodes.push(map(i as f64 / (2 * nu) as f64, j as f64 / (2 * nv) as f64));
+        }
+    }
+    let node = |i: usize, j: usize| (first + j * width + i) as u32;
+    let mut surface = Surface::default();
+    for (i, j) in (0..nv).flat_map(|j| (0..nu).map(move |i| (2 * i, 2 * j))) {
+        let [a, b, c, d] = [
+            node(i, j),
+            node(i + 2, j),
+            node(i + 2, j + 2),
+            node(i, j + 2),
+        ];
+        let middle = node(i + 1, j + 1);
+        let (south, east) = (node(i + 1, j), node(i + 2, j + 1));
+        let (north, west) = (node(i + 1, j + 2), node(i, j + 1));
+        surface.facets.push([a, b, c, south, east, middle]);
+        surface.facets.push([a, c, d, middle, north, west]);
+    }
+    surface.tets = vec![0; surface.facets.len()];
+    surface
+}
+
+/// The same facets seen from the other side.
+pub fn flipped(surface: &Surface) -> Surface {
+    Surface {
+        facets: surface
+            .facets
+            .iter()
+            .map(|&[a, b, c, ab, bc, ca]| [a, c, b, ca, bc, ab])
+            .collect(),
+        tets: surface.tets.clone(),
+    }
+}
+
+/// Turns every facet so that its normal at the first corner points along `outward`.
+pub fn oriented(surface: &Surface, nodes: &[[f64; 3]], outward: [f64; 3]) -> Surface {
+    let points_inward = |facet: &[u32; 6]| {
+        Facet::gather(nodes, facet)
+            .normal([0.0, 0.0])
+            .dot(&Vector3::from(outward))
+            < 0.0
+    };
+    let turned = flipped(surface);
+    let facets = surface.facets.iter().zip(&turned.facets);
+    Surface {
+        facets: facets
+            .map(|(f, t)| if points_inward(f) { *t } else { *f })
+            .collect(),
+        tets: surface.tets.clone(),
+    }
+}
+
+/// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.
+pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
+    let rotation = Rotation {
+        part: "disc".into(),
+        axis: [0.0, 0.0, 1.0],
+        through: [0.0; 3],
+        speed: 5.0,
+        line: 1,
+    };
+    Model {
+        file: "brake.toml".into(),
+        title: String::new(),
+        mesh_file: "brake.msh".into(),
+        mesh_unit: 1.0,
+        parts: Vec::new(),
+        fixes: Vec::new(),
+        rotations: if turning { vec![rotation] } else { Vec::new() },
+        contacts,
+        connectors: Vec::new(),
+        loads: Vec::new(),
+        band: [0.0, 1.0],
+        swept: Vec::new(),
+        frictions: Vec::new(),
+    }
+}
+
+/// A linear contact of 2e13 N/m3 that may open, with friction 0.5.
+pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
+    Contact {
+        name: name.into(),
+        slave: slave.into(),
+        master: master.into(),
+        law: NormalLaw::Linear { stiffness: 2e13 },
+        friction: 0.5,
+        stick: None,
+        separation: true,
+        search_distance: None,
+        line: 12,
+    }
+}
+
+/// A mesh of surfaces only: each comes with the name of the part it lies on.
+pub fn skin(nodes: Vec<[f64; 3]>, surfaces: Vec<(&str, &str, Surface)>) -> Mesh {
+    let mut mesh = Mesh {
+        nodes,
+        ..Mesh::default()
+    };
+    for (name, part, mut surface) in surfaces {
+        surface.tets = vec![mesh.tet_part.len() as u32; surface.facets.len()];
+        mesh.tet_part.push(mesh.parts.len() as u32);
+        mesh.parts.push(part.into());
+        mesh.surfaces.insert(name.into(), surface);
+    }
+    mesh
+}
+
+/// Nodes (m) and 6-node physical surfaces of an ASCII Gmsh 4.1 mesh, unoriented; enough for the test mesh.
+pub fn read_surfaces(text: &str, unit: f64) -> (Vec<[f64; 3]>, BTreeMap<String, Surface>) {
+    let section = |name: &str| -> Vec<Vec<&str>> {
+        let start = text.find(&format!("${name}\n")).unwrap() + name.len() + 2;
+        let end = text.find(&format!("$End{name}")).unwrap();
+        let lines = text[start..end].lines();
+        lines.map(|l| l.split_whitespace().collect()).collect()
+    };
+    let int = |word: &str| word.parse::<usize>().unwrap();
+
+    let names: BTreeMap<usize, String> = section("PhysicalNames")[1..]
+        .iter()
+        .filter(|w| w[0] == "2")
+        .map(|w| (int(w[1]), w[2].trim_matches('"').to_owned()))
+        .collect();
+
+    let entities = section("Entities");
+    let skipped = 1 + int(entities[0][0]) + int(entities[0][1]);
+    let physical: BTreeMap<usize, usize> = entities[skipped..][..int(entities[0][2])]
+        .iter()
+        .filter(|w| w[7] != "0")
+        .map(|w| (int(w[0]), int(w[8])))
+        .collect();
+
+    let mut nodes = Vec::new();
+    let mut index = BTreeMap::new();
+    let lines = section("Nodes");
+    let mut at = 1;
+    while at < lines.len() {
+        let n = int(lines[at][3]);
+        for k in 0..n {
+            index.insert(int(lines[at + 1 + k][0]), nodes.len() as u32);
+            let x = &lines[at + 1 + n + k];
+            nodes.push([0, 1, 2].map(|i| x[i].parse::<f64>().unwrap() * unit));
+        }
+        at += 1 + 2 * n;
+    }
+
+    let mut surfaces: BTreeMap<String, Surface> = BTreeMap::new();
+    let lines = section("Elements");
+    let mut at = 1;
+    while at < lines.len() {
+        let (tag, kind, n) = (int(lines[at][1]), lines[at][2], int(lines[at][3]));
+        if let (Some(name), "9") = (physical.get(&tag).and_then(|p| names.get(p)), kind) {
+            let surface = surfaces.entry(name.clone()).or_default();
+            for words in &lines[at + 1..][..n] {
+                surface
+                    .facets
+                    .push(std::array::from_fn(|j| index[&int(words[1 + j])]));
+                surface.tets.push(0);
+            }
+        }
+        at += 1 + n;
+    }
+    (nodes, surfaces)
+}
