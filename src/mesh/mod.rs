@@ -1,32 +1,31 @@
 //! The finite element mesh: nodes, 10-node tetrahedra grouped into parts, named surfaces and node sets.
+//!
+//! ```text
+//!  .msh --gmsh::sections--> tags, blocks, groups --gmsh::convert--> Mesh --check--> Model and Mesh agree
+//!                                                  (jacobian: none inverted; skin: facets outward)
+//! ```
+//!
+//! Physical volumes become parts, physical surfaces become [`Surface`]s, physical curves and points become node sets. The names are
+//! the only link between a mesh and a model file, so a name may mean one thing only.
+//!
+//! A tetrahedron's nodes, seen along the edge from corner 3 (formulas in [`jacobian`]):
+//!
+//! ```text
+//!            2
+//!          / | \            corners 0 1 2 3, positive volume: det(x1-x0, x2-x0, x3-x0) > 0
+//!        6   9   5          midsides 4 = (0,1)  5 = (1,2)  6 = (2,0)
+//!      /     3     \                 7 = (0,3)  8 = (1,3)  9 = (2,3)
+//!    /   7       8   \      faces outward: (0,2,1) (0,1,3) (1,2,3) (2,0,3)
+//!   0 ------- 4 ------- 1
+//! ```
 
-use std::collections::BTreeMap;
+pub mod adjacency;
+mod check;
+mod gmsh;
+pub mod jacobian;
+pub mod quality;
+mod skin;
+mod types;
 
-/// A mesh of 10-node tetrahedra in metres.
-///
-/// Node order of a tetrahedron: corners 0-3, then the midsides of the edges
-/// (0,1) (1,2) (2,0) (0,3) (1,3) (2,3). Node order of a facet: corners 0-2, then the midsides of (0,1) (1,2) (2,0).
-#[derive(Debug, Clone, Default)]
-pub struct Mesh {
-    /// Coordinates of the nodes, m.
-    pub nodes: Vec<[f64; 3]>,
-    /// The tetrahedra, ten node indices each.
-    pub tets: Vec<[u32; 10]>,
-    /// For each tetrahedron the index of its part in `parts`.
-    pub tet_part: Vec<u32>,
-    /// Names of the parts (physical volumes).
-    pub parts: Vec<String>,
-    /// Named surfaces (physical surfaces).
-    pub surfaces: BTreeMap<String, Surface>,
-    /// Named node sets (physical curves and points; a surface's nodes are found through [`Mesh::node_set`]).
-    pub node_sets: BTreeMap<String, Vec<u32>>,
-}
-
-/// A named set of 6-node facets on the skin of the parts, each oriented so that its normal points out of the body.
-#[derive(Debug, Clone, Default)]
-pub struct Surface {
-    /// The facets, six node indices each.
-    pub facets: Vec<[u32; 6]>,
-    /// For each facet the index of the tetrahedron it belongs to.
-    pub tets: Vec<u32>,
-}
+pub use gmsh::read;
+pub use types::{Mesh, Surface};

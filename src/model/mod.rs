@@ -1,176 +1,46 @@
 //! The model file: what the user writes, checked and in SI units.
+//!
+//! ```text
+//!  file --toml, serde--> keys::File --one file a table: materials, bodies, contacts, loads, analysis--> Model
+//!                 (spans kept)                                                           (names and lines kept)
+//! ```
+//!
+//! A model file names things that the mesh defines (physical groups), so it is checked in two steps. [`read`] sees the file
+//! alone: keys, kinds, ranges, names defined within the file. [`Model::check_against`] sees the mesh too: names of surfaces, which
+//! pairs slide, what those need. Either way a message is
+//!
+//! ```text
+//! brake.toml:12: young must be above 0, not -1 (material "iron"). Give Pa, such as 110e9
+//! ```
+//!
+//! that is, where, what, of which item, and what to do. Nothing is guessed: an unknown key is an error that offers the nearest
+//! right one, and a number that no material can have is an error and not a warning.
+//!
+//! # Every key
+//!
+#![doc = concat!("```toml\n", include_str!("example.toml"), "```")]
 
-use std::path::PathBuf;
+mod analysis;
+mod bodies;
+mod contacts;
+mod elasticity;
+mod item;
+mod keys;
+mod loads;
+mod materials;
+pub mod names;
+mod read;
+mod source;
+#[cfg(test)]
+mod tests;
+mod types;
 
-/// Everything the user states about a brake, in SI units. Names of the mesh are still names here.
-#[derive(Debug, Clone)]
-pub struct Model {
-    /// The model file itself; names in messages refer to it.
-    pub file: PathBuf,
-    /// A line for titles.
-    pub title: String,
-    /// The mesh file (absolute, or relative to the current directory).
-    pub mesh_file: PathBuf,
-    /// Metres per unit of the mesh file.
-    pub mesh_unit: f64,
-    /// Parts, in the order of the file.
-    pub parts: Vec<Part>,
-    /// Fixed displacements.
-    pub fixes: Vec<Fix>,
-    /// Imposed velocity fields.
-    pub rotations: Vec<Rotation>,
-    /// Contact pairs.
-    pub contacts: Vec<Contact>,
-    /// Springs and dampers between mean motions.
-    pub connectors: Vec<Connector>,
-    /// Loads.
-    pub loads: Vec<Load>,
-    /// Frequency band of the modes wanted, Hz.
-    pub band: [f64; 2],
-    /// Names of the contacts whose friction a sweep changes (all sliding pairs where the file does not say).
-    pub swept: Vec<String>,
-    /// Friction values of the sweep (empty: as in the contacts).
-    pub frictions: Vec<f64>,
-}
+pub use read::{parse, read};
+pub use source::located;
+pub use types::{
+    Connector, Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction,
+    Rotation,
+};
 
-/// A physical volume with its material.
-#[derive(Debug, Clone)]
-pub struct Part {
-    /// Name of the physical volume.
-    pub name: String,
-    /// Its material.
-    pub material: Material,
-    /// Mass- and stiffness-proportional damping, `C = alpha M + beta K` (1/s, s).
-    pub rayleigh: Rayleigh,
-    /// Line of the model file.
-    pub line: usize,
-}
-
-/// A linear elastic material.
-#[derive(Debug, Clone)]
-pub struct Material {
-    /// Name in the model file.
-    pub name: String,
-    /// Density, kg/m3.
-    pub density: f64,
-    /// Elasticity, Pa, row-major, in Voigt order xx yy zz xy yz zx with engineering shear strains, in global axes.
-    pub elasticity: [[f64; 6]; 6],
-}
-
-/// Coefficients of proportional damping.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Rayleigh {
-    /// Mass coefficient, 1/s.
-    pub alpha: f64,
-    /// Stiffness coefficient, s.
-    pub beta: f64,
-}
-
-/// Displacements held at zero.
-#[derive(Debug, Clone)]
-pub struct Fix {
-    /// Physical surface, curve or point.
-    pub nodes: String,
-    /// Which of x, y, z.
-    pub axes: [bool; 3],
-    /// Line of the model file.
-    pub line: usize,
-}
-
-/// Rigid rotation imposed on the velocity of a part.
-#[derive(Debug, Clone)]
-pub struct Rotation {
-    /// The turning part.
-    pub part: String,
-    /// Unit vector of the axis.
-    pub axis: [f64; 3],
-    /// A point of the axis, m.
-    pub through: [f64; 3],
-    /// Speed, rad/s, right-handed about the axis.
-    pub speed: f64,
-    /// Line of the model file.
-    pub line: usize,
-}
-
-/// A contact pair.
-#[derive(Debug, Clone)]
-pub struct Contact {
-    /// Name in tables.
-    pub name: String,
-    /// Physical surface whose midside nodes are the contact points.
-    pub slave: String,
-    /// Physical surface that they meet.
-    pub master: String,
-    /// Normal law.
-    pub law: NormalLaw,
-    /// Coefficient of friction.
-    pub friction: f64,
-    /// Elastic stick, N/m3; none on pairs that slide for ever.
-    pub stick: Option<f64>,
-    /// Whether the pair may open.
-    pub separation: bool,
-    /// Points farther than this from the master are dropped, m.
-    pub search_distance: Option<f64>,
-    /// Line of the model file.
-    pub line: usize,
-}
-
-/// Pressure as a function of penetration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum NormalLaw {
-    /// `p = w k_n d`, k_n in N/m3.
-    Linear {
-        /// Penalty stiffness, N/m3.
-        stiffness: f64,
-    },
-    /// `p = w (k_1 d + k_3 d^3)`; on node-to-node elements `w = 1` and k_1 is in N/m, k_3 in N/m3.
-    Cubic {
-        /// Linear coefficient, N/m3.
-        k1: f64,
-        /// Cubic coefficient, N/m5.
-        k3: f64,
-    },
-}
-
-/// Spring and damper between the rigid motions that two node sets make on average.
-#[derive(Debug, Clone)]
-pub struct Connector {
-    /// Name in tables.
-    pub name: String,
-    /// The two node sets.
-    pub between: [String; 2],
-    /// The common reference point, m; the middle of the two centroids where the file does not say.
-    pub at: Option<[f64; 3]>,
-    /// Translational stiffness by axis, N/m.
-    pub stiffness: [f64; 3],
-    /// Rotational stiffness by axis, N m/rad.
-    pub rotational_stiffness: [f64; 3],
-    /// Translational damping by axis, N s/m.
-    pub damping: [f64; 3],
-    /// Line of the model file.
-    pub line: usize,
-}
-
-/// An external load.
-#[derive(Debug, Clone)]
-pub struct Load {
-    /// Name in tables.
-    pub name: String,
-    /// Physical surface or node set.
-    pub on: String,
-    /// What acts.
-    pub kind: LoadKind,
-    /// Line of the model file.
-    pub line: usize,
-}
-
-/// The kinds of load.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LoadKind {
-    /// A total force (N), the same on each node.
-    ForceByNode([f64; 3]),
-    /// A total force (N), spread as a uniform traction.
-    ForceByArea([f64; 3]),
-    /// Pressure (Pa), positive into the body.
-    Pressure(f64),
-}
+/// A model file that uses every key, with an explanation of each.
+pub const EXAMPLE: &str = include_str!("example.toml");

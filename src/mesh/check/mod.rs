@@ -1,0 +1,301 @@
+//! Whether model file and mesh go together, and what only both can tell: which contact pairs slide.
+
+use super::Mesh;
+use crate::model::{Contact, LoadKind, Model, Rotation, located, names};
+use crate::{Error, Result};
+
+impl Model {
+    /// Checks everything that takes the mesh: names, parts, surfaces, and what each contact pair needs.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with a line `file:line: what (item). what to do` for each thing that is wrong.
+    pub fn check_against(&self, mesh: &Mesh) -> Result<()> {
+        let mut check = Check {
+            model: self,
+            mesh,
+            messages: Vec::new(),
+        };
+        check.parts();
+        check.names();
+        check.loads();
+        self.contacts
+            .iter()
+            .for_each(|contact| check.contact(contact));
+        check.sweep();
+        if check.messages.is_empty() {
+            Ok(())
+        } else {
+            Err(Error::Input(check.messages.join("\n")))
+        }
+    }
+
+    /// The rotation under which a contact pair slides for ever: that of its master, where the slave does not turn.
+    ///
+    /// None on pairs that stick: neither part turns, or both turn together. Meant for a model that [`Model::check_against`] accepts.
+    pub fn sliding(&self, contact: &Contact, mesh: &Mesh) -> Option<&Rotation> {
+        match (
+            self.turning(&contact.slave, mesh),
+            self.turning(&contact.master, mesh),
+        ) {
+            (None, Some(rotation)) => Some(rotation),
+            _ => None,
+        }
+    }
+
+    /// Indices of the contacts whose friction a sweep changes: those it names, or all that slide.
+    pub fn swept_contacts(&self, mesh: &Mesh) -> Vec<usize> {
+        let is_swept = |contact: &Contact| {
+            if self.swept.is_empty() {
+                self.sliding(contact, mesh).is_some()
+            } else {
+                self.swept.contains(&contact.name)
+            }
+        };
+        (0..self.contacts.len())
+            .filter(|&i| is_swept(&self.contacts[i]))
+            .collect()
+    }
+
+    /// The rotation of the part that a surface lies on.
+    fn turning(&self, surface: &str, mesh: &Mesh) -> Option<&Rotation> {
+        let part = &mesh.parts[mesh.part_of_surface(surface)? as usize];
+        self.rotations
+            .iter()
+            .find(|rotation| &rotation.part == part)
+    }
+}
+
+struct Check<'a> {
+    model: &'a Model,
+    mesh: &'a Mesh,
+    messages: Vec<String>,
+}
+
+impl Check<'_> {
+    fn complain(&mut self, line: usize, message: String) {
+        self.messages.push(located(&self.model.file, line, message));
+    }
+
+    /// Parts of the file and physical volumes are the same.
+    fn parts(&mut self) {
+        let (model, mesh) = (self.model, self.mesh);
+        let volumes = || mesh.parts.iter().map(String::as_str);
+        for part in model
+            .parts
+            .iter()
+            .filter(|part| !mesh.parts.contains(&part.name))
+        {
+            let advice = names::advice(&part.name, volumes());
+            self.complain(
+                part.line,
+                format!(
+                    "the mesh has no physical volume (part {:?}). {advice}",
+                    part.name
+                ),
+            );
+        }
+        for (i, part) in model.parts.iter().enumerate() {
+            if model.parts[..i].iter().any(|other| other.name == part.name) {
+                self.complain(
+                    part.line,
+                    format!(
+                        "the part is there twice (part {:?}). Keep one of them",
+                        part.name
+                    ),
+                );
+            }
+        }
+        for volume in
+            volumes().filter(|volume| !model.parts.iter().any(|part| part.name == *volume))
+        {
+            let advice = format!("Add [part.{volume:?}] with a material");
+            self.complain(
+                model.mesh_line,
+                format!("a physical volume of the mesh is no part (volume {volume:?}). {advice}"),
+            );
+        }
+    }
+
+    /// Names of surfaces and node sets exist.
+    fn names(&mut self) {
+        let model = self.model;
+        for fix in &model.fixes {
+            self.node_set(&fix.nodes, fix.line, "fix");
+        }
+        for connector in &model.connectors {
+            for end in &connector.between {
+                self.node_set(
+                    end,
+                    connector.line,
+                    &format!("connector {:?}", connector.name),
+                );
+            }
+        }
+    }
+
+    /// Whether a surface or node set exists; complains where it does not.
+    fn node_set(&mut self, name: &str, line: usize, item: &str) -> bool {
+        let mesh = self.mesh;
+        if mesh.surfaces.contains_key(name) || mesh.node_sets.contains_key(name) {
+            return true;
+        }
+        let all = mesh
+            .surfaces
+            .keys()
+            .chain(mesh.node_sets.keys())
+            .map(String::as_str);
+        let advice = names::advice(name, all);
+        self.complain(
+            line,
+            format!("the mesh has no surface or node set {name:?} ({item}). {advice}"),
+        );
+        false
+    }
+
+    /// Whether a surface exists; complains where it does not, or is a curve or point.
+    fn surface(&mut self, name: &str, line: usize, item: &str) -> bool {
+        let mesh = self.mesh;
+        if mesh.surfaces.contains_key(name) {
+            return true;
+        }
+        let what = if mesh.node_sets.contains_key(name) {
+            format!("{name:?} is a physical curve or point, not a surface ({item})")
+        } else {
+            format!("the mesh has no physical surface {name:?} ({item})")
+        };
+        let advice = names::advice(name, mesh.surfaces.keys().map(String::as_str));
+        self.complain(line, format!("{what}. {advice}"));
+        false
+    }
+
+    /// Loads act on something; those by area on surfaces.
+    fn loads(&mut self) {
+        let model = self.model;
+        for load in &model.loads {
+            let item = format!("load {:?}", load.name);
+            match load.kind {
+                LoadKind::ForceByNode(_) => self.node_set(&load.on, load.line, &item),
+                LoadKind::ForceByArea(_) | LoadKind::Pressure(_) => {
+                    self.surface(&load.on, load.line, &item)
+                }
+            };
+        }
+    }
+
+    /// Both surfaces lie on one part each, not the same; then what the pair's motion asks for.
+    fn contact(&mut self, contact: &Contact) {
+        let (line, item) = (contact.line, format!("contact {:?}", contact.name));
+        let slave = self.contact_surface(&contact.slave, line, &item);
+        let master = self.contact_surface(&contact.master, line, &item);
+        let (Some(slave), Some(master)) = (slave, master) else {
+            return;
+        };
+        if slave == master {
+            let part = &self.mesh.parts[slave as usize];
+            self.complain(line, format!("slave and master both lie on the part {part:?} ({item}). Name surfaces of two parts"));
+            return;
+        }
+        self.motion(contact, &item);
+    }
+
+    /// The one part that a contact surface lies on; complains where there is no such part.
+    fn contact_surface(&mut self, name: &str, line: usize, item: &str) -> Option<u32> {
+        if !self.surface(name, line, item) {
+            return None;
+        }
+        let mesh = self.mesh;
+        if !mesh.surfaces[name].inner.is_empty() {
+            let (inner, all) = (
+                mesh.surfaces[name].inner.len(),
+                mesh.surfaces[name].facets.len(),
+            );
+            let what = format!(
+                "{inner} of {all} facets of {name:?} lie between two tetrahedra, not on the skin ({item})"
+            );
+            self.complain(
+                line,
+                format!("{what}. Mesh the two parts apart, without common nodes"),
+            );
+            return None;
+        }
+        let parts = mesh.parts_of_surface(name)?;
+        if let [part] = parts[..] {
+            return Some(part);
+        }
+        let on: Vec<&str> = parts
+            .iter()
+            .map(|&part| mesh.parts[part as usize].as_str())
+            .collect();
+        let what = format!(
+            "the surface {name:?} lies on several parts: {} ({item})",
+            on.join(", ")
+        );
+        self.complain(
+            line,
+            format!("{what}. Make a physical surface for each part, and a contact for each"),
+        );
+        None
+    }
+
+    /// A pair slides where the master alone turns; all others stick, and need `stick` where they have friction.
+    fn motion(&mut self, contact: &Contact, item: &str) {
+        let (model, line) = (self.model, contact.line);
+        let slave = model.turning(&contact.slave, self.mesh);
+        let master = model.turning(&contact.master, self.mesh);
+        let message = match (slave, master) {
+            (Some(slave), None) => format!(
+                "the slave's part {:?} turns, but the turning side must be the master ({item}). Swap slave and master",
+                slave.part
+            ),
+            (Some(slave), Some(master)) if !turn_together(slave, master) => format!(
+                "the parts {:?} and {:?} turn differently ({item}). Let one of the two stand still",
+                slave.part, master.part
+            ),
+            (None, Some(master)) if contact.stick.is_some() => format!(
+                "the pair slides for ever, as its master's part {:?} turns and its slave does not ({item}). Leave stick out",
+                master.part
+            ),
+            (None, Some(_)) => return,
+            _ if contact.stick.is_none() && self.has_friction(contact) => format!(
+                "the pair does not slide and has friction, but no stick ({item}). \
+                 Add stick in N/m3, such as half the normal stiffness, or set friction = 0"
+            ),
+            _ => return,
+        };
+        self.complain(line, message);
+    }
+
+    /// Whether a contact has friction, in the file or in the sweep.
+    fn has_friction(&self, contact: &Contact) -> bool {
+        let swept = self.model.swept.contains(&contact.name);
+        contact.friction > 0.0
+            || (swept && self.model.frictions.iter().any(|&friction| friction > 0.0))
+    }
+
+    /// A sweep changes something.
+    fn sweep(&mut self) {
+        let model = self.model;
+        if !model.frictions.is_empty() && model.swept_contacts(self.mesh).is_empty() {
+            let what = "no contact slides, so there is none to sweep (sweep)";
+            let advice = "Name contacts in it, or add a [[rotation]] of the disc";
+            self.complain(model.sweep_line, format!("{what}. {advice}"));
+        }
+    }
+}
+
+/// Whether two rotations give the same velocity field: the same angular velocity, and axes through the same points.
+fn turn_together(a: &Rotation, b: &Rotation) -> bool {
+    let omega = |r: &Rotation| r.axis.map(|x| x * r.speed);
+    let (omega_a, omega_b) = (omega(a), omega(b));
+    let gap: [f64; 3] = std::array::from_fn(|i| a.through[i] - b.through[i]);
+    // The axes coincide where (x_a - x_b) x omega = 0.
+    let arm: [f64; 3] = std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        gap[j] * a.axis[k] - gap[k] * a.axis[j]
+    });
+    let same_omega = (0..3).all(|i| (omega_a[i] - omega_b[i]).abs() <= 1e-9 * a.speed.abs());
+    same_omega && arm.iter().all(|x| x.abs() <= 1e-9)
+}
+
+#[cfg(test)]
+mod tests;

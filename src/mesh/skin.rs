@@ -1,0 +1,139 @@
+//! Which tetrahedron a facet belongs to, and the facet seen from outside it.
+
+use std::collections::HashMap;
+
+/// Local nodes of a tetrahedron's faces, corners then midsides, turning so that the normal points out.
+const FACES: [[usize; 6]; 4] = [
+    [0, 2, 1, 6, 5, 4],
+    [0, 1, 3, 4, 8, 7],
+    [1, 2, 3, 5, 9, 8],
+    [2, 0, 3, 6, 7, 9],
+];
+
+/// A face of a tetrahedron.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Face {
+    /// The tetrahedron.
+    pub tet: u32,
+    /// Nodes of the facet, turning so that its normal points out of the tetrahedron.
+    pub facet: [u32; 6],
+    /// Whether there is a tetrahedron on the other side, too.
+    pub inner: bool,
+}
+
+/// Finds the tetrahedra behind facets.
+pub struct Skin {
+    faces: HashMap<[u32; 3], Option<Face>>,
+}
+
+impl Skin {
+    /// Looks for the faces of `tets` (with their parts) that are among `facets`.
+    ///
+    /// Where two tetrahedra share a facet, it belongs to that of the part with the lower index.
+    pub fn new<'f>(
+        n_nodes: usize,
+        tets: &[[u32; 10]],
+        tet_part: &[u32],
+        facets: impl Iterator<Item = &'f [u32; 6]>,
+    ) -> Skin {
+        let mut wanted = vec![false; n_nodes];
+        let mut faces = HashMap::new();
+        for facet in facets {
+            for &node in &facet[..3] {
+                wanted[node as usize] = true;
+            }
+            faces.insert(key(facet), None);
+        }
+        for (tet, nodes) in tets.iter().enumerate() {
+            for local in &FACES {
+                let facet = local.map(|i| nodes[i]);
+                if facet[..3].iter().all(|&node| wanted[node as usize]) {
+                    if let Some(face) = faces.get_mut(&key(&facet)) {
+                        let found = Face {
+                            tet: tet as u32,
+                            facet,
+                            inner: false,
+                        };
+                        *face = Some(outer(*face, found, tet_part));
+                    }
+                }
+            }
+        }
+        Skin { faces }
+    }
+
+    /// The face behind a facet; none where no tetrahedron has its six nodes as a face.
+    pub fn face(&self, facet: &[u32; 6]) -> Option<Face> {
+        let face = self.faces.get(&key(facet)).copied().flatten()?;
+        (sorted(&face.facet[3..]) == sorted(&facet[3..])).then_some(face)
+    }
+}
+
+/// Of two tetrahedra that meet at a facet, the one of the first part.
+fn outer(known: Option<Face>, found: Face, tet_part: &[u32]) -> Face {
+    let Some(known) = known else {
+        return found;
+    };
+    let is_first = tet_part[known.tet as usize] <= tet_part[found.tet as usize];
+    Face {
+        inner: true,
+        ..if is_first { known } else { found }
+    }
+}
+
+fn key(facet: &[u32; 6]) -> [u32; 3] {
+    sorted(&facet[..3])
+}
+
+fn sorted(three: &[u32]) -> [u32; 3] {
+    let mut key = [three[0], three[1], three[2]];
+    key.sort_unstable();
+    key
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::jacobian::straight;
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn faces_look_out_and_their_midsides_lie_between_their_corners() {
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let x = straight(corners).map(Vector3::from);
+        let centre = (x[0] + x[1] + x[2] + x[3]) / 4.0;
+        for [a, b, c, ab, bc, ca] in FACES {
+            let normal = (x[b] - x[a]).cross(&(x[c] - x[a]));
+            assert!(normal.dot(&(x[a] - centre)) > 0.0);
+            for (middle, [i, k]) in [(ab, [a, b]), (bc, [b, c]), (ca, [c, a])] {
+                assert_eq!(x[middle], (x[i] + x[k]) / 2.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_shared_facet_belongs_to_the_first_part() {
+        let tets = [
+            [0, 1, 2, 3, 4, 5, 6, 7, 8, 9],
+            [0, 2, 1, 10, 6, 5, 4, 11, 12, 13],
+        ];
+        let facet = [1, 2, 0, 5, 6, 4];
+        for (parts, tet) in [([0, 1], 0), ([1, 0], 1), ([0, 0], 0)] {
+            let skin = Skin::new(14, &tets, &parts, [facet].iter());
+            let face = skin.face(&facet).unwrap();
+            assert_eq!((face.tet, face.inner), (tet, true));
+        }
+        let skin = Skin::new(14, &tets, &[0, 1], [[0, 1, 3, 4, 8, 7]].iter());
+        let face = skin.face(&[3, 0, 1, 7, 4, 8]).unwrap();
+        assert_eq!(
+            face,
+            Face {
+                tet: 0,
+                facet: [0, 1, 3, 4, 8, 7],
+                inner: false
+            }
+        );
+        assert_eq!(skin.face(&[3, 0, 1, 7, 4, 9]), None);
+        assert_eq!(skin.face(&[0, 3, 2, 7, 9, 6]), None);
+    }
+}

@@ -1,0 +1,73 @@
+//! The mesh as the rest of the program sees it, and questions about its names.
+
+use std::collections::BTreeMap;
+
+/// A mesh of 10-node tetrahedra in metres.
+///
+/// Node order of a tetrahedron: corners 0-3, then the midsides of the edges
+/// (0,1) (1,2) (2,0) (0,3) (1,3) (2,3). Node order of a facet: corners 0-2, then the midsides of (0,1) (1,2) (2,0).
+#[derive(Debug, Clone, Default)]
+pub struct Mesh {
+    /// Coordinates of the nodes, m.
+    pub nodes: Vec<[f64; 3]>,
+    /// The tetrahedra, ten node indices each.
+    pub tets: Vec<[u32; 10]>,
+    /// For each tetrahedron the index of its part in `parts`.
+    pub tet_part: Vec<u32>,
+    /// Names of the parts (physical volumes).
+    pub parts: Vec<String>,
+    /// Named surfaces (physical surfaces).
+    pub surfaces: BTreeMap<String, Surface>,
+    /// Named node sets (physical curves and points; a surface's nodes are found through [`Mesh::node_set`]).
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+}
+
+/// A named set of 6-node facets on the skin of the parts, each oriented so that its normal points out of the body.
+#[derive(Debug, Clone, Default)]
+pub struct Surface {
+    /// The facets, six node indices each.
+    pub facets: Vec<[u32; 6]>,
+    /// For each facet the index of the tetrahedron it belongs to.
+    pub tets: Vec<u32>,
+    /// Indices of the facets with a tetrahedron on both sides: a conformal interface inside the mesh, not its skin. They belong to
+    /// the tetrahedron of the part that comes first.
+    pub inner: Vec<u32>,
+}
+
+impl Mesh {
+    /// The nodes of a surface or node set, sorted, each once; none where nothing has this name.
+    pub fn node_set(&self, name: &str) -> Option<Vec<u32>> {
+        let mut nodes = match self.surfaces.get(name) {
+            Some(surface) => surface.facets.as_flattened().to_vec(),
+            None => self.node_sets.get(name)?.clone(),
+        };
+        nodes.sort_unstable();
+        nodes.dedup();
+        Some(nodes)
+    }
+
+    /// The parts that a surface lies on (indices, ascending); none where no surface has this name.
+    pub fn parts_of_surface(&self, name: &str) -> Option<Vec<u32>> {
+        let tets = &self.surfaces.get(name)?.tets;
+        let mut parts: Vec<u32> = tets
+            .iter()
+            .map(|&tet| self.tet_part[tet as usize])
+            .collect();
+        parts.sort_unstable();
+        parts.dedup();
+        Some(parts)
+    }
+
+    /// The one part that a surface lies on; none where no surface has this name or it lies on several parts.
+    pub fn part_of_surface(&self, name: &str) -> Option<u32> {
+        match self.parts_of_surface(name)?[..] {
+            [part] => Some(part),
+            _ => None,
+        }
+    }
+
+    /// Coordinates of a tetrahedron's nodes, m.
+    pub fn tet_nodes(&self, tet: usize) -> [[f64; 3]; 10] {
+        self.tets[tet].map(|node| self.nodes[node as usize])
+    }
+}

@@ -1,0 +1,113 @@
+//! What to compute: the sweep and the reduction.
+
+use super::contacts::friction;
+use super::item::{Item, Number};
+use super::keys::{self, FrictionSweep, Text};
+use super::source::Source;
+use super::{Contact, Reduction, names};
+use crate::Result;
+use toml::Spanned;
+
+/// A sweep longer than this is taken for a mistake in its step.
+const LONGEST_SWEEP: f64 = 10_000.0;
+
+const RANGE: &str = "Give from, to and step (above 0, from <= to), or values = [0.1, 0.3, 0.5]";
+
+/// A friction sweep.
+#[derive(Default)]
+pub struct Sweep {
+    /// The contacts that it changes; none named: all that slide.
+    pub contacts: Vec<String>,
+    /// The values.
+    pub frictions: Vec<f64>,
+    /// Line of the file, 0 where there is no sweep.
+    pub line: usize,
+}
+
+/// The sweep, once the contacts it names exist.
+pub fn sweep(
+    source: Source,
+    raw: Option<&Spanned<keys::Sweep>>,
+    contacts: &[Contact],
+) -> Result<Sweep> {
+    let Some(raw) = raw else {
+        return Ok(Sweep::default());
+    };
+    let friction = &raw.get_ref().friction;
+    let item = Item::new(source, "sweep".to_owned(), friction.span());
+    Ok(Sweep {
+        contacts: swept(&item, friction.get_ref().contacts.as_deref(), contacts)?,
+        frictions: values(&item, friction.get_ref())?,
+        line: item.line(),
+    })
+}
+
+fn swept(item: &Item, wanted: Option<&[Text]>, contacts: &[Contact]) -> Result<Vec<String>> {
+    let mut swept: Vec<String> = Vec::new();
+    for name in wanted.unwrap_or_default() {
+        let text = name.get_ref();
+        if !contacts.iter().any(|contact| &contact.name == text) {
+            let advice = names::advice(text, contacts.iter().map(|contact| contact.name.as_str()));
+            return Err(item.error(
+                &name.span(),
+                format_args!("unknown contact {text:?}"),
+                advice,
+            ));
+        }
+        if swept.contains(text) {
+            let what = format_args!("contact {text:?} is named twice");
+            return Err(item.error(&name.span(), what, "Keep one of them"));
+        }
+        swept.push(text.clone());
+    }
+    if wanted.is_some() && swept.is_empty() {
+        let advice = "Name some, or leave the key out to sweep all that slide";
+        return Err(item.error_here("contacts is an empty list", advice));
+    }
+    Ok(swept)
+}
+
+fn values(item: &Item, raw: &FrictionSweep) -> Result<Vec<f64>> {
+    match (&raw.values, &raw.from, &raw.to, &raw.step) {
+        (Some(values), None, None, None) if !values.is_empty() => {
+            values.iter().map(|value| friction(item, value)).collect()
+        }
+        (None, Some(from), Some(to), Some(step)) => range(item, from, to, step),
+        _ => Err(item.error_here(
+            "the values of the friction are not given, or given twice",
+            RANGE,
+        )),
+    }
+}
+
+/// `from`, `from + step`, ... up to `to` (reached within rounding); values are rounded to 12 digits, so that 0.1 + 2 * 0.1 is 0.3.
+fn range(item: &Item, from: &Number, to: &Number, step: &Number) -> Result<Vec<f64>> {
+    let (low, high) = (friction(item, from)?, friction(item, to)?);
+    let step_value = item.positive(step, "step", RANGE)?;
+    if low > high {
+        let what = format_args!("the range is empty: from {low} to {high}");
+        return Err(item.error(&from.span(), what, RANGE));
+    }
+    let n_steps = ((high - low) / step_value + 1e-9).floor();
+    if n_steps > LONGEST_SWEEP {
+        let what = format_args!("a step of {step_value} makes {n_steps} values");
+        return Err(item.error(&step.span(), what, "Give a larger step"));
+    }
+    let value = |i: usize| ((low + i as f64 * step_value) * 1e12).round() / 1e12;
+    Ok((0..=n_steps as usize).map(value).collect())
+}
+
+/// The reduction.
+pub fn reduction(source: Source, raw: &Spanned<keys::Reduction>) -> Result<Reduction> {
+    let item = Item::new(source, "reduction".to_owned(), raw.span());
+    let contacts = &raw.get_ref().contacts;
+    if *contacts.get_ref() == 0 {
+        let advice = "Give the number of reference pairs, such as 104";
+        return Err(item.error(&contacts.span(), "contacts must be above 0", advice));
+    }
+    Ok(Reduction {
+        contacts: *contacts.get_ref(),
+        band: item.band(&raw.get_ref().band)?,
+        line: item.line(),
+    })
+}

@@ -1,0 +1,161 @@
+//! Contact pairs and connectors: what ties the parts together.
+
+use super::item::{Item, Vector};
+use super::keys;
+use super::source::Source;
+use super::{Connector, Contact, NormalLaw};
+use crate::Result;
+use std::collections::HashMap;
+use toml::Spanned;
+
+/// Friction above this is taken for a mistake.
+pub const LARGEST_FRICTION: f64 = 2.0;
+
+/// The contact pairs; `unit` is metres per unit of the mesh.
+pub fn contacts(source: Source, raw: &[Spanned<keys::Contact>], unit: f64) -> Result<Vec<Contact>> {
+    let mut seen = HashMap::new();
+    let mut contacts = Vec::new();
+    for contact in raw {
+        let raw = contact.get_ref();
+        let name = raw
+            .name
+            .clone()
+            .unwrap_or_else(|| format!("{} / {}", raw.slave, raw.master));
+        let item = Item::new(source, format!("contact {name:?}"), contact.span());
+        unused(&item, &name, &mut seen)?;
+        contacts.push(self::contact(&item, name, raw, unit)?);
+    }
+    Ok(contacts)
+}
+
+/// Refuses a name that an item of the same kind has already.
+pub fn unused(item: &Item, name: &str, seen: &mut HashMap<String, usize>) -> Result<()> {
+    match seen.insert(name.to_owned(), item.line()) {
+        None => Ok(()),
+        Some(line) => {
+            let what = format_args!("the name is taken by line {line}");
+            Err(item.error_here(what, "Give each its own name"))
+        }
+    }
+}
+
+fn contact(item: &Item, name: String, raw: &keys::Contact, unit: f64) -> Result<Contact> {
+    if raw.slave == raw.master {
+        let what = format_args!("slave and master are both {:?}", raw.slave);
+        return Err(item.error_here(what, "Name the two surfaces that meet"));
+    }
+    let stick = raw
+        .stick
+        .as_ref()
+        .map(|k| item.positive(k, "stick", "Give N/m3, such as 1e13"));
+    let search = raw.search.as_ref().map(|d| {
+        item.positive(
+            d,
+            "search",
+            "Give a distance in the mesh's unit, or leave it out for no limit",
+        )
+    });
+    Ok(Contact {
+        name,
+        slave: raw.slave.clone(),
+        master: raw.master.clone(),
+        law: law(item, &raw.law)?,
+        friction: friction(item, &raw.friction)?,
+        stick: stick.transpose()?,
+        separation: raw.separation.unwrap_or(true),
+        search_distance: search.transpose()?.map(|d| d * unit),
+        line: item.line(),
+    })
+}
+
+/// A coefficient of friction.
+pub fn friction(item: &Item, value: &Spanned<f64>) -> Result<f64> {
+    let holds = (0.0..=LARGEST_FRICTION).contains(value.get_ref());
+    item.check(
+        value,
+        holds,
+        "friction",
+        "must be from 0 to 2",
+        "Give a coefficient, such as 0.5",
+    )
+}
+
+fn law(item: &Item, raw: &Spanned<keys::Law>) -> Result<NormalLaw> {
+    let example = "Give law = { linear = 2e13 } in N/m3, or { cubic = [k1, k3] } in N/m3 and N/m5";
+    match (&raw.get_ref().linear, &raw.get_ref().cubic) {
+        (Some(k), None) => Ok(NormalLaw::Linear {
+            stiffness: item.positive(k, "linear", example)?,
+        }),
+        (None, Some(k)) => {
+            let [k1, k3] = item.each(k, |x| x > 0.0, "cubic", "must be above 0", example)?;
+            Ok(NormalLaw::Cubic { k1, k3 })
+        }
+        (None, None) => Err(item.error(&raw.span(), "the law is empty", example)),
+        (Some(_), Some(_)) => Err(item.error(&raw.span(), "there are two laws", example)),
+    }
+}
+
+/// The connectors; `unit` is metres per unit of the mesh.
+pub fn connectors(
+    source: Source,
+    raw: &[Spanned<keys::Connector>],
+    unit: f64,
+) -> Result<Vec<Connector>> {
+    let mut seen = HashMap::new();
+    let mut connectors = Vec::new();
+    for connector in raw {
+        let raw = connector.get_ref();
+        let [a, b] = raw.between.get_ref();
+        let name = raw.name.clone().unwrap_or_else(|| format!("{a} / {b}"));
+        let item = Item::new(source, format!("connector {name:?}"), connector.span());
+        unused(&item, &name, &mut seen)?;
+        connectors.push(self::connector(&item, name, raw, unit)?);
+    }
+    Ok(connectors)
+}
+
+fn connector(item: &Item, name: String, raw: &keys::Connector, unit: f64) -> Result<Connector> {
+    let [a, b] = raw.between.get_ref();
+    if a == b {
+        let what = format_args!("both ends are {a:?}");
+        return Err(item.error(&raw.between.span(), what, "Name two different node sets"));
+    }
+    let constants = |values: &Vector, key: &str, advice: &str| {
+        item.each(values, |x| x >= 0.0, key, "must be 0 or above", advice)
+    };
+    let optional = |values: &Option<Vector>, key, advice| match values {
+        Some(values) => constants(values, key, advice),
+        None => Ok([0.0; 3]),
+    };
+    let rotational = "Give [x, y, z] in N m/rad";
+    let connector = Connector {
+        name,
+        between: raw.between.get_ref().clone(),
+        at: raw
+            .at
+            .as_ref()
+            .map(|at| item.finite(at, "at"))
+            .transpose()?
+            .map(|at| at.map(|x| x * unit)),
+        stiffness: constants(&raw.stiffness, "stiffness", "Give [x, y, z] in N/m")?,
+        rotational_stiffness: optional(
+            &raw.rotational_stiffness,
+            "rotational_stiffness",
+            rotational,
+        )?,
+        damping: optional(&raw.damping, "damping", "Give [x, y, z] in N s/m")?,
+        line: item.line(),
+    };
+    let all = [
+        connector.stiffness,
+        connector.rotational_stiffness,
+        connector.damping,
+    ];
+    if all.as_flattened().iter().all(|&x| x == 0.0) {
+        return Err(item.error_here(
+            "all its constants are 0",
+            "Give it a stiffness, or leave it out",
+        ));
+    }
+    Ok(connector)
+}

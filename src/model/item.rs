@@ -1,0 +1,162 @@
+//! One table of the model file while its values are checked: what it is called in messages, and the checks of single values.
+
+use super::source::{Source, Span};
+use crate::{Error, Result};
+use std::fmt::Display;
+use toml::Spanned;
+
+/// A number and where it stands.
+pub type Number = Spanned<f64>;
+/// Three numbers and where they stand.
+pub type Vector = Spanned<[f64; 3]>;
+
+/// A table of the file.
+pub struct Item<'a> {
+    source: Source<'a>,
+    /// What messages call it: `material "iron"`.
+    name: String,
+    /// Where it begins.
+    span: Span,
+}
+
+impl<'a> Item<'a> {
+    /// The table at `span`, called `name` in messages.
+    pub fn new(source: Source<'a>, name: String, span: Span) -> Self {
+        Item { source, name, span }
+    }
+
+    /// Line of the table's header.
+    pub fn line(&self) -> usize {
+        self.source.line(self.span.start)
+    }
+
+    /// `file:line: what (name). advice`, at a value of the table.
+    pub fn error(&self, at: &Span, what: impl Display, advice: impl Display) -> Error {
+        self.source
+            .error(at, format_args!("{what} ({}). {advice}", self.name))
+    }
+
+    /// The same, at the table's header.
+    pub fn error_here(&self, what: impl Display, advice: impl Display) -> Error {
+        self.error(&self.span, what, advice)
+    }
+
+    /// The value of a key that this table must have.
+    pub fn required<'v, T>(&self, value: &'v Option<T>, key: &str, advice: &str) -> Result<&'v T> {
+        value
+            .as_ref()
+            .ok_or_else(|| self.error_here(format_args!("{key} is missing"), advice))
+    }
+
+    /// A number above zero.
+    pub fn positive(&self, value: &Number, key: &str, advice: &str) -> Result<f64> {
+        self.check(
+            value,
+            *value.get_ref() > 0.0,
+            key,
+            "must be above 0",
+            advice,
+        )
+    }
+
+    /// A number that is zero or above.
+    pub fn not_negative(&self, value: &Number, key: &str, advice: &str) -> Result<f64> {
+        self.check(
+            value,
+            *value.get_ref() >= 0.0,
+            key,
+            "must be 0 or above",
+            advice,
+        )
+    }
+
+    /// A number for which `holds` (and which is finite).
+    pub fn check(
+        &self,
+        value: &Number,
+        holds: bool,
+        key: &str,
+        must: &str,
+        advice: &str,
+    ) -> Result<f64> {
+        let number = *value.get_ref();
+        if number.is_finite() && holds {
+            return Ok(number);
+        }
+        Err(self.error(
+            &value.span(),
+            format_args!("{key} {must}, not {number}"),
+            advice,
+        ))
+    }
+
+    /// Numbers that are finite.
+    pub fn finite<const N: usize>(
+        &self,
+        values: &Spanned<[f64; N]>,
+        key: &str,
+    ) -> Result<[f64; N]> {
+        self.each(
+            values,
+            |x| x.is_finite(),
+            key,
+            "must be finite",
+            "Give numbers",
+        )
+    }
+
+    /// Numbers that all satisfy `holds` (and are finite).
+    pub fn each<const N: usize>(
+        &self,
+        values: &Spanned<[f64; N]>,
+        holds: impl Fn(f64) -> bool,
+        key: &str,
+        must: &str,
+        advice: &str,
+    ) -> Result<[f64; N]> {
+        match values
+            .get_ref()
+            .iter()
+            .find(|x| !x.is_finite() || !holds(**x))
+        {
+            None => Ok(*values.get_ref()),
+            Some(bad) => Err(self.error(
+                &values.span(),
+                format_args!("{key} {must}, not {bad}"),
+                advice,
+            )),
+        }
+    }
+
+    /// A vector that is not zero, scaled to length 1.
+    pub fn direction(&self, value: &Vector, key: &str) -> Result<[f64; 3]> {
+        let v = self.finite(value, key)?;
+        // Scaled before it is squared, so that no length over- or underflows.
+        let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if largest == 0.0 {
+            let what = format_args!("{key} has no direction: it is zero");
+            return Err(self.error(&value.span(), what, "Give a vector such as [0, 0, 1]"));
+        }
+        let v = v.map(|x| x / largest);
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        Ok(v.map(|x| x / length))
+    }
+
+    /// A band of frequencies in Hz: not negative, not empty.
+    pub fn band(&self, value: &Spanned<[f64; 2]>) -> Result<[f64; 2]> {
+        let [low, high] = self.finite(value, "band")?;
+        if 0.0 <= low && low < high {
+            return Ok([low, high]);
+        }
+        let what = if low < 0.0 {
+            format!("band begins below 0: [{low}, {high}]")
+        } else {
+            format!("band is empty: [{low}, {high}]")
+        };
+        Err(self.error(
+            &value.span(),
+            what,
+            "Give [lowest, highest] in Hz, 0 <= lowest < highest",
+        ))
+    }
+}

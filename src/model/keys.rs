@@ -1,0 +1,172 @@
+//! The keys of a model file as serde sees them; `example.toml` explains each. Values are unchecked, their places are kept.
+
+use super::item::{Number, Vector};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+/// A string and where it stands.
+pub type Text = Spanned<String>;
+/// Tables `[kind.<name>]`; sorted by name, so the order of the file is that of the spans.
+pub type Named<T> = BTreeMap<Text, T>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct File {
+    pub title: Option<String>,
+    pub mesh: Spanned<Mesh>,
+    #[serde(default)]
+    pub material: Named<Material>,
+    #[serde(default)]
+    pub part: Named<Part>,
+    #[serde(default)]
+    pub fix: Vec<Spanned<Fix>>,
+    #[serde(default)]
+    pub rotation: Vec<Spanned<Rotation>>,
+    #[serde(default)]
+    pub contact: Vec<Spanned<Contact>>,
+    #[serde(default)]
+    pub connector: Vec<Spanned<Connector>>,
+    #[serde(default)]
+    pub load: Vec<Spanned<Load>>,
+    pub stability: Spanned<Stability>,
+    pub sweep: Option<Spanned<Sweep>>,
+    pub reduction: Option<Spanned<Reduction>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    pub file: Text,
+    pub unit: Text,
+}
+
+/// A number, or one for each axis or plane.
+#[derive(Deserialize, Clone, Copy)]
+#[serde(
+    untagged,
+    expecting = "expected a number, or three of them in brackets"
+)]
+pub enum OneOrThree {
+    One(f64),
+    Three([f64; 3]),
+}
+
+/// All kinds of material together; `materials` knows which keys belong to which kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    pub kind: Option<Text>,
+    pub density: Number,
+    pub young: Option<Spanned<OneOrThree>>,
+    pub poisson: Option<Spanned<OneOrThree>>,
+    pub axis: Option<Vector>,
+    pub young_axial: Option<Number>,
+    pub poisson_axial: Option<Number>,
+    pub shear_axial: Option<Number>,
+    pub shear: Option<Vector>,
+    pub x_axis: Option<Vector>,
+    pub y_axis: Option<Vector>,
+    pub elasticity: Option<Spanned<[[f64; 6]; 6]>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    pub material: Text,
+    #[serde(default)]
+    pub rayleigh: Rayleigh,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub struct Rayleigh {
+    pub alpha: Option<Number>,
+    pub beta: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fix {
+    pub nodes: String,
+    pub axes: Text,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    pub part: Text,
+    pub axis: Vector,
+    pub through: Option<Vector>,
+    pub speed: Number,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    pub name: Option<String>,
+    pub slave: String,
+    pub master: String,
+    pub law: Spanned<Law>,
+    pub friction: Number,
+    pub stick: Option<Number>,
+    pub separation: Option<bool>,
+    pub search: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Law {
+    pub linear: Option<Number>,
+    pub cubic: Option<Spanned<[f64; 2]>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Connector {
+    pub name: Option<String>,
+    pub between: Spanned<[String; 2]>,
+    pub at: Option<Vector>,
+    pub stiffness: Vector,
+    pub rotational_stiffness: Option<Vector>,
+    pub damping: Option<Vector>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    pub name: Option<String>,
+    pub on: String,
+    pub force: Option<Vector>,
+    pub spread: Option<Text>,
+    pub pressure: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stability {
+    pub band: Spanned<[f64; 2]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    pub friction: Spanned<FrictionSweep>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionSweep {
+    pub contacts: Option<Vec<Text>>,
+    pub values: Option<Vec<Number>>,
+    pub from: Option<Number>,
+    pub to: Option<Number>,
+    pub step: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reduction {
+    pub contacts: Spanned<usize>,
+    pub band: Spanned<[f64; 2]>,
+}

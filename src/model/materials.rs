@@ -1,0 +1,299 @@
+//! Materials: which keys a kind has, which constants are possible, and the elasticity in global axes.
+
+#![allow(non_snake_case)] // symbols of the formulas
+
+use super::elasticity::{self, Transverse};
+use super::item::{Item, Number, Vector};
+use super::keys::{self, OneOrThree, Text};
+use super::source::{Source, Span};
+use super::{Material, names};
+use crate::Result;
+use nalgebra::{Matrix3, Matrix6};
+use toml::Spanned;
+
+/// The kinds of material and the keys that belong to each, besides `kind` and `density`.
+const KINDS: [(&str, &[&str]); 4] = [
+    ("isotropic", &["young", "poisson"]),
+    (
+        "transverse",
+        &[
+            "axis",
+            "young",
+            "young_axial",
+            "poisson",
+            "poisson_axial",
+            "shear_axial",
+        ],
+    ),
+    (
+        "orthotropic",
+        &["young", "poisson", "shear", "x_axis", "y_axis"],
+    ),
+    ("full", &["elasticity", "x_axis", "y_axis"]),
+];
+
+const YOUNG: &str = "Give Pa, such as 110e9";
+const THREE_YOUNG: &str = "Give three moduli in Pa, along x, y, z";
+const THREE_POISSON: &str = "Give three ratios, xy, yz, zx";
+const SHEAR: &str = "Give a shear modulus in Pa, such as 2e9";
+
+/// All materials of the file.
+///
+/// # Errors
+/// Input errors for keys of another kind and for constants that no material can have.
+pub fn materials(source: Source, raw: &keys::Named<keys::Material>) -> Result<Vec<Material>> {
+    raw.iter()
+        .map(|(name, material)| Reader::new(source, name, material).read())
+        .collect()
+}
+
+struct Reader<'a> {
+    item: Item<'a>,
+    name: &'a str,
+    raw: &'a keys::Material,
+}
+
+impl<'a> Reader<'a> {
+    fn new(source: Source<'a>, name: &'a Text, raw: &'a keys::Material) -> Self {
+        let item = Item::new(
+            source,
+            format!("material {:?}", name.get_ref()),
+            name.span(),
+        );
+        Reader {
+            item,
+            name: name.get_ref(),
+            raw,
+        }
+    }
+
+    fn read(&self) -> Result<Material> {
+        let density =
+            self.item
+                .positive(&self.raw.density, "density", "Give kg/m3, such as 7850")?;
+        let elasticity = match self.kind()? {
+            "transverse" => self.transverse()?,
+            "orthotropic" => self.orthotropic()?,
+            "full" => self.full()?,
+            _ => self.isotropic()?,
+        };
+        let elasticity = std::array::from_fn(|i| std::array::from_fn(|j| elasticity[(i, j)]));
+        Ok(Material {
+            name: self.name.to_owned(),
+            density,
+            elasticity,
+        })
+    }
+
+    /// The material's kind, once all keys given belong to it.
+    fn kind(&self) -> Result<&'static str> {
+        let kinds = KINDS.map(|(kind, _)| kind);
+        let wanted = self
+            .raw
+            .kind
+            .as_ref()
+            .map_or("isotropic", |kind| kind.get_ref());
+        let Some(&(kind, known)) = KINDS.iter().find(|(kind, _)| *kind == wanted) else {
+            let span = self.raw.kind.as_ref().map_or(0..0, Spanned::span);
+            let what = format_args!("unknown kind of material {wanted:?}");
+            return Err(self.item.error(&span, what, names::advice(wanted, kinds)));
+        };
+        match self
+            .given()
+            .into_iter()
+            .find(|(key, _)| !known.contains(key))
+        {
+            None => Ok(kind),
+            Some((key, span)) => {
+                let what = format_args!("{key} is no constant of the kind {kind:?}");
+                let advice = format!(
+                    "Leave it out, or give kind = one of {}",
+                    names::list(&owners(key))
+                );
+                Err(self.item.error(&span, what, advice))
+            }
+        }
+    }
+
+    /// The constants that the file gives, and where.
+    fn given(&self) -> Vec<(&'static str, Span)> {
+        fn place<T>(key: &'static str, value: &Option<Spanned<T>>) -> Option<(&'static str, Span)> {
+            value.as_ref().map(|value| (key, value.span()))
+        }
+        let raw = self.raw;
+        let places = [
+            place("young", &raw.young),
+            place("poisson", &raw.poisson),
+            place("axis", &raw.axis),
+            place("young_axial", &raw.young_axial),
+            place("poisson_axial", &raw.poisson_axial),
+            place("shear_axial", &raw.shear_axial),
+            place("shear", &raw.shear),
+            place("x_axis", &raw.x_axis),
+            place("y_axis", &raw.y_axis),
+            place("elasticity", &raw.elasticity),
+        ];
+        places.into_iter().flatten().collect()
+    }
+
+    fn isotropic(&self) -> Result<Matrix6<f64>> {
+        let young = self
+            .item
+            .positive(&self.one(&self.raw.young, "young")?, "young", YOUNG)?;
+        let poisson = self.poisson()?;
+        self.invert(&elasticity::isotropic_compliance(young, poisson))
+    }
+
+    fn transverse(&self) -> Result<Matrix6<f64>> {
+        let (item, raw) = (&self.item, self.raw);
+        let axis = item.required(&raw.axis, "axis", "Give the axis, such as [0, 0, 1]")?;
+        let axis = item.direction(axis, "axis")?;
+        let axial = item.required(&raw.young_axial, "young_axial", YOUNG)?;
+        let advice = "Give the contraction across the axis over the stretch along it";
+        let ratio = item.required(&raw.poisson_axial, "poisson_axial", advice)?;
+        let shear = item.required(&raw.shear_axial, "shear_axial", SHEAR)?;
+        let constants = Transverse {
+            young: item.positive(&self.one(&raw.young, "young")?, "young", YOUNG)?,
+            young_axial: item.positive(axial, "young_axial", YOUNG)?,
+            poisson: self.in_plane_poisson()?,
+            poisson_axial: item.check(ratio, true, "poisson_axial", "must be finite", advice)?,
+            shear_axial: item.positive(shear, "shear_axial", SHEAR)?,
+        };
+        let local = self.invert(&elasticity::transverse_compliance(&constants))?;
+        Ok(elasticity::rotate(&local, &elasticity::axes_about(axis)))
+    }
+
+    fn orthotropic(&self) -> Result<Matrix6<f64>> {
+        let (item, raw) = (&self.item, self.raw);
+        let shear = item.required(&raw.shear, "shear", "Give three moduli in Pa, xy, yz, zx")?;
+        let young = self.three(&raw.young, "young", THREE_YOUNG)?;
+        let young = item.each(&young, |x| x > 0.0, "young", "must be above 0", THREE_YOUNG)?;
+        let poisson = item.finite(
+            &self.three(&raw.poisson, "poisson", THREE_POISSON)?,
+            "poisson",
+        )?;
+        let shear = item.each(shear, |x| x > 0.0, "shear", "must be above 0", SHEAR)?;
+        let local = self.invert(&elasticity::orthotropic_compliance(young, poisson, shear))?;
+        Ok(elasticity::rotate(&local, &self.axes()?))
+    }
+
+    fn full(&self) -> Result<Matrix6<f64>> {
+        let advice = "Give six rows of six numbers in Pa, in the order xx yy zz xy yz zx";
+        let rows = self
+            .item
+            .required(&self.raw.elasticity, "elasticity", advice)?;
+        let C = Matrix6::from_fn(|i, j| rows.get_ref()[i][j]);
+        if !((C - C.transpose()).amax() <= 1e-6 * C.amax()) {
+            let what = "elasticity is not symmetric, or not finite";
+            return Err(self.item.error(&rows.span(), what, advice));
+        }
+        let C = elasticity::symmetric(&C);
+        if !elasticity::is_positive_definite(&C) {
+            let what =
+                "elasticity is not positive definite: some strain would have no or negative energy";
+            return Err(self.item.error(&rows.span(), what, advice));
+        }
+        Ok(elasticity::rotate(&C, &self.axes()?))
+    }
+
+    /// Inverts a compliance, or says that the constants do not go together.
+    fn invert(&self, compliance: &Matrix6<f64>) -> Result<Matrix6<f64>> {
+        elasticity::from_compliance(compliance).ok_or_else(|| {
+            self.item.error_here(
+                "no material has these constants: the elasticity is not positive definite",
+                "Make the Poisson's ratios smaller: nu_ij^2 < E_i / E_j, where j contracts under a stress along i",
+            )
+        })
+    }
+
+    fn poisson(&self) -> Result<f64> {
+        let poisson = self.one(&self.raw.poisson, "poisson")?;
+        let nu = *poisson.get_ref();
+        let advice = "Give Poisson's ratio, such as 0.3";
+        self.item.check(
+            &poisson,
+            -1.0 < nu && nu < 0.5,
+            "poisson",
+            "must be above -1 and below 0.5",
+            advice,
+        )
+    }
+
+    /// Within a plane the ratio may come up to 1.
+    fn in_plane_poisson(&self) -> Result<f64> {
+        let poisson = self.one(&self.raw.poisson, "poisson")?;
+        let nu = *poisson.get_ref();
+        let advice = "Give Poisson's ratio within the plane, such as 0.3";
+        self.item.check(
+            &poisson,
+            -1.0 < nu && nu < 1.0,
+            "poisson",
+            "must be above -1 and below 1",
+            advice,
+        )
+    }
+
+    /// The single number that this kind of material has under a key.
+    fn one(&self, value: &Option<Spanned<OneOrThree>>, key: &str) -> Result<Number> {
+        let value = self.item.required(value, key, "Give a number")?;
+        match *value.get_ref() {
+            OneOrThree::One(number) => Ok(Spanned::new(value.span(), number)),
+            OneOrThree::Three(_) => {
+                let what = format_args!("{key} is one number here, not three");
+                Err(self.item.error(
+                    &value.span(),
+                    what,
+                    "Three of them need kind = \"orthotropic\"",
+                ))
+            }
+        }
+    }
+
+    /// The three numbers that this kind of material has under a key.
+    fn three(
+        &self,
+        value: &Option<Spanned<OneOrThree>>,
+        key: &str,
+        advice: &str,
+    ) -> Result<Vector> {
+        let value = self.item.required(value, key, advice)?;
+        match *value.get_ref() {
+            OneOrThree::Three(numbers) => Ok(Spanned::new(value.span(), numbers)),
+            OneOrThree::One(_) => {
+                let what = format_args!("{key} is three numbers here, not one");
+                Err(self.item.error(&value.span(), what, advice))
+            }
+        }
+    }
+
+    /// The material's axes as columns: those of the mesh, unless given.
+    fn axes(&self) -> Result<Matrix3<f64>> {
+        let (item, raw) = (&self.item, self.raw);
+        let (x, y) = match (&raw.x_axis, &raw.y_axis) {
+            (None, None) => return Ok(Matrix3::identity()),
+            (Some(x), Some(y)) => (x, y),
+            (Some(given), None) | (None, Some(given)) => {
+                let what = "one of x_axis and y_axis alone does not fix the material's axes";
+                return Err(item.error(&given.span(), what, "Give both, or neither"));
+            }
+        };
+        let axes =
+            elasticity::axes_from(item.direction(x, "x_axis")?, item.direction(y, "y_axis")?);
+        axes.ok_or_else(|| {
+            item.error(
+                &y.span(),
+                "x_axis and y_axis are parallel",
+                "Give two different directions",
+            )
+        })
+    }
+}
+
+/// The kinds that have a key.
+fn owners(key: &str) -> Vec<&'static str> {
+    KINDS
+        .iter()
+        .filter(|(_, keys)| keys.contains(&key))
+        .map(|(kind, _)| *kind)
+        .collect()
+}

@@ -1,0 +1,90 @@
+//! From the file to the model: one step a table, in an order in which names are known before they are used.
+
+use super::item::Item;
+use super::source::Source;
+use super::{Model, analysis, bodies, contacts, keys, loads, materials, names};
+use crate::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// Units of length and their metres.
+const UNITS: [(&str, f64); 6] = [
+    ("m", 1.0),
+    ("cm", 1e-2),
+    ("mm", 1e-3),
+    ("um", 1e-6),
+    ("in", 0.0254),
+    ("ft", 0.3048),
+];
+
+/// Reads and checks a model file.
+///
+/// The mesh it names is not opened; see [`Model::check_against`] for what only the mesh can tell.
+///
+/// # Errors
+/// [`Error::Input`], `file:line: what (item). what to do`, for the first thing that is wrong.
+pub fn read(path: &Path) -> Result<Model> {
+    let text = std::fs::read_to_string(path).map_err(|reason| {
+        Error::input(format!(
+            "{}: cannot read the model file: {reason}",
+            path.display()
+        ))
+    })?;
+    parse(&text, path)
+}
+
+/// Checks the text of a model file; `file` is what messages call it, and its folder is where the mesh is looked for.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(text: &str, file: &Path) -> Result<Model> {
+    let source = Source { file, text };
+    let raw: keys::File = source.deserialize()?;
+    let mesh_unit = unit(source, raw.mesh.get_ref())?;
+    let materials = materials::materials(source, &raw.material)?;
+    let parts = bodies::parts(source, &raw.part, &materials)?;
+    let contacts = contacts::contacts(source, &raw.contact, mesh_unit)?;
+    let sweep = analysis::sweep(source, raw.sweep.as_ref(), &contacts)?;
+    let stability = Item::new(source, "stability".to_owned(), raw.stability.span());
+    Ok(Model {
+        file: file.to_owned(),
+        title: raw.title.unwrap_or_else(|| stem(file)),
+        mesh_file: beside(file, raw.mesh.get_ref().file.get_ref()),
+        mesh_unit,
+        mesh_line: source.line(raw.mesh.get_ref().file.span().start),
+        fixes: bodies::fixes(source, &raw.fix)?,
+        rotations: bodies::rotations(source, &raw.rotation, &parts, mesh_unit)?,
+        connectors: contacts::connectors(source, &raw.connector, mesh_unit)?,
+        loads: loads::loads(source, &raw.load)?,
+        band: stability.band(&raw.stability.get_ref().band)?,
+        swept: sweep.contacts,
+        frictions: sweep.frictions,
+        sweep_line: sweep.line,
+        reduction: raw
+            .reduction
+            .map(|raw| analysis::reduction(source, &raw))
+            .transpose()?,
+        parts,
+        contacts,
+    })
+}
+
+/// Metres per unit of the mesh.
+fn unit(source: Source, mesh: &keys::Mesh) -> Result<f64> {
+    let wanted = mesh.unit.get_ref();
+    if let Some((_, metres)) = UNITS.iter().find(|(name, _)| name == wanted) {
+        return Ok(*metres);
+    }
+    let item = Item::new(source, "mesh".to_owned(), mesh.unit.span());
+    let what = format_args!("unknown unit of length {wanted:?}");
+    Err(item.error_here(what, names::advice(wanted, UNITS.map(|(name, _)| name))))
+}
+
+/// A path of the file, seen from the current directory.
+fn beside(file: &Path, path: &str) -> PathBuf {
+    file.parent().unwrap_or(Path::new("")).join(path)
+}
+
+fn stem(file: &Path) -> String {
+    file.file_stem()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}

@@ -1,0 +1,92 @@
+//! Constants that no material can have.
+
+use super::{GOOD, complains, parsed};
+
+#[test]
+fn impossible_constants_are_refused() {
+    complains(
+        "young = 110e9",
+        "young = -110e9",
+        0,
+        "young must be above 0, not -110000000000 (material \"iron\"). Give Pa, such as 110e9",
+    );
+    complains(
+        "poisson = 0.27",
+        "poisson = 0.5",
+        0,
+        "poisson must be above -1 and below 0.5, not 0.5 (material \"iron\"). Give Poisson's ratio, such as 0.3",
+    );
+    complains(
+        "poisson = 0.27",
+        "poisson = -1",
+        0,
+        "poisson must be above -1 and below 0.5, not -1 (material \"iron\"). Give Poisson's ratio, such as 0.3",
+    );
+    complains(
+        "density = 2600",
+        "density = nan",
+        0,
+        "density must be above 0, not NaN (material \"lining\"). Give kg/m3, such as 7850",
+    );
+    complains(
+        "axis = [0, 0, 2]",
+        "axis = [0, 0, 0]",
+        0,
+        "axis has no direction: it is zero (material \"lining\"). Give a vector such as [0, 0, 1]",
+    );
+    let said = parsed(&GOOD.replace("poisson_axial = 0.10", "poisson_axial = 0.3")).unwrap_err();
+    assert!(said.contains(":9: no material has these constants: the elasticity is not positive definite (material \"lining\")"), "{said}");
+    let said = parsed(&GOOD.replace("alpha = 10", "alpha = -10")).unwrap_err();
+    assert!(
+        said.contains(":20: rayleigh alpha must be 0 or above, not -10 (part \"disc\")"),
+        "{said}"
+    );
+}
+
+#[test]
+fn constants_must_belong_to_the_kind() {
+    complains(
+        "kind = \"transverse\"",
+        "kind = \"tranverse\"",
+        0,
+        "unknown kind of material \"tranverse\" (material \"lining\"). \
+         Did you mean \"transverse\"? There is: isotropic, transverse, orthotropic, full",
+    );
+    let said = "young_axial is no constant of the kind \"isotropic\" (material \"iron\"). \
+                Leave it out, or give kind = one of transverse";
+    complains(
+        "density = 7100",
+        "density = 7100\nyoung_axial = 1e9",
+        1,
+        said,
+    );
+    let said = "young is one number here, not three (material \"iron\"). Three of them need kind = \"orthotropic\"";
+    complains("young = 110e9", "young = [1e9, 1e9, 1e9]", 0, said);
+}
+
+#[test]
+fn full_matrices_must_be_symmetric_and_positive_definite() {
+    let with = |first_row: &str, axes: &str| {
+        let identity = "[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]";
+        let material = format!("kind = \"full\"\nelasticity = [{first_row},{identity}]\n{axes}\n");
+        parsed(&GOOD.replace("young = 110e9\npoisson = 0.27\n", &material))
+    };
+    assert!(with("[1,0,0,0,0,0]", "").is_ok());
+    let said = with("[1,0.1,0,0,0,0]", "").unwrap_err();
+    assert!(said.contains(":7: elasticity is not symmetric"), "{said}");
+    let said = with("[-1,0,0,0,0,0]", "").unwrap_err();
+    assert!(
+        said.contains(":7: elasticity is not positive definite"),
+        "{said}"
+    );
+    let said = with("[1,0,0,0,0,0]", "x_axis = [1,0,0]").unwrap_err();
+    assert!(
+        said.contains(":8: one of x_axis and y_axis alone"),
+        "{said}"
+    );
+    let said = with("[1,0,0,0,0,0]", "x_axis = [1,0,0]\ny_axis = [2,0,0]").unwrap_err();
+    assert!(
+        said.contains(":9: x_axis and y_axis are parallel"),
+        "{said}"
+    );
+}
