@@ -266,7 +266,7 @@ Geometry.OCCUnionUnify = 1;
 z_fin = z_back + fin_t;
 plane = 0;
 // bridge
-pu() = {56, 56, 34, -34, -56, -56};  pv() = {120, 147, 163, 163, 147, 120};  pr() = {0, 8, 12, 12, 8, 0};
+pu() = {56, 56, 34, -34, -56, -56};  pv() = {120, 152, 163, 163, 152, 120};  pr() = {0, 8, 12, 12, 8, 0};
 w0 = lug_z0;  w1 = z_fin;  Call RoundPoly;
 bridge = vol;
 cy = 0;  rr = 0;  rR = bri_r;  w0 = -100;  w1 = 100;  Call Ring;
@@ -280,7 +280,7 @@ plane = 0;
 pu() = fpu();  pv() = fpv();  pr() = fpr();  w0 = z_back;  w1 = z_fin;  Call RoundPoly;
 fingers = vol;
 // shoulders between the housing and the bridge
-pu() = {56, 56, 33, -33, -56, -56};  pv() = {140, 132, 96, 96, 132, 140};  pr() = {0, 12, 0, 0, 12, 0};
+pu() = {50, 56, 56, 33, -33, -56, -56, -50};  pv() = {147, 143, 132, 96, 96, 132, 143, 147};  pr() = {0, 0, 12, 0, 0, 12, 0, 0};
 w0 = lug_z0;  w1 = cyl_z1;  Call RoundPoly;
 shoulder = vol;
 // housing
@@ -289,7 +289,7 @@ house = vol;
 // lugs
 lugs() = {};
 For e In {-1:1:2}
-  pu() = {e*20, e*91, e*91, e*74, e*20};  pv() = {144, 144, 122, 122, 97};  pr() = {0, 9, 9, 8, 0};
+  pu() = {0, e*91, e*91, e*74, 0};  pv() = {144, 144, 122, 122, 88};  pr() = {0, 9, 9, 8, 0};
   w0 = lug_z0;  w1 = lug_z1;  Call RoundPoly;
   lugs() += {vol};
 EndFor

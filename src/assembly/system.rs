@@ -2,6 +2,7 @@
 
 use super::{BlockRows, DofMap, Pattern};
 use crate::Result;
+use crate::contact::Trace;
 use crate::petsc::{Comm, Gather, Matrix, Vector, partition};
 
 /// Anything that couples lists of nodes.
@@ -144,4 +145,15 @@ fn sum(comm: &Comm, pattern: &Pattern, dofs: &DofMap, families: &[&dyn Elements]
         Matrix::from_csr(comm, &offsets, &columns, &values)
     };
     Ok([matrix(k)?, matrix(m)?, matrix(c)?])
+}
+
+/// Contact points couple the nodes that their relative displacement depends on.
+impl Connectivity for Trace {
+    fn len(&self) -> usize {
+        Trace::len(self)
+    }
+
+    fn nodes(&self, a: usize) -> &[u32] {
+        self.point(a).0
+    }
 }

@@ -42,7 +42,7 @@ fn parts(text: &mut String, brake: &Brake) {
         "{:width$}  {:>8}  {:>9}  {:>26}  {:>32}  {:>17}",
         "part", "tets", "mass kg", "centre mm", "inertia kg mm2 (xx yy zz)", "quality min / med"
     );
-    let quality = quality::by_part(mesh);
+    let quality = quality::quality(mesh);
     for (i, name) in mesh.parts.iter().enumerate() {
         let part = brake.model.parts.iter().find(|part| part.name == *name).expect("checked against the mesh");
         let mut properties = MassProperties::default();
@@ -59,7 +59,7 @@ fn parts(text: &mut String, brake: &Brake) {
             "{name:width$}  {:>8}  {:>9.4}  {millimetres:>26}  {moments:>32}  {:>8.3} {:>8.3}",
             own.count(),
             properties.mass,
-            quality[i].minimum,
+            quality[i].min,
             quality[i].median
         );
     }

@@ -31,13 +31,6 @@ impl Progress {
         self.bar.inc(1);
     }
 
-    /// Prints a line above the bar; to standard output where there is no terminal.
-    pub fn line(&self, comm: &Comm, text: &str) {
-        if comm.is_root() {
-            self.bar.suspend(|| println!("{text}"));
-        }
-    }
-
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();

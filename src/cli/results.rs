@@ -72,7 +72,7 @@ impl State {
     /// Moment that the sliding pairs' friction exerts on a rotating part about its axis, N m: minus that on the slaves.
     pub fn friction_torque(&self, brake: &Brake, rotation: &crate::model::Rotation) -> f64 {
         let pairs = brake.interface.pairs.iter().zip(&self.balance.pairs);
-        let own = pairs.filter(|(pair, _)| pair.is_sliding() && brake.mesh.part_of_surface(&pair.master) == Some(&rotation.part));
+        let own = pairs.filter(|(pair, _)| pair.is_sliding() && master_part(brake, &pair.master) == Some(&rotation.part));
         -own.map(|(_, forces)| forces.on_slave.about(rotation.through, rotation.axis)).sum::<f64>()
     }
 
@@ -97,6 +97,11 @@ impl State {
         };
         folder.write(&format!("contact_mu{:.3}.vtu", self.friction), |mut out| grid.write(&mut out))
     }
+}
+
+/// Name of the part that a surface lies on.
+fn master_part<'a>(brake: &'a Brake, surface: &str) -> Option<&'a String> {
+    brake.mesh.part_of_surface(surface).map(|part| &brake.mesh.parts[part as usize])
 }
 
 fn part_nodes(brake: &Brake, part: &str) -> Vec<bool> {

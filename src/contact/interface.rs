@@ -43,6 +43,13 @@ pub struct Pair {
     pub statistics: Statistics,
 }
 
+impl Pair {
+    /// Whether the two surfaces slide for ever.
+    pub fn is_sliding(&self) -> bool {
+        self.kind == Kind::Sliding
+    }
+}
+
 /// What acts in the tangent plane of a pair; [`law::Tangential`] says how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -117,6 +124,16 @@ impl Interface {
     /// The coefficient of friction of each pair as the model file has it.
     pub fn frictions(&self) -> Vec<f64> {
         self.pairs.iter().map(|pair| pair.friction).collect()
+    }
+
+    /// The coefficients of friction with those of the swept pairs at one value.
+    pub fn frictions_at(&self, swept: f64) -> Vec<f64> {
+        self.pairs.iter().map(|pair| if pair.swept { swept } else { pair.friction }).collect()
+    }
+
+    /// The true laws with the swept pairs' friction at one value.
+    pub fn stage(&self, swept: f64) -> Stage {
+        Stage::Solve { friction: self.frictions_at(swept) }
     }
 
     /// What point `a` answers to its relative displacement g (m, from [`Trace::gap`]).

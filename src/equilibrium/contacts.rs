@@ -2,8 +2,7 @@
 
 use crate::Result;
 use crate::assembly::{DofMap, System};
-use crate::contact::interface::Interface;
-use crate::contact::law::{Response, Stage, Status};
+use crate::contact::{Interface, Response, Stage, Status};
 use crate::petsc::{Gather, Matrix, Vector};
 
 /// Evaluates all contact points of an interface, on every rank alike, so that the contact state is known everywhere.

@@ -3,7 +3,7 @@
 use super::contacts::{Contacts, Counts};
 use crate::Result;
 use crate::assembly::System;
-use crate::contact::law::{Response, Stage};
+use crate::contact::{Response, Stage};
 use crate::petsc::nonlinear::{self, LineSearch, Problem, Verdict};
 use crate::petsc::{Factor, Matrix, Vector};
 

@@ -4,7 +4,7 @@ use super::contacts::Contacts;
 use super::newton::{self, Iteration, Step, Workspace};
 use crate::assembly::System;
 use crate::contact::interface::Interface;
-use crate::contact::law::{Response, Stage};
+use crate::contact::{Response, Stage};
 use crate::petsc::{Factor, Matrix, Vector};
 use crate::{Error, Result};
 

@@ -2,7 +2,6 @@
 
 use crate::Result;
 use crate::assembly::System;
-use crate::contact::interface::Interface;
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::petsc::Matrix;
 
@@ -35,8 +34,9 @@ impl Linearised {
     pub fn update(&mut self, system: &System, contacts: &mut Contacts, equilibrium: &Equilibrium) -> Result<()> {
         let interface = contacts.interface();
         let gaps = contacts.gaps(&equilibrium.u)?;
-        for (matrix, friction) in [(&mut self.k, equilibrium.friction), (&mut self.k_symmetric, 0.0)] {
-            let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, friction);
+        let (frictions, none) = (interface.frictions_at(equilibrium.friction), vec![0.0; interface.pairs.len()]);
+        for (matrix, frictions) in [(&mut self.k, frictions), (&mut self.k_symmetric, none)] {
+            let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, &frictions);
             matrix.copy_from(&system.k)?;
             contacts.add_blocks((0..gaps.len()).map(block), matrix)?;
         }
@@ -47,22 +47,4 @@ impl Linearised {
     pub fn pencil<'a>(&'a self, system: &'a System) -> Pencil<'a> {
         Pencil { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k: &self.k, k_symmetric: &self.k_symmetric }
     }
-}
-
-/// Adds `B^T [mu p / |v| (I - n n^T - t t^T)] B` of the sliding points to C: the damping of friction's direction.
-///
-/// # Errors
-/// PETSc's.
-pub fn add_friction_damping(
-    linearised: &mut Linearised,
-    system: &System,
-    contacts: &Contacts,
-    interface: &Interface,
-    equilibrium: &Equilibrium,
-) -> Result<()> {
-    let mut c = system.c.duplicate()?;
-    let block = |a: usize| interface.friction_damping(a, &equilibrium.responses[a], equilibrium.friction);
-    contacts.add_blocks((0..interface.trace.len()).map(block), &mut c)?;
-    linearised.c = Some(c);
-    Ok(())
 }
