@@ -45,17 +45,17 @@ impl Skin {
             faces.insert(key(facet), None);
         }
         for (tet, nodes) in tets.iter().enumerate() {
-            for local in &FACES {
-                let facet = local.map(|i| nodes[i]);
-                if facet[..3].iter().all(|&node| wanted[node as usize]) {
-                    if let Some(face) = faces.get_mut(&key(&facet)) {
-                        let found = Face {
-                            tet: tet as u32,
-                            facet,
-                            inner: false,
-                        };
-                        *face = Some(outer(*face, found, tet_part));
-                    }
+            for facet in FACES.map(|local| local.map(|i| nodes[i])) {
+                if !facet[..3].iter().all(|&node| wanted[node as usize]) {
+                    continue;
+                }
+                if let Some(face) = faces.get_mut(&key(&facet)) {
+                    let found = Face {
+                        tet: tet as u32,
+                        facet,
+                        inner: false,
+                    };
+                    *face = Some(outer(*face, found, tet_part));
                 }
             }
         }

@@ -79,7 +79,7 @@ pub fn from_compliance(compliance: &Matrix6<f64>) -> Option<Matrix6<f64>> {
 /// Cholesky on the matrix scaled to a unit diagonal, `A_ij / sqrt(A_ii A_jj)`, with pivots above 1e-12.
 pub fn is_positive_definite(matrix: &Matrix6<f64>) -> bool {
     let diagonal = matrix.diagonal();
-    if diagonal.iter().any(|&d| !(d > 0.0)) {
+    if !diagonal.iter().all(|&d| d > 0.0) {
         return false;
     }
     let scaled = Matrix6::from_fn(|i, j| matrix[(i, j)] / (diagonal[i] * diagonal[j]).sqrt());

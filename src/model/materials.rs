@@ -183,7 +183,8 @@ impl<'a> Reader<'a> {
             .item
             .required(&self.raw.elasticity, "elasticity", advice)?;
         let C = Matrix6::from_fn(|i, j| rows.get_ref()[i][j]);
-        if !((C - C.transpose()).amax() <= 1e-6 * C.amax()) {
+        let is_finite = C.iter().all(|c| c.is_finite());
+        if !is_finite || (C - C.transpose()).amax() > 1e-6 * C.amax() {
             let what = "elasticity is not symmetric, or not finite";
             return Err(self.item.error(&rows.span(), what, advice));
         }

@@ -5,7 +5,7 @@
 //!                 (spans kept)                                                           (names and lines kept)
 //! ```
 //!
-//! A model file names things that the mesh defines (physical groups), so it is checked in two steps. [`read`] sees the file
+//! A model file names things that the mesh defines (physical groups), so it is checked in two steps. [`read()`] sees the file
 //! alone: keys, kinds, ranges, names defined within the file. [`Model::check_against`] sees the mesh too: names of surfaces, which
 //! pairs slide, what those need. Either way a message is
 //!

@@ -93,7 +93,8 @@ fn tets(
         elements.extend_from_slice(&block.elements);
     }
     if mesh.tets.is_empty() {
-        return Err("there are no tetrahedra. Mesh in three dimensions (gmsh -3), with a Physical Volume for each part".to_owned());
+        let advice = "Mesh in three dimensions (gmsh -3), with a Physical Volume for each part";
+        return Err(format!("there are no tetrahedra. {advice}"));
     }
     Ok(elements)
 }

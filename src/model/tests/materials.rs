@@ -74,6 +74,11 @@ fn full_matrices_must_be_symmetric_and_positive_definite() {
     assert!(with("[1,0,0,0,0,0]", "").is_ok());
     let said = with("[1,0.1,0,0,0,0]", "").unwrap_err();
     assert!(said.contains(":7: elasticity is not symmetric"), "{said}");
+    let said = with("[nan,0,0,0,0,0]", "").unwrap_err();
+    assert!(
+        said.contains(":7: elasticity is not symmetric, or not finite"),
+        "{said}"
+    );
     let said = with("[-1,0,0,0,0,0]", "").unwrap_err();
     assert!(
         said.contains(":7: elasticity is not positive definite"),
