@@ -1,6 +1,7 @@
-//! Build facts: the run path of the libraries and what `--version` tells of the build.
+//! Links MUMPS's build with SCOTCH into every executable, ahead of the plain build that PETSc itself asks for, so that
+//! PETSc's calls find it. Nothing of ours names its symbols, hence `--no-as-needed`.
 
 fn main() {
-    println!("cargo:rustc-link-arg=-Wl,--no-as-needed");
+    println!("cargo:rustc-link-arg=-Wl,--push-state,--no-as-needed,-ldmumps_ptscotch,--pop-state");
     println!("cargo:rerun-if-changed=build.rs");
 }

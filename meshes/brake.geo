@@ -16,18 +16,18 @@ EndIf
 // ---------------------------------------------------------------------------------------------- what the size decides
 k = size - 1;
 // element edge, mm                small   medium  full    million
-h_disc_()     = {         34    ,  12.0  ,  5.7   ,  4.2    };
-h_lining_()   = {         13    ,  7.0   ,  3.8   ,  3.0    };
-h_plate_()    = {         15    ,  8.0   ,  4.3   ,  3.4    };
-h_piston_()   = {         14    ,  9.0   ,  5.0   ,  3.8    };
-h_caliper_()  = {         28    ,  13    ,  4.5   ,  3.8    };
-h_bracket_()  = {         30    ,  13    ,  4.8   ,  4.0    };
-per_turn_()   = {         6     ,  6     ,  7     ,  9      };  // elements around a fillet's full circle, at least
-per_hole_()   = {         8     ,  8     ,  12    ,  16     };  // elements around a hole
-wall_h_()     = {         20    ,  7.0   ,  4.5   ,  3.5    };  // and along it
-vanes_()      = {         7     ,  17    ,  37    ,  37     };  // primes: no doublet of a low nodal diameter is split
-vane_n_()     = {         1     ,  1     ,  1     ,  2      };  // elements over a vane's height
-rmin_()       = {         100   ,  7     ,  0     ,  0      };  // corner radii below this stay sharp
+h_disc_()     = {  34    ,  13.5  ,  5.7   ,  4.3    };
+h_lining_()   = {  13    ,  7     ,  3.8   ,  3.0    };
+h_plate_()    = {  15    ,  8     ,  4.3   ,  3.4    };
+h_piston_()   = {  14    ,  9     ,  5     ,  3.8    };
+h_caliper_()  = {  26    ,  13    ,  4.5   ,  3.8    };
+h_bracket_()  = {  32    ,  13    ,  4.8   ,  4.0    };
+per_turn_()   = {  6     ,  8     ,  7     ,  9      };  // elements around a full circle of a fillet, at least
+per_hole_()   = {  8     ,  8     ,  12    ,  16     };  // elements around a hole
+wall_h_()     = {  20    ,  7     ,  4.5   ,  3.5    };  // and along it
+vanes_()      = {  7     ,  17    ,  37    ,  37     };  // primes: no doublet of a low nodal diameter is split
+vane_n_()     = {  1     ,  1     ,  1     ,  2      };  // elements over a vane's height
+rmin_()       = {  100   ,  8.5   ,  0     ,  0      };  // corner radii below this stay sharp
 vane_n = vane_n_(k);  h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);
 h_caliper = h_caliper_(k);  h_bracket = h_bracket_(k);  vanes = vanes_(k);  rmin = rmin_(k);
 
@@ -280,7 +280,7 @@ plane = 0;
 pu() = fpu();  pv() = fpv();  pr() = fpr();  w0 = z_back;  w1 = z_fin;  Call RoundPoly;
 fingers = vol;
 // shoulders between the housing and the bridge
-pu() = {50, 56, 56, 33, -33, -56, -56, -50};  pv() = {147, 143, 132, 96, 96, 132, 143, 147};  pr() = {0, 0, 12, 0, 0, 12, 0, 0};
+pu() = {50, 56, 56, 33, -33, -56, -56, -50};  pv() = {147, 143, 126, 96, 96, 126, 143, 147};  pr() = {0, 0, 0, 0, 0, 0, 0, 0};
 w0 = lug_z0;  w1 = cyl_z1;  Call RoundPoly;
 shoulder = vol;
 // housing

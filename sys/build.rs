@@ -38,12 +38,7 @@ fn main() {
     let path = env::var("PKG_CONFIG_PATH").unwrap_or_default();
     // SAFETY: a build script is single-threaded here.
     unsafe { env::set_var("PKG_CONFIG_PATH", format!("{REAL}:{path}")) };
-    for library in ["metis"] {
-        println!("cargo:rustc-link-lib={library}");
-    }
-    // Before petsc: then PETSc's own calls of MUMPS find the build that has SCOTCH.
-    println!("cargo:rustc-link-arg=-Wl,--no-as-needed");
-    println!("cargo:rustc-link-lib=dmumps_ptscotch");
+    println!("cargo:rustc-link-lib=metis");
     let slepc = probe("slepc", "libslepc-real-dev");
     let petsc = probe("petsc", "libpetsc-real-dev");
     let mpi = probe("mpi-c", "libopenmpi-dev");

@@ -70,7 +70,10 @@ impl Brake {
         }
         let mut own = self.interface.pairs.iter().filter(|pair| pair.swept).map(|pair| pair.friction);
         own.next().map(|mu| vec![mu]).ok_or_else(|| {
-            Error::input(format!("{}: no contact pair slides, so there is no friction to sweep", self.model.file.display()))
+            Error::input(format!(
+                "{}: no contact pair slides, so there is no friction to sweep",
+                self.model.file.display()
+            ))
         })
     }
 }

@@ -41,12 +41,8 @@ impl State {
     /// Rows of the contact table.
     pub fn pair_rows(&self, brake: &Brake) -> Vec<PairRow> {
         let rows = brake.interface.pairs.iter().zip(&self.balance.pairs);
-        rows.map(|(pair, forces)| PairRow {
-            friction: self.friction,
-            pair: pair.name.clone(),
-            forces: forces.clone(),
-        })
-        .collect()
+        rows.map(|(pair, forces)| PairRow { friction: self.friction, pair: pair.name.clone(), forces: forces.clone() })
+            .collect()
     }
 
     /// The checks in words: balance of forces and moments, torque of each rotation.
@@ -61,10 +57,8 @@ impl State {
             let of = |node: u32| nodes[node as usize];
             let held = self.balance.support_torque(&brake.mesh.nodes, of, rotation.through, rotation.axis);
             let friction = -self.friction_torque(brake, rotation);
-            text += &format!(
-                "torque that holds {}: {held:.3} N m; of friction on it: {friction:.3} N m\n",
-                rotation.part
-            );
+            text +=
+                &format!("torque that holds {}: {held:.3} N m; of friction on it: {friction:.3} N m\n", rotation.part);
         }
         text
     }
@@ -72,7 +66,8 @@ impl State {
     /// Moment that the sliding pairs' friction exerts on a rotating part about its axis, N m: minus that on the slaves.
     pub fn friction_torque(&self, brake: &Brake, rotation: &crate::model::Rotation) -> f64 {
         let pairs = brake.interface.pairs.iter().zip(&self.balance.pairs);
-        let own = pairs.filter(|(pair, _)| pair.is_sliding() && master_part(brake, &pair.master) == Some(&rotation.part));
+        let own =
+            pairs.filter(|(pair, _)| pair.is_sliding() && master_part(brake, &pair.master) == Some(&rotation.part));
         -own.map(|(_, forces)| forces.on_slave.about(rotation.through, rotation.axis)).sum::<f64>()
     }
 
@@ -203,11 +198,7 @@ pub fn write_last(folder: Option<&Folder>, brake: &Brake, system: &System, u: &V
 }
 
 /// Turns a CSV error into one of ours.
-pub fn csv_table(
-    folder: &Folder,
-    name: &str,
-    body: impl FnOnce(&mut dyn Write) -> csv::Result<()>,
-) -> Result<()> {
+pub fn csv_table(folder: &Folder, name: &str, body: impl FnOnce(&mut dyn Write) -> csv::Result<()>) -> Result<()> {
     folder.write(name, |out| body(out).map_err(std::io::Error::other))
 }
 

@@ -6,10 +6,10 @@ use crate::report::tables;
 use crate::sweep::{Event, Sweep};
 use crate::{Error, Result};
 
+use super::Run;
 use super::brake::Brake;
 use super::progress::Progress;
 use super::results::{self, State};
-use super::Run;
 
 pub fn run(comm: &Comm, run: &Run) -> Result<()> {
     let brake = Brake::read(comm, &run.model)?;
@@ -53,7 +53,11 @@ pub fn run(comm: &Comm, run: &Run) -> Result<()> {
 pub fn say(progress: &Progress, event: &Event) {
     match event {
         Event::Newton(label, i, it) => {
-            progress.say(format!("{label}: iteration {i}, residual {:.1e}, {} closed", it.residual, it.counts.closed()));
+            progress.say(format!(
+                "{label}: iteration {i}, residual {:.1e}, {} closed",
+                it.residual,
+                it.counts.closed()
+            ));
         }
         Event::Modes(converged, wanted, solves) => {
             progress.say(format!("modes: {converged} of {wanted} eigenvalues, {solves} solves"));

@@ -4,35 +4,19 @@ use nalgebra::Vector3;
 
 /// Degree-4 rule on the triangle (Strang and Fix 1973, six points): area coordinates `(1 - 2a, a, a)` and
 /// permutations, weight as a fraction of the triangle's area.
-const RULE: [(f64, f64); 2] = [
-    (0.445_948_490_915_964_9, 0.223_381_589_678_011_47),
-    (0.091_576_213_509_770_74, 0.109_951_743_655_321_87),
-];
+const RULE: [(f64, f64); 2] =
+    [(0.445_948_490_915_964_9, 0.223_381_589_678_011_47), (0.091_576_213_509_770_74, 0.109_951_743_655_321_87)];
 
 /// Corners at the ends of each edge; edge `k` has the midside node `3 + k`.
 pub(super) const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
 /// Natural coordinates (r, s) of the six nodes.
-pub(super) const NODES: [[f64; 2]; 6] = [
-    [0.0, 0.0],
-    [1.0, 0.0],
-    [0.0, 1.0],
-    [0.5, 0.0],
-    [0.5, 0.5],
-    [0.0, 0.5],
-];
+pub(super) const NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
 
 /// Shape functions at (r, s), with `L = 1 - r - s`: corners `L(2L-1), r(2r-1), s(2s-1)`, midsides `4Lr, 4rs, 4sL`.
 pub(super) fn shape([r, s]: [f64; 2]) -> [f64; 6] {
     let l = 1.0 - r - s;
-    [
-        l * (2.0 * l - 1.0),
-        r * (2.0 * r - 1.0),
-        s * (2.0 * s - 1.0),
-        4.0 * l * r,
-        4.0 * r * s,
-        4.0 * s * l,
-    ]
+    [l * (2.0 * l - 1.0), r * (2.0 * r - 1.0), s * (2.0 * s - 1.0), 4.0 * l * r, 4.0 * r * s, 4.0 * s * l]
 }
 
 /// First derivatives `[dN/dr, dN/ds]` of each shape function.
@@ -49,14 +33,8 @@ fn gradient([r, s]: [f64; 2]) -> [[f64; 2]; 6] {
 }
 
 /// Second derivatives `[d2N/dr2, d2N/drds, d2N/ds2]`, constant on the triangle.
-const CURVATURE: [[f64; 3]; 6] = [
-    [4.0, 4.0, 4.0],
-    [4.0, 0.0, 0.0],
-    [0.0, 0.0, 4.0],
-    [-8.0, -4.0, 0.0],
-    [0.0, 4.0, 0.0],
-    [0.0, -4.0, -8.0],
-];
+const CURVATURE: [[f64; 3]; 6] =
+    [[4.0, 4.0, 4.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0], [-8.0, -4.0, 0.0], [0.0, 4.0, 0.0], [0.0, -4.0, -8.0]];
 
 /// The points of the degree-4 rule with their fractions of the area.
 pub(super) fn rule() -> impl Iterator<Item = ([f64; 2], f64)> {
@@ -76,9 +54,7 @@ pub(super) struct Facet {
 impl Facet {
     /// Gathers a facet's nodes out of the mesh's.
     pub fn gather(nodes: &[[f64; 3]], facet: &[u32; 6]) -> Self {
-        Facet {
-            nodes: facet.map(|n| Vector3::from(nodes[n as usize])),
-        }
+        Facet { nodes: facet.map(|n| Vector3::from(nodes[n as usize])) }
     }
 
     /// `x = sum N_j x_j`.
@@ -116,10 +92,7 @@ impl Facet {
 
     /// Mean length of the three chords between corners.
     pub fn size(&self) -> f64 {
-        EDGES
-            .iter()
-            .map(|&[a, b]| (self.nodes[a] - self.nodes[b]).norm() / 3.0)
-            .sum()
+        EDGES.iter().map(|&[a, b]| (self.nodes[a] - self.nodes[b]).norm() / 3.0).sum()
     }
 
     /// An axis-aligned box that holds the whole curved facet.

@@ -149,13 +149,7 @@ impl Interface {
     }
 
     /// Tangent D (N/m, by rows) of point `a` for stability, its status frozen: [`law::linearise`].
-    pub fn linearise(
-        &self,
-        a: usize,
-        g: [f64; 3],
-        status: Status,
-        friction: &[f64],
-    ) -> [[f64; 3]; 3] {
+    pub fn linearise(&self, a: usize, g: [f64; 3], status: Status, friction: &[f64]) -> [[f64; 3]; 3] {
         let point = &self.points[a];
         law::linearise(&point.law, friction[point.pair], g, status)
     }

@@ -18,17 +18,13 @@ impl Motion {
     pub fn of(model: &Model, part: &str) -> Self {
         let own = model.rotations.iter().filter(|r| r.part == part);
         let rotations = own.map(|r| (r.speed * Vector3::from(r.axis), r.through.into()));
-        Motion {
-            rotations: rotations.collect(),
-        }
+        Motion { rotations: rotations.collect() }
     }
 
     /// `v = sum omega x (x - through)`, m/s.
     fn velocity(&self, x: &Vector3<f64>) -> Vector3<f64> {
         let terms = self.rotations.iter();
-        terms
-            .map(|(omega, through)| omega.cross(&(x - through)))
-            .sum()
+        terms.map(|(omega, through)| omega.cross(&(x - through))).sum()
     }
 
     /// `sum |omega|`, rad/s.
@@ -42,13 +38,7 @@ impl Motion {
 ///
 /// `None` where they do not move against each other: neither turns, both turn alike, or `x` lies on the axis. `size` is the
 /// length (m) that tells whether x lies on the axis.
-pub(super) fn sliding(
-    slave: &Motion,
-    master: &Motion,
-    x: [f64; 3],
-    n: [f64; 3],
-    size: f64,
-) -> Option<([f64; 3], f64)> {
+pub(super) fn sliding(slave: &Motion, master: &Motion, x: [f64; 3], n: [f64; 3], size: f64) -> Option<([f64; 3], f64)> {
     let (x, n) = (Vector3::from(x), Vector3::from(n));
     let (v_slave, v_master) = (slave.velocity(&x), master.velocity(&x));
     let v = v_master - v_slave;
@@ -63,14 +53,10 @@ mod tests {
     use super::*;
 
     fn about_z(omega: f64, through: [f64; 3]) -> Motion {
-        Motion {
-            rotations: vec![(Vector3::new(0.0, 0.0, omega), through.into())],
-        }
+        Motion { rotations: vec![(Vector3::new(0.0, 0.0, omega), through.into())] }
     }
 
-    const REST: Motion = Motion {
-        rotations: Vec::new(),
-    };
+    const REST: Motion = Motion { rotations: Vec::new() };
     const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
     #[test]

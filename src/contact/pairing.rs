@@ -14,21 +14,14 @@ use std::collections::BTreeSet;
 const TOUCH: f64 = 1e-6;
 
 /// Appends the points of a contact to the interface.
-pub(super) fn add_pair(
-    interface: &mut Interface,
-    model: &Model,
-    mesh: &Mesh,
-    contact: &Contact,
-) -> Result<()> {
+pub(super) fn add_pair(interface: &mut Interface, model: &Model, mesh: &Mesh, contact: &Contact) -> Result<()> {
     let site = Site::new(model, mesh, contact)?;
     let found = site.search()?;
     let laws = site.laws(&found)?;
     let first = interface.points.len();
     for (point, law) in found.points.iter().zip(&laws) {
         let facet = &site.master.facets[point.facet];
-        interface
-            .trace
-            .push_projection(point.node, facet, &point.shape);
+        interface.trace.push_projection(point.node, facet, &point.shape);
         interface.points.push(ContactPoint {
             pair: interface.pairs.len(),
             node: point.node,
@@ -45,11 +38,7 @@ pub(super) fn add_pair(
         friction: contact.friction,
         kind,
         separation: contact.separation,
-        swept: if model.swept.is_empty() {
-            kind == Kind::Sliding
-        } else {
-            model.swept.contains(&contact.name)
-        },
+        swept: if model.swept.is_empty() { kind == Kind::Sliding } else { model.swept.contains(&contact.name) },
         points: first..interface.points.len(),
         statistics: statistics(found, &laws),
     });
@@ -76,14 +65,7 @@ impl<'a> Site<'a> {
             motion(model, mesh, &contact.slave, slave).map_err(refuse)?,
             motion(model, mesh, &contact.master, master).map_err(refuse)?,
         ];
-        Ok(Site {
-            model,
-            mesh,
-            contact,
-            slave,
-            master,
-            motions,
-        })
+        Ok(Site { model, mesh, contact, slave, master, motions })
     }
 
     /// An input error that says which contact it is about.
@@ -137,11 +119,8 @@ impl<'a> Site<'a> {
     /// The law of every point found.
     fn laws(&self, found: &Found) -> Result<Vec<law::Point>> {
         let [slave, master] = &self.motions;
-        let directions: Vec<_> = found
-            .points
-            .iter()
-            .map(|p| sliding(slave, master, p.position, p.normal, p.size))
-            .collect();
+        let directions: Vec<_> =
+            found.points.iter().map(|p| sliding(slave, master, p.position, p.normal, p.size)).collect();
         let slides = directions.iter().any(Option::is_some);
         let resting = self.resting(slides)?;
         let laws = found.points.iter().zip(&directions);
@@ -153,10 +132,7 @@ impl<'a> Site<'a> {
                 touching: point.gap <= TOUCH * point.size,
                 separation: self.contact.separation,
                 normal_law: self.contact.law,
-                tangential: direction.map_or(resting, |(direction, speed)| Tangential::Sliding {
-                    direction,
-                    speed,
-                }),
+                tangential: direction.map_or(resting, |(direction, speed)| Tangential::Sliding { direction, speed }),
             })
             .collect())
     }
@@ -191,38 +167,20 @@ fn surface<'a>(mesh: &'a Mesh, name: &str) -> std::result::Result<&'a Surface, S
         Some(_) => Err(format!("the surface \"{name}\" has no facets")),
         None => {
             let known: Vec<_> = mesh.surfaces.keys().map(|k| format!("\"{k}\"")).collect();
-            Err(format!(
-                "the mesh has no surface \"{name}\"; it has {}",
-                known.join(", ")
-            ))
+            Err(format!("the mesh has no surface \"{name}\"; it has {}", known.join(", ")))
         }
     }
 }
 
 /// The motion of the parts under a surface, which must be one and the same.
-fn motion(
-    model: &Model,
-    mesh: &Mesh,
-    name: &str,
-    surface: &Surface,
-) -> std::result::Result<Motion, String> {
-    let parts: BTreeSet<u32> = surface
-        .tets
-        .iter()
-        .map(|&tet| mesh.tet_part[tet as usize])
-        .collect();
-    let mut motions = parts
-        .iter()
-        .map(|&part| Motion::of(model, &mesh.parts[part as usize]));
-    let first = motions
-        .next()
-        .ok_or_else(|| format!("the facets of \"{name}\" belong to no part"))?;
+fn motion(model: &Model, mesh: &Mesh, name: &str, surface: &Surface) -> std::result::Result<Motion, String> {
+    let parts: BTreeSet<u32> = surface.tets.iter().map(|&tet| mesh.tet_part[tet as usize]).collect();
+    let mut motions = parts.iter().map(|&part| Motion::of(model, &mesh.parts[part as usize]));
+    let first = motions.next().ok_or_else(|| format!("the facets of \"{name}\" belong to no part"))?;
     if motions.all(|other| other == first) {
         Ok(first)
     } else {
-        Err(format!(
-            "\"{name}\" lies on parts that turn differently. Split the surface by parts"
-        ))
+        Err(format!("\"{name}\" lies on parts that turn differently. Split the surface by parts"))
     }
 }
 
@@ -235,9 +193,7 @@ fn kind_of(laws: &[law::Point]) -> Kind {
         Tangential::Stick { .. } => Kind::Stick,
     };
     let mut kinds = laws.iter().map(kind);
-    kinds
-        .find(|k| *k != Kind::Frictionless)
-        .unwrap_or(Kind::Frictionless)
+    kinds.find(|k| *k != Kind::Frictionless).unwrap_or(Kind::Frictionless)
 }
 
 /// Sums up what the search found; there is at least one point.
@@ -246,10 +202,7 @@ fn statistics(found: Found, laws: &[law::Point]) -> Statistics {
     Statistics {
         area: found.area,
         weight: found.points.iter().map(|p| p.weight).sum(),
-        gap: [
-            gaps.clone().fold(f64::INFINITY, f64::min),
-            gaps.fold(f64::NEG_INFINITY, f64::max),
-        ],
+        gap: [gaps.clone().fold(f64::INFINITY, f64::min), gaps.fold(f64::NEG_INFINITY, f64::max)],
         touching: laws.iter().filter(|law| law.touching).count(),
         dropped: found.dropped,
     }

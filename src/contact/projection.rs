@@ -27,19 +27,13 @@ pub(super) struct Projection {
 /// Projects `p` on a facet: the closest point of the closed triangle.
 pub(super) fn project(facet: &Facet, p: &Vector3<f64>) -> Projection {
     // With p as the origin, f = |x|^2/2 keeps its digits far from the mesh's origin.
-    let local = Facet {
-        nodes: facet.nodes.map(|x| x - p),
-    };
+    let local = Facet { nodes: facet.nodes.map(|x| x - p) };
     let edges = (0..3).flat_map(|k| edge_candidates(&local, k));
     let boundary = lowest(&local, edges);
     let inside = rule().map(|(at, _)| at);
     let ends = std::iter::once(boundary).chain(inside);
     let at = lowest(&local, ends.map(|start| descend(&local, start)));
-    Projection {
-        at,
-        position: facet.position(at),
-        distance: local.position(at).norm(),
-    }
+    Projection { at, position: facet.position(at), distance: local.position(at).norm() }
 }
 
 /// The candidate with the smallest f; the first of equals.
@@ -66,18 +60,10 @@ fn edge_candidates(facet: &Facet, k: usize) -> Vec<[f64; 2]> {
     // x(t) = a + b t + c t^2 through xa, xm, xb at t = 0, 1/2, 1
     let (a, b, c) = (xa, 4.0 * xm - 3.0 * xa - xb, 2.0 * (xa + xb - 2.0 * xm));
     // f' = (a + b t + c t^2).(b + 2 c t)
-    let slope = [
-        a.dot(&b),
-        b.dot(&b) + 2.0 * a.dot(&c),
-        3.0 * b.dot(&c),
-        2.0 * c.dot(&c),
-    ];
+    let slope = [a.dot(&b), b.dot(&b) + 2.0 * a.dot(&c), 3.0 * b.dot(&c), 2.0 * c.dot(&c)];
     let ends = [0.0, 1.0];
     let on_edge = |t: f64| [0, 1].map(|m| NODES[i][m] + t * (NODES[j][m] - NODES[i][m]));
-    ends.into_iter()
-        .chain(minima_of_cubic_slope(slope))
-        .map(on_edge)
-        .collect()
+    ends.into_iter().chain(minima_of_cubic_slope(slope)).map(on_edge).collect()
 }
 
 /// Points of (0, 1) where the slope `c0 + c1 t + c2 t^2 + c3 t^3` changes from falling to rising.
@@ -111,11 +97,7 @@ fn bracketed_root(c: &[f64; 4], mut low: f64, mut high: f64) -> f64 {
             high = t;
         }
         let newton = t - value / (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3]));
-        let next = if newton > low && newton < high {
-            newton
-        } else {
-            0.5 * (low + high)
-        };
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         if (next - t).abs() <= f64::EPSILON {
             return next;
         }
@@ -151,9 +133,7 @@ fn newton_step(facet: &Facet, at: [f64; 2]) -> Vector2<f64> {
     let full = gauss + Matrix2::new(x.dot(&xrr), x.dot(&xrs), x.dot(&xrs), x.dot(&xss));
     let definite = full[(0, 0)] > 0.0 && full.determinant() > 1e-6 * gauss.determinant();
     let hessian = if definite { full } else { gauss };
-    hessian
-        .try_inverse()
-        .map_or(Vector2::zeros(), |inverse| -(inverse * slope))
+    hessian.try_inverse().map_or(Vector2::zeros(), |inverse| -(inverse * slope))
 }
 
 /// The longest of the step's halvings that stays in the triangle and does not ascend, up to the rounding of f that
@@ -176,9 +156,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn flat() -> Facet {
-        Facet {
-            nodes: NODES.map(|[r, s]| Vector3::new(r, s, 0.0)),
-        }
+        Facet { nodes: NODES.map(|[r, s]| Vector3::new(r, s, 0.0)) }
     }
 
     #[test]
@@ -198,10 +176,7 @@ mod tests {
             ([3.0, 0.1, 0.2], [1.0, 0.0, 0.0]),
         ] {
             let found = project(&flat(), &Vector3::from(p));
-            assert!(
-                (found.position - Vector3::from(expected)).norm() < 1e-14,
-                "{p:?}"
-            );
+            assert!((found.position - Vector3::from(expected)).norm() < 1e-14, "{p:?}");
         }
     }
 

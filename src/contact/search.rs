@@ -74,10 +74,7 @@ pub struct Found {
 pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Options) -> Found {
     let target = Target::new(master, nodes);
     let (candidates, area) = midside_nodes(slave, nodes);
-    let mut found = Found {
-        area,
-        ..Found::default()
-    };
+    let mut found = Found { area, ..Found::default() };
     for (node, point) in candidates {
         let reach = options.search_distance.unwrap_or(0.5 * point.size());
         match target.closest(&Vector3::from(nodes[node as usize]), &point, reach) {
@@ -140,11 +137,7 @@ struct Hit {
 
 impl Target {
     fn new(master: &Surface, nodes: &[[f64; 3]]) -> Self {
-        let facets: Vec<_> = master
-            .facets
-            .iter()
-            .map(|f| Facet::gather(nodes, f))
-            .collect();
+        let facets: Vec<_> = master.facets.iter().map(|f| Facet::gather(nodes, f)).collect();
         let boxes = facets.iter().enumerate().map(|(index, facet)| {
             let [low, high] = facet.bounds();
             GeomWithData::new(Rectangle::from_corners(low.into(), high.into()), index)
@@ -169,20 +162,14 @@ impl Target {
                 hits.push(hit);
             }
         }
-        hits.into_iter()
-            .filter(|hit| hit.projection.distance <= nearest + tolerance)
-            .min_by_key(|hit| hit.facet)
+        hits.into_iter().filter(|hit| hit.projection.distance <= nearest + tolerance).min_by_key(|hit| hit.facet)
     }
 
     /// Projects on a facet, unless its normal there does not face the slave's.
     fn facing(&self, facet: usize, x: &Vector3<f64>, slave: &Vector3<f64>) -> Option<Hit> {
         let projection = project(&self.facets[facet], x);
         let normal = self.facets[facet].normal(projection.at);
-        (normal.dot(&slave.normalize()) < FACING).then_some(Hit {
-            facet,
-            projection,
-            normal,
-        })
+        (normal.dot(&slave.normalize()) < FACING).then_some(Hit { facet, projection, normal })
     }
 }
 

@@ -11,19 +11,13 @@ use std::collections::BTreeMap;
 pub fn bent_facet() -> impl Strategy<Value = Facet> {
     let offsets = prop::array::uniform6(prop::array::uniform3(-0.08..0.08));
     offsets.prop_map(|offsets| Facet {
-        nodes: std::array::from_fn(|j| {
-            Vector3::new(NODES[j][0], NODES[j][1], 0.0) + Vector3::from(offsets[j])
-        }),
+        nodes: std::array::from_fn(|j| Vector3::new(NODES[j][0], NODES[j][1], 0.0) + Vector3::from(offsets[j])),
     })
 }
 
 /// A structured patch of `2 nu nv` quadratic facets: every node is `map(u, v)` with u, v in [0, 1], appended to
 /// `nodes`. Outward is the side of `map_u x map_v`.
-pub fn patch(
-    nodes: &mut Vec<[f64; 3]>,
-    [nu, nv]: [usize; 2],
-    map: impl Fn(f64, f64) -> [f64; 3],
-) -> Surface {
+pub fn patch(nodes: &mut Vec<[f64; 3]>, [nu, nv]: [usize; 2], map: impl Fn(f64, f64) -> [f64; 3]) -> Surface {
     let first = nodes.len();
     let (width, height) = (2 * nu + 1, 2 * nv + 1);
     for j in 0..height {
@@ -34,12 +28,7 @@ pub fn patch(
     let node = |i: usize, j: usize| (first + j * width + i) as u32;
     let mut surface = Surface::default();
     for (i, j) in (0..nv).flat_map(|j| (0..nu).map(move |i| (2 * i, 2 * j))) {
-        let [a, b, c, d] = [
-            node(i, j),
-            node(i + 2, j),
-            node(i + 2, j + 2),
-            node(i, j + 2),
-        ];
+        let [a, b, c, d] = [node(i, j), node(i + 2, j), node(i + 2, j + 2), node(i, j + 2)];
         let middle = node(i + 1, j + 1);
         let (south, east) = (node(i + 1, j), node(i + 2, j + 1));
         let (north, west) = (node(i + 1, j + 2), node(i, j + 1));
@@ -53,42 +42,26 @@ pub fn patch(
 /// The same facets seen from the other side.
 pub fn flipped(surface: &Surface) -> Surface {
     Surface {
-        facets: surface
-            .facets
-            .iter()
-            .map(|&[a, b, c, ab, bc, ca]| [a, c, b, ca, bc, ab])
-            .collect(),
-        tets: surface.tets.clone(),
+        facets: surface.facets.iter().map(|&[a, b, c, ab, bc, ca]| [a, c, b, ca, bc, ab]).collect(),
+        ..surface.clone()
     }
 }
 
 /// Turns every facet so that its normal at the first corner points along `outward`.
 pub fn oriented(surface: &Surface, nodes: &[[f64; 3]], outward: [f64; 3]) -> Surface {
-    let points_inward = |facet: &[u32; 6]| {
-        Facet::gather(nodes, facet)
-            .normal([0.0, 0.0])
-            .dot(&Vector3::from(outward))
-            < 0.0
-    };
+    let points_inward =
+        |facet: &[u32; 6]| Facet::gather(nodes, facet).normal([0.0, 0.0]).dot(&Vector3::from(outward)) < 0.0;
     let turned = flipped(surface);
     let facets = surface.facets.iter().zip(&turned.facets);
     Surface {
-        facets: facets
-            .map(|(f, t)| if points_inward(f) { *t } else { *f })
-            .collect(),
-        tets: surface.tets.clone(),
+        facets: facets.map(|(f, t)| if points_inward(f) { *t } else { *f }).collect(),
+        ..surface.clone()
     }
 }
 
 /// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.
 pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
-    let rotation = Rotation {
-        part: "disc".into(),
-        axis: [0.0, 0.0, 1.0],
-        through: [0.0; 3],
-        speed: 5.0,
-        line: 1,
-    };
+    let rotation = Rotation { part: "disc".into(), axis: [0.0, 0.0, 1.0], through: [0.0; 3], speed: 5.0, line: 1 };
     Model {
         file: "brake.toml".into(),
         title: String::new(),
@@ -103,6 +76,9 @@ pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
         band: [0.0, 1.0],
         swept: Vec::new(),
         frictions: Vec::new(),
+        mesh_line: 1,
+        sweep_line: 0,
+        reduction: None,
     }
 }
 
@@ -123,10 +99,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
 
 /// A mesh of surfaces only: each comes with the name of the part it lies on.
 pub fn skin(nodes: Vec<[f64; 3]>, surfaces: Vec<(&str, &str, Surface)>) -> Mesh {
-    let mut mesh = Mesh {
-        nodes,
-        ..Mesh::default()
-    };
+    let mut mesh = Mesh { nodes, ..Mesh::default() };
     for (name, part, mut surface) in surfaces {
         surface.tets = vec![mesh.tet_part.len() as u32; surface.facets.len()];
         mesh.tet_part.push(mesh.parts.len() as u32);
@@ -182,9 +155,7 @@ pub fn read_surfaces(text: &str, unit: f64) -> (Vec<[f64; 3]>, BTreeMap<String, 
         if let (Some(name), "9") = (physical.get(&tag).and_then(|p| names.get(p)), kind) {
             let surface = surfaces.entry(name.clone()).or_default();
             for words in &lines[at + 1..][..n] {
-                surface
-                    .facets
-                    .push(std::array::from_fn(|j| index[&int(words[1 + j])]));
+                surface.facets.push(std::array::from_fn(|j| index[&int(words[1 + j])]));
                 surface.tets.push(0);
             }
         }

@@ -23,11 +23,7 @@ pub struct Trace {
 
 impl Default for Trace {
     fn default() -> Self {
-        Trace {
-            offsets: vec![0],
-            nodes: Vec::new(),
-            blocks: Vec::new(),
-        }
+        Trace { offsets: vec![0], nodes: Vec::new(), blocks: Vec::new() }
     }
 }
 
@@ -106,10 +102,7 @@ impl Trace {
     pub fn spread(&self, a: usize, force: [f64; 3], mut add: impl FnMut(u32, [f64; 3])) {
         let (nodes, blocks) = self.point(a);
         for (&n, b) in nodes.iter().zip(blocks) {
-            add(
-                n,
-                [0, 1, 2].map(|j| (0..3).map(|i| b[i][j] * force[i]).sum()),
-            );
+            add(n, [0, 1, 2].map(|j| (0..3).map(|i| b[i][j] * force[i]).sum()));
         }
     }
 
@@ -127,8 +120,7 @@ impl Trace {
                 for i in 0..3 {
                     for j in 0..3 {
                         // (B_m^T D B_n)_ij = sum_k B_m,ki (D B_n)_kj
-                        out[(3 * row + i) * width + 3 * column + j] =
-                            (0..3).map(|k| left[k][i] * db[k][j]).sum();
+                        out[(3 * row + i) * width + 3 * column + j] = (0..3).map(|k| left[k][i] * db[k][j]).sum();
                     }
                 }
             }
@@ -177,10 +169,7 @@ mod tests {
     #[test]
     fn blocks_of_a_repeated_node_are_added() {
         let mut trace = Trace::new();
-        trace.push(
-            &[7, 3, 7],
-            &[diagonal(1.0), diagonal(-0.25), diagonal(-0.75)],
-        );
+        trace.push(&[7, 3, 7], &[diagonal(1.0), diagonal(-0.25), diagonal(-0.75)]);
         let (nodes, blocks) = trace.point(0);
         assert_eq!(nodes, [7, 3]);
         assert_eq!(blocks, [diagonal(0.25), diagonal(-0.25)]);

@@ -124,11 +124,7 @@ impl Balance {
 }
 
 /// `f = sum_e K_e u_e` at the nodes that have a held displacement.
-fn internal_forces_at_supports(
-    families: &[&dyn Elements],
-    dofs: &DofMap,
-    u: &[[f64; 3]],
-) -> BTreeMap<u32, [f64; 3]> {
+fn internal_forces_at_supports(families: &[&dyn Elements], dofs: &DofMap, u: &[[f64; 3]]) -> BTreeMap<u32, [f64; 3]> {
     let is_held = |n: u32| dofs.equations(n).iter().any(|&e| e < 0);
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     let mut element = ElementMatrices::default();

@@ -140,12 +140,8 @@ impl<'a> Path<'a> {
         progress: &mut dyn FnMut(&str, usize, &Iteration),
     ) -> Result<(Step, Vec<Response>)> {
         let name = label.clone();
-        let workspace = Workspace {
-            system: self.system,
-            contacts: &mut self.contacts,
-            factor,
-            tangent: &mut self.tangent,
-        };
+        let workspace =
+            Workspace { system: self.system, contacts: &mut self.contacts, factor, tangent: &mut self.tangent };
         newton::solve(workspace, u, stage, label, &mut |i, it| progress(&name, i, it))
     }
 

@@ -29,10 +29,7 @@ pub fn node_graph(n_nodes: usize, tets: &[[u32; 10]]) -> Csr {
     let tets_of = tets_of_nodes(n_nodes, tets);
     // seen[j] = i + 1 while row i is gathered: nothing needs to be cleared between rows.
     let mut seen = vec![0_u32; n_nodes];
-    let mut graph = Csr {
-        offsets: Vec::with_capacity(n_nodes + 1),
-        neighbours: Vec::new(),
-    };
+    let mut graph = Csr { offsets: Vec::with_capacity(n_nodes + 1), neighbours: Vec::new() };
     graph.offsets.push(0);
     for i in 0..n_nodes {
         let begin = graph.neighbours.len();
@@ -69,10 +66,7 @@ pub fn tets_of_nodes(n_nodes: usize, tets: &[[u32; 10]]) -> Csr {
             next[node as usize] += 1;
         }
     }
-    Csr {
-        offsets,
-        neighbours,
-    }
+    Csr { offsets, neighbours }
 }
 
 #[cfg(test)]
@@ -82,10 +76,7 @@ mod tests {
     #[test]
     fn two_tetrahedra_that_share_a_face_make_one_graph() {
         // They share the nodes 0, 1, 2, 4, 5, 6; 14 is in none.
-        let tets = [
-            [0, 1, 2, 3, 4, 5, 6, 7, 8, 9],
-            [0, 2, 1, 10, 6, 5, 4, 11, 12, 13],
-        ];
+        let tets = [[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], [0, 2, 1, 10, 6, 5, 4, 11, 12, 13]];
         let graph = node_graph(15, &tets);
         assert_eq!(graph.row(3), [0, 1, 2, 4, 5, 6, 7, 8, 9]);
         assert_eq!(graph.row(10), [0, 1, 2, 4, 5, 6, 11, 12, 13]);

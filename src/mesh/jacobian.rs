@@ -20,11 +20,7 @@ pub fn at_corners(x: &[[f64; 3]; 10]) -> [Matrix3<f64>; 4] {
     std::array::from_fn(|i| {
         let gradient = |m: usize| {
             let x_m = Vector3::from(x[m]);
-            if m == i {
-                3.0 * x_m
-            } else {
-                4.0 * Vector3::from(x[MIDSIDE[i][m]]) - x_m
-            }
+            if m == i { 3.0 * x_m } else { 4.0 * Vector3::from(x[MIDSIDE[i][m]]) - x_m }
         };
         let g_0 = gradient(0);
         Matrix3::from_columns(&[gradient(1) - g_0, gradient(2) - g_0, gradient(3) - g_0])

@@ -30,13 +30,8 @@ pub fn quality(mesh: &Mesh) -> Vec<Quality> {
         let x = mesh.tet_nodes(tet);
         by_part[part as usize].push((scaled_jacobian(&x), ratio(&x), tet as u32));
     }
-    let parts = by_part
-        .into_iter()
-        .enumerate()
-        .filter(|(_, tets)| !tets.is_empty());
-    parts
-        .map(|(part, tets)| summary(mesh, part, tets))
-        .collect()
+    let parts = by_part.into_iter().enumerate().filter(|(_, tets)| !tets.is_empty());
+    parts.map(|(part, tets)| summary(mesh, part, tets)).collect()
 }
 
 fn summary(mesh: &Mesh, part: usize, mut tets: Vec<(f64, f64, u32)>) -> Quality {
@@ -58,10 +53,7 @@ fn summary(mesh: &Mesh, part: usize, mut tets: Vec<(f64, f64, u32)>) -> Quality 
 pub fn scaled_jacobian(x: &[[f64; 3]; 10]) -> f64 {
     let corners = jacobian::at_corners(x);
     let scaled = corners.iter().enumerate().map(|(i, J)| {
-        let lengths: f64 = (0..4)
-            .filter(|&k| k != i)
-            .map(|k| tangent_length(J, i, k))
-            .product();
+        let lengths: f64 = (0..4).filter(|&k| k != i).map(|k| tangent_length(J, i, k)).product();
         2.0_f64.sqrt() * J.determinant() / lengths
     });
     scaled.fold(f64::INFINITY, f64::min)
@@ -80,10 +72,7 @@ fn tangent_length(J: &Matrix3<f64>, i: usize, k: usize) -> f64 {
 fn ratio(x: &[[f64; 3]; 10]) -> f64 {
     let determinants = jacobian::determinants(x);
     let least = determinants.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = determinants
-        .iter()
-        .copied()
-        .fold(f64::NEG_INFINITY, f64::max);
+    let greatest = determinants.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     least / greatest
 }
 
@@ -92,12 +81,7 @@ mod tests {
     use super::super::jacobian::straight;
     use super::*;
 
-    const REGULAR: [[f64; 3]; 4] = [
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-    ];
+    const REGULAR: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]];
 
     #[test]
     fn a_regular_tetrahedron_scores_one_and_a_corner_of_a_cube_less() {
@@ -122,21 +106,10 @@ mod tests {
         let mut bent = straight(cube);
         bent[4][0] = 0.45;
         let nodes = [straight(REGULAR), bent].concat();
-        let tets = vec![
-            std::array::from_fn(|i| i as u32),
-            std::array::from_fn(|i| i as u32 + 10),
-        ];
+        let tets = vec![std::array::from_fn(|i| i as u32), std::array::from_fn(|i| i as u32 + 10)];
         let parts = vec!["a".to_owned(), "b".to_owned()];
-        let mesh = Mesh {
-            nodes,
-            tets,
-            tet_part: vec![1, 0],
-            parts,
-            ..Mesh::default()
-        };
-        let [a, b] = &quality(&mesh)[..] else {
-            panic!("two parts")
-        };
+        let mesh = Mesh { nodes, tets, tet_part: vec![1, 0], parts, ..Mesh::default() };
+        let [a, b] = &quality(&mesh)[..] else { panic!("two parts") };
         assert_eq!((a.part.as_str(), a.n_tets, a.worst), ("a", 1, 1));
         assert!(a.min_ratio < 0.9 && (b.min_ratio - 1.0).abs() < 1e-14);
         assert!((b.min - 1.0).abs() < 1e-14 && b.min == b.median);

@@ -3,12 +3,7 @@
 use std::collections::HashMap;
 
 /// Local nodes of a tetrahedron's faces, corners then midsides, turning so that the normal points out.
-const FACES: [[usize; 6]; 4] = [
-    [0, 2, 1, 6, 5, 4],
-    [0, 1, 3, 4, 8, 7],
-    [1, 2, 3, 5, 9, 8],
-    [2, 0, 3, 6, 7, 9],
-];
+const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
 
 /// A face of a tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,11 +45,7 @@ impl Skin {
                     continue;
                 }
                 if let Some(face) = faces.get_mut(&key(&facet)) {
-                    let found = Face {
-                        tet: tet as u32,
-                        facet,
-                        inner: false,
-                    };
+                    let found = Face { tet: tet as u32, facet, inner: false };
                     *face = Some(outer(*face, found, tet_part));
                 }
             }
@@ -75,10 +66,7 @@ fn outer(known: Option<Face>, found: Face, tet_part: &[u32]) -> Face {
         return found;
     };
     let is_first = tet_part[known.tet as usize] <= tet_part[found.tet as usize];
-    Face {
-        inner: true,
-        ..if is_first { known } else { found }
-    }
+    Face { inner: true, ..if is_first { known } else { found } }
 }
 
 fn key(facet: &[u32; 6]) -> [u32; 3] {
@@ -113,10 +101,7 @@ mod tests {
 
     #[test]
     fn a_shared_facet_belongs_to_the_first_part() {
-        let tets = [
-            [0, 1, 2, 3, 4, 5, 6, 7, 8, 9],
-            [0, 2, 1, 10, 6, 5, 4, 11, 12, 13],
-        ];
+        let tets = [[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], [0, 2, 1, 10, 6, 5, 4, 11, 12, 13]];
         let facet = [1, 2, 0, 5, 6, 4];
         for (parts, tet) in [([0, 1], 0), ([1, 0], 1), ([0, 0], 0)] {
             let skin = Skin::new(14, &tets, &parts, [facet].iter());
@@ -125,14 +110,7 @@ mod tests {
         }
         let skin = Skin::new(14, &tets, &[0, 1], [[0, 1, 3, 4, 8, 7]].iter());
         let face = skin.face(&[3, 0, 1, 7, 4, 8]).unwrap();
-        assert_eq!(
-            face,
-            Face {
-                tet: 0,
-                facet: [0, 1, 3, 4, 8, 7],
-                inner: false
-            }
-        );
+        assert_eq!(face, Face { tet: 0, facet: [0, 1, 3, 4, 8, 7], inner: false });
         assert_eq!(skin.face(&[3, 0, 1, 7, 4, 9]), None);
         assert_eq!(skin.face(&[0, 3, 2, 7, 9, 6]), None);
     }

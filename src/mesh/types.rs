@@ -49,10 +49,7 @@ impl Mesh {
     /// The parts that a surface lies on (indices, ascending); none where no surface has this name.
     pub fn parts_of_surface(&self, name: &str) -> Option<Vec<u32>> {
         let tets = &self.surfaces.get(name)?.tets;
-        let mut parts: Vec<u32> = tets
-            .iter()
-            .map(|&tet| self.tet_part[tet as usize])
-            .collect();
+        let mut parts: Vec<u32> = tets.iter().map(|&tet| self.tet_part[tet as usize]).collect();
         parts.sort_unstable();
         parts.dedup();
         Some(parts)

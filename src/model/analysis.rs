@@ -25,11 +25,7 @@ pub struct Sweep {
 }
 
 /// The sweep, once the contacts it names exist.
-pub fn sweep(
-    source: Source,
-    raw: Option<&Spanned<keys::Sweep>>,
-    contacts: &[Contact],
-) -> Result<Sweep> {
+pub fn sweep(source: Source, raw: Option<&Spanned<keys::Sweep>>, contacts: &[Contact]) -> Result<Sweep> {
     let Some(raw) = raw else {
         return Ok(Sweep::default());
     };
@@ -48,11 +44,7 @@ fn swept(item: &Item, wanted: Option<&[Text]>, contacts: &[Contact]) -> Result<V
         let text = name.get_ref();
         if !contacts.iter().any(|contact| &contact.name == text) {
             let advice = names::advice(text, contacts.iter().map(|contact| contact.name.as_str()));
-            return Err(item.error(
-                &name.span(),
-                format_args!("unknown contact {text:?}"),
-                advice,
-            ));
+            return Err(item.error(&name.span(), format_args!("unknown contact {text:?}"), advice));
         }
         if swept.contains(text) {
             let what = format_args!("contact {text:?} is named twice");
@@ -73,10 +65,7 @@ fn values(item: &Item, raw: &FrictionSweep) -> Result<Vec<f64>> {
             values.iter().map(|value| friction(item, value)).collect()
         }
         (None, Some(from), Some(to), Some(step)) => range(item, from, to, step),
-        _ => Err(item.error_here(
-            "the values of the friction are not given, or given twice",
-            RANGE,
-        )),
+        _ => Err(item.error_here("the values of the friction are not given, or given twice", RANGE)),
     }
 }
 
@@ -105,9 +94,5 @@ pub fn reduction(source: Source, raw: &Spanned<keys::Reduction>) -> Result<Reduc
         let advice = "Give the number of reference pairs, such as 104";
         return Err(item.error(&contacts.span(), "contacts must be above 0", advice));
     }
-    Ok(Reduction {
-        contacts: *contacts.get_ref(),
-        band: item.band(&raw.get_ref().band)?,
-        line: item.line(),
-    })
+    Ok(Reduction { contacts: *contacts.get_ref(), band: item.band(&raw.get_ref().band)?, line: item.line() })
 }

@@ -9,16 +9,10 @@ use std::collections::HashSet;
 use toml::Spanned;
 
 /// The parts in the order of the file.
-pub fn parts(
-    source: Source,
-    raw: &keys::Named<keys::Part>,
-    materials: &[Material],
-) -> Result<Vec<Part>> {
+pub fn parts(source: Source, raw: &keys::Named<keys::Part>, materials: &[Material]) -> Result<Vec<Part>> {
     let mut raw: Vec<(&Text, &keys::Part)> = raw.iter().collect();
     raw.sort_by_key(|(name, _)| name.span().start);
-    raw.into_iter()
-        .map(|(name, raw)| part(source, name, raw, materials))
-        .collect()
+    raw.into_iter().map(|(name, raw)| part(source, name, raw, materials)).collect()
 }
 
 fn part(source: Source, name: &Text, raw: &keys::Part, materials: &[Material]) -> Result<Part> {
@@ -53,11 +47,7 @@ pub fn fixes(source: Source, raw: &[Spanned<keys::Fix>]) -> Result<Vec<Fix>> {
     let fix = |fix: &Spanned<keys::Fix>| {
         let raw = fix.get_ref();
         let item = Item::new(source, format!("fix of {:?}", raw.nodes), fix.span());
-        Ok(Fix {
-            nodes: raw.nodes.clone(),
-            axes: axes(&item, &raw.axes)?,
-            line: item.line(),
-        })
+        Ok(Fix { nodes: raw.nodes.clone(), axes: axes(&item, &raw.axes)?, line: item.line() })
     };
     raw.iter().map(fix).collect()
 }
@@ -71,29 +61,16 @@ fn axes(item: &Item, text: &Text) -> Result<[bool; 3]> {
             _ => return Err(wrong_axes(item, text)),
         }
     }
-    if held.contains(&true) {
-        Ok(held)
-    } else {
-        Err(wrong_axes(item, text))
-    }
+    if held.contains(&true) { Ok(held) } else { Err(wrong_axes(item, text)) }
 }
 
 fn wrong_axes(item: &Item, text: &Text) -> crate::Error {
     let what = format_args!("axes = {:?} does not name directions", text.get_ref());
-    item.error(
-        &text.span(),
-        what,
-        "Give one or more of x, y, z, each once, such as \"xyz\"",
-    )
+    item.error(&text.span(), what, "Give one or more of x, y, z, each once, such as \"xyz\"")
 }
 
 /// The imposed velocities; `unit` is metres per unit of the mesh.
-pub fn rotations(
-    source: Source,
-    raw: &[Spanned<keys::Rotation>],
-    parts: &[Part],
-    unit: f64,
-) -> Result<Vec<Rotation>> {
+pub fn rotations(source: Source, raw: &[Spanned<keys::Rotation>], parts: &[Part], unit: f64) -> Result<Vec<Rotation>> {
     let mut seen = HashSet::new();
     let mut rotations = Vec::new();
     for rotation in raw {
@@ -102,11 +79,7 @@ pub fn rotations(
         let span = rotation.get_ref().part.span();
         known_part(&item, name, &span, parts)?;
         if !seen.insert(name) {
-            return Err(item.error(
-                &span,
-                "the part turns already",
-                "Keep one [[rotation]] for each part",
-            ));
+            return Err(item.error(&span, "the part turns already", "Keep one [[rotation]] for each part"));
         }
         rotations.push(self::rotation(&item, rotation.get_ref(), unit)?);
     }

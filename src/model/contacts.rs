@@ -17,10 +17,7 @@ pub fn contacts(source: Source, raw: &[Spanned<keys::Contact>], unit: f64) -> Re
     let mut contacts = Vec::new();
     for contact in raw {
         let raw = contact.get_ref();
-        let name = raw
-            .name
-            .clone()
-            .unwrap_or_else(|| format!("{} / {}", raw.slave, raw.master));
+        let name = raw.name.clone().unwrap_or_else(|| format!("{} / {}", raw.slave, raw.master));
         let item = Item::new(source, format!("contact {name:?}"), contact.span());
         unused(&item, &name, &mut seen)?;
         contacts.push(self::contact(&item, name, raw, unit)?);
@@ -44,17 +41,11 @@ fn contact(item: &Item, name: String, raw: &keys::Contact, unit: f64) -> Result<
         let what = format_args!("slave and master are both {:?}", raw.slave);
         return Err(item.error_here(what, "Name the two surfaces that meet"));
     }
-    let stick = raw
-        .stick
+    let stick = raw.stick.as_ref().map(|k| item.positive(k, "stick", "Give N/m3, such as 1e13"));
+    let search = raw
+        .search
         .as_ref()
-        .map(|k| item.positive(k, "stick", "Give N/m3, such as 1e13"));
-    let search = raw.search.as_ref().map(|d| {
-        item.positive(
-            d,
-            "search",
-            "Give a distance in the mesh's unit, or leave it out for no limit",
-        )
-    });
+        .map(|d| item.positive(d, "search", "Give a distance in the mesh's unit, or leave it out for no limit"));
     Ok(Contact {
         name,
         slave: raw.slave.clone(),
@@ -71,21 +62,13 @@ fn contact(item: &Item, name: String, raw: &keys::Contact, unit: f64) -> Result<
 /// A coefficient of friction.
 pub fn friction(item: &Item, value: &Spanned<f64>) -> Result<f64> {
     let holds = (0.0..=LARGEST_FRICTION).contains(value.get_ref());
-    item.check(
-        value,
-        holds,
-        "friction",
-        "must be from 0 to 2",
-        "Give a coefficient, such as 0.5",
-    )
+    item.check(value, holds, "friction", "must be from 0 to 2", "Give a coefficient, such as 0.5")
 }
 
 fn law(item: &Item, raw: &Spanned<keys::Law>) -> Result<NormalLaw> {
     let example = "Give law = { linear = 2e13 } in N/m3, or { cubic = [k1, k3] } in N/m3 and N/m5";
     match (&raw.get_ref().linear, &raw.get_ref().cubic) {
-        (Some(k), None) => Ok(NormalLaw::Linear {
-            stiffness: item.positive(k, "linear", example)?,
-        }),
+        (Some(k), None) => Ok(NormalLaw::Linear { stiffness: item.positive(k, "linear", example)? }),
         (None, Some(k)) => {
             let [k1, k3] = item.each(k, |x| x > 0.0, "cubic", "must be above 0", example)?;
             Ok(NormalLaw::Cubic { k1, k3 })
@@ -96,11 +79,7 @@ fn law(item: &Item, raw: &Spanned<keys::Law>) -> Result<NormalLaw> {
 }
 
 /// The connectors; `unit` is metres per unit of the mesh.
-pub fn connectors(
-    source: Source,
-    raw: &[Spanned<keys::Connector>],
-    unit: f64,
-) -> Result<Vec<Connector>> {
+pub fn connectors(source: Source, raw: &[Spanned<keys::Connector>], unit: f64) -> Result<Vec<Connector>> {
     let mut seen = HashMap::new();
     let mut connectors = Vec::new();
     for connector in raw {
@@ -120,9 +99,8 @@ fn connector(item: &Item, name: String, raw: &keys::Connector, unit: f64) -> Res
         let what = format_args!("both ends are {a:?}");
         return Err(item.error(&raw.between.span(), what, "Name two different node sets"));
     }
-    let constants = |values: &Vector, key: &str, advice: &str| {
-        item.each(values, |x| x >= 0.0, key, "must be 0 or above", advice)
-    };
+    let constants =
+        |values: &Vector, key: &str, advice: &str| item.each(values, |x| x >= 0.0, key, "must be 0 or above", advice);
     let optional = |values: &Option<Vector>, key, advice| match values {
         Some(values) => constants(values, key, advice),
         None => Ok([0.0; 3]),
@@ -131,31 +109,15 @@ fn connector(item: &Item, name: String, raw: &keys::Connector, unit: f64) -> Res
     let connector = Connector {
         name,
         between: raw.between.get_ref().clone(),
-        at: raw
-            .at
-            .as_ref()
-            .map(|at| item.finite(at, "at"))
-            .transpose()?
-            .map(|at| at.map(|x| x * unit)),
+        at: raw.at.as_ref().map(|at| item.finite(at, "at")).transpose()?.map(|at| at.map(|x| x * unit)),
         stiffness: constants(&raw.stiffness, "stiffness", "Give [x, y, z] in N/m")?,
-        rotational_stiffness: optional(
-            &raw.rotational_stiffness,
-            "rotational_stiffness",
-            rotational,
-        )?,
+        rotational_stiffness: optional(&raw.rotational_stiffness, "rotational_stiffness", rotational)?,
         damping: optional(&raw.damping, "damping", "Give [x, y, z] in N s/m")?,
         line: item.line(),
     };
-    let all = [
-        connector.stiffness,
-        connector.rotational_stiffness,
-        connector.damping,
-    ];
+    let all = [connector.stiffness, connector.rotational_stiffness, connector.damping];
     if all.as_flattened().iter().all(|&x| x == 0.0) {
-        return Err(item.error_here(
-            "all its constants are 0",
-            "Give it a stiffness, or leave it out",
-        ));
+        return Err(item.error_here("all its constants are 0", "Give it a stiffness, or leave it out"));
     }
     Ok(connector)
 }

@@ -28,11 +28,7 @@ pub fn orthotropic_compliance(young: [f64; 3], poisson: [f64; 3], shear: [f64; 3
 
 /// Compliance of an isotropic material, 1/Pa: orthotropic with `G = E / (2 (1 + nu))`.
 pub fn isotropic_compliance(young: f64, poisson: f64) -> Matrix6<f64> {
-    orthotropic_compliance(
-        [young; 3],
-        [poisson; 3],
-        [young / (2.0 * (1.0 + poisson)); 3],
-    )
+    orthotropic_compliance([young; 3], [poisson; 3], [young / (2.0 * (1.0 + poisson)); 3])
 }
 
 /// Constants of a material that is isotropic across its z axis.
@@ -69,9 +65,7 @@ pub fn from_compliance(compliance: &Matrix6<f64>) -> Option<Matrix6<f64>> {
     if !is_positive_definite(compliance) {
         return None;
     }
-    compliance
-        .cholesky()
-        .map(|factor| symmetric(&factor.inverse()))
+    compliance.cholesky().map(|factor| symmetric(&factor.inverse()))
 }
 
 /// Whether a symmetric matrix is positive definite beyond rounding.
@@ -135,13 +129,8 @@ pub fn axes_from(x_axis: [f64; 3], y_axis: [f64; 3]) -> Option<Matrix3<f64>> {
 mod tests {
     use super::*;
 
-    const LINING: Transverse = Transverse {
-        young: 9e9,
-        young_axial: 1.5e9,
-        poisson: 0.25,
-        poisson_axial: 0.10,
-        shear_axial: 2e9,
-    };
+    const LINING: Transverse =
+        Transverse { young: 9e9, young_axial: 1.5e9, poisson: 0.25, poisson_axial: 0.10, shear_axial: 2e9 };
 
     fn close(a: &Matrix6<f64>, b: &Matrix6<f64>) -> bool {
         (a - b).norm() <= 1e-12 * b.norm()
@@ -176,24 +165,15 @@ mod tests {
         let turned = rotate(&C, &axes_about([1.0, 0.0, 0.0]));
         // z -> x, and the plane keeps its own constants: zz -> xx, yz and zx -> xy and zx, xy -> yz.
         let from = [2, 0, 1, 5, 3, 4];
-        assert!(close(
-            &turned,
-            &Matrix6::from_fn(|i, j| C[(from[i], from[j])])
-        ));
+        assert!(close(&turned, &Matrix6::from_fn(|i, j| C[(from[i], from[j])])));
     }
 
     #[test]
     fn a_pull_along_a_tilted_axis_gives_the_axial_modulus_and_contraction() {
         let axis = Vector3::new(1.0, 2.0, -2.0) / 3.0;
-        let C = rotate(
-            &from_compliance(&transverse_compliance(&LINING)).unwrap(),
-            &axes_about(axis.into()),
-        );
+        let C = rotate(&from_compliance(&transverse_compliance(&LINING)).unwrap(), &axes_about(axis.into()));
         let stress = axis * axis.transpose();
-        let strain = C
-            .cholesky()
-            .unwrap()
-            .solve(&nalgebra::Vector6::from_fn(|v, _| stress[VOIGT[v]]));
+        let strain = C.cholesky().unwrap().solve(&nalgebra::Vector6::from_fn(|v, _| stress[VOIGT[v]]));
         let mut E = Matrix3::zeros();
         for (v, &(i, j)) in VOIGT.iter().enumerate() {
             E[(i, j)] = if v < 3 { strain[v] } else { strain[v] / 2.0 };
@@ -207,18 +187,11 @@ mod tests {
 
     #[test]
     fn turned_axes_of_an_orthotropic_material_swap_its_constants() {
-        let C = from_compliance(&orthotropic_compliance(
-            [150e9, 120e9, 10e9],
-            [0.28, 0.3, 0.02],
-            [45e9, 4e9, 5e9],
-        ));
+        let C = from_compliance(&orthotropic_compliance([150e9, 120e9, 10e9], [0.28, 0.3, 0.02], [45e9, 4e9, 5e9]));
         let C = C.unwrap();
         let axes = axes_from([0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]).unwrap();
         let from = [1, 0, 2, 3, 5, 4];
-        assert!(close(
-            &rotate(&C, &axes),
-            &Matrix6::from_fn(|i, j| C[(from[i], from[j])])
-        ));
+        assert!(close(&rotate(&C, &axes), &Matrix6::from_fn(|i, j| C[(from[i], from[j])])));
         assert!(axes_from([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]).is_none());
     }
 
@@ -226,10 +199,7 @@ mod tests {
     fn impossible_constants_are_not_positive_definite() {
         assert!(from_compliance(&isotropic_compliance(1e9, 0.5)).is_none());
         assert!(from_compliance(&isotropic_compliance(1e9, 0.49999)).is_some());
-        let lining = Transverse {
-            poisson_axial: 0.3,
-            ..LINING
-        };
+        let lining = Transverse { poisson_axial: 0.3, ..LINING };
         assert!(from_compliance(&transverse_compliance(&lining)).is_none());
     }
 }

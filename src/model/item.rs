@@ -32,8 +32,7 @@ impl<'a> Item<'a> {
 
     /// `file:line: what (name). advice`, at a value of the table.
     pub fn error(&self, at: &Span, what: impl Display, advice: impl Display) -> Error {
-        self.source
-            .error(at, format_args!("{what} ({}). {advice}", self.name))
+        self.source.error(at, format_args!("{what} ({}). {advice}", self.name))
     }
 
     /// The same, at the table's header.
@@ -43,66 +42,31 @@ impl<'a> Item<'a> {
 
     /// The value of a key that this table must have.
     pub fn required<'v, T>(&self, value: &'v Option<T>, key: &str, advice: &str) -> Result<&'v T> {
-        value
-            .as_ref()
-            .ok_or_else(|| self.error_here(format_args!("{key} is missing"), advice))
+        value.as_ref().ok_or_else(|| self.error_here(format_args!("{key} is missing"), advice))
     }
 
     /// A number above zero.
     pub fn positive(&self, value: &Number, key: &str, advice: &str) -> Result<f64> {
-        self.check(
-            value,
-            *value.get_ref() > 0.0,
-            key,
-            "must be above 0",
-            advice,
-        )
+        self.check(value, *value.get_ref() > 0.0, key, "must be above 0", advice)
     }
 
     /// A number that is zero or above.
     pub fn not_negative(&self, value: &Number, key: &str, advice: &str) -> Result<f64> {
-        self.check(
-            value,
-            *value.get_ref() >= 0.0,
-            key,
-            "must be 0 or above",
-            advice,
-        )
+        self.check(value, *value.get_ref() >= 0.0, key, "must be 0 or above", advice)
     }
 
     /// A number for which `holds` (and which is finite).
-    pub fn check(
-        &self,
-        value: &Number,
-        holds: bool,
-        key: &str,
-        must: &str,
-        advice: &str,
-    ) -> Result<f64> {
+    pub fn check(&self, value: &Number, holds: bool, key: &str, must: &str, advice: &str) -> Result<f64> {
         let number = *value.get_ref();
         if number.is_finite() && holds {
             return Ok(number);
         }
-        Err(self.error(
-            &value.span(),
-            format_args!("{key} {must}, not {number}"),
-            advice,
-        ))
+        Err(self.error(&value.span(), format_args!("{key} {must}, not {number}"), advice))
     }
 
     /// Numbers that are finite.
-    pub fn finite<const N: usize>(
-        &self,
-        values: &Spanned<[f64; N]>,
-        key: &str,
-    ) -> Result<[f64; N]> {
-        self.each(
-            values,
-            |x| x.is_finite(),
-            key,
-            "must be finite",
-            "Give numbers",
-        )
+    pub fn finite<const N: usize>(&self, values: &Spanned<[f64; N]>, key: &str) -> Result<[f64; N]> {
+        self.each(values, |x| x.is_finite(), key, "must be finite", "Give numbers")
     }
 
     /// Numbers that all satisfy `holds` (and are finite).
@@ -114,17 +78,9 @@ impl<'a> Item<'a> {
         must: &str,
         advice: &str,
     ) -> Result<[f64; N]> {
-        match values
-            .get_ref()
-            .iter()
-            .find(|x| !x.is_finite() || !holds(**x))
-        {
+        match values.get_ref().iter().find(|x| !x.is_finite() || !holds(**x)) {
             None => Ok(*values.get_ref()),
-            Some(bad) => Err(self.error(
-                &values.span(),
-                format_args!("{key} {must}, not {bad}"),
-                advice,
-            )),
+            Some(bad) => Err(self.error(&values.span(), format_args!("{key} {must}, not {bad}"), advice)),
         }
     }
 
@@ -153,10 +109,6 @@ impl<'a> Item<'a> {
         } else {
             format!("band is empty: [{low}, {high}]")
         };
-        Err(self.error(
-            &value.span(),
-            what,
-            "Give [lowest, highest] in Hz, 0 <= lowest < highest",
-        ))
+        Err(self.error(&value.span(), what, "Give [lowest, highest] in Hz, 0 <= lowest < highest"))
     }
 }

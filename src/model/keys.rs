@@ -43,10 +43,7 @@ pub struct Mesh {
 
 /// A number, or one for each axis or plane.
 #[derive(Deserialize, Clone, Copy)]
-#[serde(
-    untagged,
-    expecting = "expected a number, or three of them in brackets"
-)]
+#[serde(untagged, expecting = "expected a number, or three of them in brackets")]
 pub enum OneOrThree {
     One(f64),
     Three([f64; 3]),

@@ -18,12 +18,7 @@ pub fn loads(source: Source, raw: &[Spanned<keys::Load>]) -> Result<Vec<Load>> {
         let name = raw.name.clone().unwrap_or_else(|| raw.on.clone());
         let item = Item::new(source, format!("load {name:?}"), load.span());
         unused(&item, &name, &mut seen)?;
-        loads.push(Load {
-            name,
-            on: raw.on.clone(),
-            kind: kind(&item, raw)?,
-            line: item.line(),
-        });
+        loads.push(Load { name, on: raw.on.clone(), kind: kind(&item, raw)?, line: item.line() });
     }
     Ok(loads)
 }
@@ -58,11 +53,7 @@ fn spread_force(item: &Item, force: &Vector, spread: Option<&Text>) -> Result<Lo
         "area" => Ok(LoadKind::ForceByArea(force)),
         other => {
             let what = format_args!("unknown spread {other:?}");
-            Err(item.error(
-                &spread.span(),
-                what,
-                names::advice(other, ["nodes", "area"]),
-            ))
+            Err(item.error(&spread.span(), what, names::advice(other, ["nodes", "area"])))
         }
     }
 }

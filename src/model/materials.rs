@@ -14,21 +14,8 @@ use toml::Spanned;
 /// The kinds of material and the keys that belong to each, besides `kind` and `density`.
 const KINDS: [(&str, &[&str]); 4] = [
     ("isotropic", &["young", "poisson"]),
-    (
-        "transverse",
-        &[
-            "axis",
-            "young",
-            "young_axial",
-            "poisson",
-            "poisson_axial",
-            "shear_axial",
-        ],
-    ),
-    (
-        "orthotropic",
-        &["young", "poisson", "shear", "x_axis", "y_axis"],
-    ),
+    ("transverse", &["axis", "young", "young_axial", "poisson", "poisson_axial", "shear_axial"]),
+    ("orthotropic", &["young", "poisson", "shear", "x_axis", "y_axis"]),
     ("full", &["elasticity", "x_axis", "y_axis"]),
 ];
 
@@ -42,9 +29,7 @@ const SHEAR: &str = "Give a shear modulus in Pa, such as 2e9";
 /// # Errors
 /// Input errors for keys of another kind and for constants that no material can have.
 pub fn materials(source: Source, raw: &keys::Named<keys::Material>) -> Result<Vec<Material>> {
-    raw.iter()
-        .map(|(name, material)| Reader::new(source, name, material).read())
-        .collect()
+    raw.iter().map(|(name, material)| Reader::new(source, name, material).read()).collect()
 }
 
 struct Reader<'a> {
@@ -55,22 +40,12 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn new(source: Source<'a>, name: &'a Text, raw: &'a keys::Material) -> Self {
-        let item = Item::new(
-            source,
-            format!("material {:?}", name.get_ref()),
-            name.span(),
-        );
-        Reader {
-            item,
-            name: name.get_ref(),
-            raw,
-        }
+        let item = Item::new(source, format!("material {:?}", name.get_ref()), name.span());
+        Reader { item, name: name.get_ref(), raw }
     }
 
     fn read(&self) -> Result<Material> {
-        let density =
-            self.item
-                .positive(&self.raw.density, "density", "Give kg/m3, such as 7850")?;
+        let density = self.item.positive(&self.raw.density, "density", "Give kg/m3, such as 7850")?;
         let elasticity = match self.kind()? {
             "transverse" => self.transverse()?,
             "orthotropic" => self.orthotropic()?,
@@ -78,38 +53,23 @@ impl<'a> Reader<'a> {
             _ => self.isotropic()?,
         };
         let elasticity = std::array::from_fn(|i| std::array::from_fn(|j| elasticity[(i, j)]));
-        Ok(Material {
-            name: self.name.to_owned(),
-            density,
-            elasticity,
-        })
+        Ok(Material { name: self.name.to_owned(), density, elasticity })
     }
 
     /// The material's kind, once all keys given belong to it.
     fn kind(&self) -> Result<&'static str> {
         let kinds = KINDS.map(|(kind, _)| kind);
-        let wanted = self
-            .raw
-            .kind
-            .as_ref()
-            .map_or("isotropic", |kind| kind.get_ref());
+        let wanted = self.raw.kind.as_ref().map_or("isotropic", |kind| kind.get_ref());
         let Some(&(kind, known)) = KINDS.iter().find(|(kind, _)| *kind == wanted) else {
             let span = self.raw.kind.as_ref().map_or(0..0, Spanned::span);
             let what = format_args!("unknown kind of material {wanted:?}");
             return Err(self.item.error(&span, what, names::advice(wanted, kinds)));
         };
-        match self
-            .given()
-            .into_iter()
-            .find(|(key, _)| !known.contains(key))
-        {
+        match self.given().into_iter().find(|(key, _)| !known.contains(key)) {
             None => Ok(kind),
             Some((key, span)) => {
                 let what = format_args!("{key} is no constant of the kind {kind:?}");
-                let advice = format!(
-                    "Leave it out, or give kind = one of {}",
-                    names::list(&owners(key))
-                );
+                let advice = format!("Leave it out, or give kind = one of {}", names::list(&owners(key)));
                 Err(self.item.error(&span, what, advice))
             }
         }
@@ -137,9 +97,7 @@ impl<'a> Reader<'a> {
     }
 
     fn isotropic(&self) -> Result<Matrix6<f64>> {
-        let young = self
-            .item
-            .positive(&self.one(&self.raw.young, "young")?, "young", YOUNG)?;
+        let young = self.item.positive(&self.one(&self.raw.young, "young")?, "young", YOUNG)?;
         let poisson = self.poisson()?;
         self.invert(&elasticity::isotropic_compliance(young, poisson))
     }
@@ -168,10 +126,7 @@ impl<'a> Reader<'a> {
         let shear = item.required(&raw.shear, "shear", "Give three moduli in Pa, xy, yz, zx")?;
         let young = self.three(&raw.young, "young", THREE_YOUNG)?;
         let young = item.each(&young, |x| x > 0.0, "young", "must be above 0", THREE_YOUNG)?;
-        let poisson = item.finite(
-            &self.three(&raw.poisson, "poisson", THREE_POISSON)?,
-            "poisson",
-        )?;
+        let poisson = item.finite(&self.three(&raw.poisson, "poisson", THREE_POISSON)?, "poisson")?;
         let shear = item.each(shear, |x| x > 0.0, "shear", "must be above 0", SHEAR)?;
         let local = self.invert(&elasticity::orthotropic_compliance(young, poisson, shear))?;
         Ok(elasticity::rotate(&local, &self.axes()?))
@@ -179,9 +134,7 @@ impl<'a> Reader<'a> {
 
     fn full(&self) -> Result<Matrix6<f64>> {
         let advice = "Give six rows of six numbers in Pa, in the order xx yy zz xy yz zx";
-        let rows = self
-            .item
-            .required(&self.raw.elasticity, "elasticity", advice)?;
+        let rows = self.item.required(&self.raw.elasticity, "elasticity", advice)?;
         let C = Matrix6::from_fn(|i, j| rows.get_ref()[i][j]);
         let is_finite = C.iter().all(|c| c.is_finite());
         if !is_finite || (C - C.transpose()).amax() > 1e-6 * C.amax() {
@@ -190,8 +143,7 @@ impl<'a> Reader<'a> {
         }
         let C = elasticity::symmetric(&C);
         if !elasticity::is_positive_definite(&C) {
-            let what =
-                "elasticity is not positive definite: some strain would have no or negative energy";
+            let what = "elasticity is not positive definite: some strain would have no or negative energy";
             return Err(self.item.error(&rows.span(), what, advice));
         }
         Ok(elasticity::rotate(&C, &self.axes()?))
@@ -211,13 +163,7 @@ impl<'a> Reader<'a> {
         let poisson = self.one(&self.raw.poisson, "poisson")?;
         let nu = *poisson.get_ref();
         let advice = "Give Poisson's ratio, such as 0.3";
-        self.item.check(
-            &poisson,
-            -1.0 < nu && nu < 0.5,
-            "poisson",
-            "must be above -1 and below 0.5",
-            advice,
-        )
+        self.item.check(&poisson, -1.0 < nu && nu < 0.5, "poisson", "must be above -1 and below 0.5", advice)
     }
 
     /// Within a plane the ratio may come up to 1.
@@ -225,13 +171,7 @@ impl<'a> Reader<'a> {
         let poisson = self.one(&self.raw.poisson, "poisson")?;
         let nu = *poisson.get_ref();
         let advice = "Give Poisson's ratio within the plane, such as 0.3";
-        self.item.check(
-            &poisson,
-            -1.0 < nu && nu < 1.0,
-            "poisson",
-            "must be above -1 and below 1",
-            advice,
-        )
+        self.item.check(&poisson, -1.0 < nu && nu < 1.0, "poisson", "must be above -1 and below 1", advice)
     }
 
     /// The single number that this kind of material has under a key.
@@ -241,22 +181,13 @@ impl<'a> Reader<'a> {
             OneOrThree::One(number) => Ok(Spanned::new(value.span(), number)),
             OneOrThree::Three(_) => {
                 let what = format_args!("{key} is one number here, not three");
-                Err(self.item.error(
-                    &value.span(),
-                    what,
-                    "Three of them need kind = \"orthotropic\"",
-                ))
+                Err(self.item.error(&value.span(), what, "Three of them need kind = \"orthotropic\""))
             }
         }
     }
 
     /// The three numbers that this kind of material has under a key.
-    fn three(
-        &self,
-        value: &Option<Spanned<OneOrThree>>,
-        key: &str,
-        advice: &str,
-    ) -> Result<Vector> {
+    fn three(&self, value: &Option<Spanned<OneOrThree>>, key: &str, advice: &str) -> Result<Vector> {
         let value = self.item.required(value, key, advice)?;
         match *value.get_ref() {
             OneOrThree::Three(numbers) => Ok(Spanned::new(value.span(), numbers)),
@@ -278,23 +209,12 @@ impl<'a> Reader<'a> {
                 return Err(item.error(&given.span(), what, "Give both, or neither"));
             }
         };
-        let axes =
-            elasticity::axes_from(item.direction(x, "x_axis")?, item.direction(y, "y_axis")?);
-        axes.ok_or_else(|| {
-            item.error(
-                &y.span(),
-                "x_axis and y_axis are parallel",
-                "Give two different directions",
-            )
-        })
+        let axes = elasticity::axes_from(item.direction(x, "x_axis")?, item.direction(y, "y_axis")?);
+        axes.ok_or_else(|| item.error(&y.span(), "x_axis and y_axis are parallel", "Give two different directions"))
     }
 }
 
 /// The kinds that have a key.
 fn owners(key: &str) -> Vec<&'static str> {
-    KINDS
-        .iter()
-        .filter(|(_, keys)| keys.contains(&key))
-        .map(|(kind, _)| *kind)
-        .collect()
+    KINDS.iter().filter(|(_, keys)| keys.contains(&key)).map(|(kind, _)| *kind).collect()
 }

@@ -38,8 +38,7 @@ mod types;
 pub use read::{parse, read};
 pub use source::located;
 pub use types::{
-    Connector, Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction,
-    Rotation,
+    Connector, Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction, Rotation,
 };
 
 /// A model file that uses every key, with an explanation of each.

@@ -5,12 +5,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let name = name.to_lowercase();
     candidates
         .into_iter()
-        .map(|c| {
-            (
-                strsim::normalized_damerau_levenshtein(&name, &c.to_lowercase()),
-                c,
-            )
-        })
+        .map(|c| (strsim::normalized_damerau_levenshtein(&name, &c.to_lowercase()), c))
         .filter(|(similarity, _)| *similarity >= 0.5)
         .reduce(|best, next| if next.0 > best.0 { next } else { best })
         .map(|(_, candidate)| candidate)
@@ -46,10 +41,7 @@ mod tests {
     #[test]
     fn swapped_letters_and_case_find_the_right_name() {
         assert_eq!(nearest("yuong", ["young", "poisson"]), Some("young"));
-        assert_eq!(
-            nearest("DISC_FACE", ["disc_face", "pad_face"]),
-            Some("disc_face")
-        );
+        assert_eq!(nearest("DISC_FACE", ["disc_face", "pad_face"]), Some("disc_face"));
         assert_eq!(nearest("caliper", ["young", "poisson"]), None);
     }
 

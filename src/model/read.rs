@@ -7,14 +7,7 @@ use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Units of length and their metres.
-const UNITS: [(&str, f64); 6] = [
-    ("m", 1.0),
-    ("cm", 1e-2),
-    ("mm", 1e-3),
-    ("um", 1e-6),
-    ("in", 0.0254),
-    ("ft", 0.3048),
-];
+const UNITS: [(&str, f64); 6] = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("in", 0.0254), ("ft", 0.3048)];
 
 /// Reads and checks a model file.
 ///
@@ -23,12 +16,8 @@ const UNITS: [(&str, f64); 6] = [
 /// # Errors
 /// [`Error::Input`], `file:line: what (item). what to do`, for the first thing that is wrong.
 pub fn read(path: &Path) -> Result<Model> {
-    let text = std::fs::read_to_string(path).map_err(|reason| {
-        Error::input(format!(
-            "{}: cannot read the model file: {reason}",
-            path.display()
-        ))
-    })?;
+    let text = std::fs::read_to_string(path)
+        .map_err(|reason| Error::input(format!("{}: cannot read the model file: {reason}", path.display())))?;
     parse(&text, path)
 }
 
@@ -59,10 +48,7 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
         swept: sweep.contacts,
         frictions: sweep.frictions,
         sweep_line: sweep.line,
-        reduction: raw
-            .reduction
-            .map(|raw| analysis::reduction(source, &raw))
-            .transpose()?,
+        reduction: raw.reduction.map(|raw| analysis::reduction(source, &raw)).transpose()?,
         parts,
         contacts,
     })
@@ -85,6 +71,5 @@ fn beside(file: &Path, path: &str) -> PathBuf {
 }
 
 fn stem(file: &Path) -> String {
-    file.file_stem()
-        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+    file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }

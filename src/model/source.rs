@@ -56,30 +56,19 @@ impl Source<'_> {
             let advice = names::advice(key, known.iter().copied());
             format!("unknown key {key:?} ({table}). {advice}")
         } else if message.starts_with("missing field") {
-            format!(
-                "{:?} is missing ({table}). Add {}",
-                quoted[0],
-                sample(quoted[0])
-            )
+            format!("{:?} is missing ({table}). Add {}", quoted[0], sample(quoted[0]))
         } else if message.starts_with("duplicate key") {
             let key = self.text[span.clone()].trim_matches(['[', ']']);
             format!("{key:?} is given twice ({table}). Keep one of them")
         } else {
-            let message = message
-                .replace("f64", "a number")
-                .replace("usize", "a whole number");
-            format!(
-                "{} ({table}). Correct it; the documentation explains every key",
-                message.trim_end()
-            )
+            let message = message.replace("f64", "a number").replace("usize", "a whole number");
+            format!("{} ({table}). Correct it; the documentation explains every key", message.trim_end())
         }
     }
 
     /// Header of the table that holds an offset, as it stands in the file.
     fn table_at(&self, offset: usize) -> &str {
-        let end = self.text[offset..]
-            .find('\n')
-            .map_or(self.text.len(), |i| offset + i);
+        let end = self.text[offset..].find('\n').map_or(self.text.len(), |i| offset + i);
         let mut lines = self.text[..end].lines().rev();
         lines.find_map(header).unwrap_or("top of the file")
     }
@@ -89,10 +78,7 @@ impl Source<'_> {
 fn header(line: &str) -> Option<&str> {
     let line = line.split('#').next().unwrap_or("").trim();
     let inner = line.strip_prefix('[')?.strip_suffix(']')?;
-    let name = inner
-        .strip_prefix('[')
-        .and_then(|i| i.strip_suffix(']'))
-        .unwrap_or(inner);
+    let name = inner.strip_prefix('[').and_then(|i| i.strip_suffix(']')).unwrap_or(inner);
     let is_name = name.starts_with(|c: char| c.is_alphabetic()) && !name.contains([',', '=']);
     is_name.then_some(line)
 }

@@ -23,9 +23,10 @@ impl Folder {
     /// [`Error::Input`] where `target` holds something already, unless it is an earlier run's and `force` is set.
     pub fn create(target: &Path, force: bool) -> Result<Folder> {
         Self::may_write(target, force)?;
-        let name = target.file_name().and_then(|name| name.to_str()).ok_or_else(|| {
-            Error::input(format!("{} cannot be an output folder: give it a name", target.display()))
-        })?;
+        let name = target
+            .file_name()
+            .and_then(|name| name.to_str())
+            .ok_or_else(|| Error::input(format!("{} cannot be an output folder: give it a name", target.display())))?;
         let draft = target.with_file_name(format!(".{name}.partial-{}", std::process::id()));
         fs::create_dir_all(&draft).map_err(Error::io(&draft))?;
         Ok(Folder { target: target.to_owned(), draft, done: false })

@@ -87,8 +87,7 @@ pub fn pairs(out: &mut dyn Write, rows: &[PairRow]) -> csv::Result<()> {
     ])?;
     for PairRow { friction, pair, forces } in rows {
         let counts = forces.counts;
-        let numbers =
-            [forces.normal, forces.tangential, forces.closed_area, forces.peak_pressure, forces.peak_force];
+        let numbers = [forces.normal, forces.tangential, forces.closed_area, forces.peak_pressure, forces.peak_force];
         let mut record = vec![friction.to_string(), pair.clone()];
         record.extend([counts.open, counts.stick, counts.slip].map(|n| n.to_string()));
         record.extend(numbers.map(|x| format!("{x:.12e}")));
@@ -144,8 +143,11 @@ pub fn verdict(rows: &[ModeRow]) -> String {
     });
     match first {
         Some(row) => {
-            let worst =
-                rows.iter().filter(|r| r.unstable).max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate)).unwrap_or(row);
+            let worst = rows
+                .iter()
+                .filter(|r| r.unstable)
+                .max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate))
+                .unwrap_or(row);
             format!(
                 "unstable from friction {} on: {:.0} Hz first; strongest {:.0} Hz at friction {} ({:+.0} /s)",
                 row.friction, row.frequency, worst.frequency, worst.friction, worst.growth_rate

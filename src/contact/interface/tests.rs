@@ -13,16 +13,8 @@ fn brake() -> (Interface, Mesh) {
     let surfaces = vec![
         ("disc_inner_face", "disc", facing("disc_inner_face", -1.0)),
         ("disc_outer_face", "disc", facing("disc_outer_face", 1.0)),
-        (
-            "lining_inner_face",
-            "lining_inner",
-            facing("lining_inner_face", 1.0),
-        ),
-        (
-            "lining_outer_face",
-            "lining_outer",
-            facing("lining_outer_face", -1.0),
-        ),
+        ("lining_inner_face", "lining_inner", facing("lining_inner_face", 1.0)),
+        ("lining_outer_face", "lining_outer", facing("lining_outer_face", -1.0)),
     ];
     let mesh = skin(nodes.clone(), surfaces);
     let pads = vec![
@@ -38,10 +30,7 @@ fn plates(distance: f64) -> Mesh {
     let mut nodes = Vec::new();
     let pad = flipped(&patch(&mut nodes, [3, 3], |u, v| [u, v, distance]));
     let disc = patch(&mut nodes, [4, 4], |u, v| [u, v, 0.0]);
-    skin(
-        nodes,
-        vec![("pad_face", "pad", pad), ("disc_face", "disc", disc)],
-    )
+    skin(nodes, vec![("pad_face", "pad", pad), ("disc_face", "disc", disc)])
 }
 
 fn pad() -> Contact {
@@ -49,9 +38,7 @@ fn pad() -> Contact {
 }
 
 fn refused(contact: Contact, turning: bool, mesh: &Mesh) -> String {
-    Interface::build(&model(vec![contact], turning), mesh)
-        .unwrap_err()
-        .to_string()
+    Interface::build(&model(vec![contact], turning), mesh).unwrap_err().to_string()
 }
 
 #[test]
@@ -102,9 +89,7 @@ fn resultants(
 #[test]
 fn friction_turns_the_pads_with_the_disc_and_every_force_has_its_opposite() {
     let (interface, mesh) = brake();
-    let stage = Stage::Solve {
-        friction: vec![0.4, 0.2],
-    };
+    let stage = Stage::Solve { friction: vec![0.4, 0.2] };
     let depth = 1e-8;
     let press = |p: &ContactPoint| p.law.normal.map(|n| -depth * n);
     let ([force, moment], [all, all_moments]) = resultants(&interface, &mesh, &stage, press);
@@ -115,9 +100,7 @@ fn friction_turns_the_pads_with_the_disc_and_every_force_has_its_opposite() {
         .iter()
         .map(|pair| {
             let points = interface.points[pair.points.clone()].iter();
-            points
-                .map(|p| p.law.weight * p.position[0].hypot(p.position[1]))
-                .sum()
+            points.map(|p| p.law.weight * p.position[0].hypot(p.position[1])).sum()
         })
         .collect();
     let torque = 2e13 * depth * (0.4 * arms[0] + 0.2 * arms[1]);
@@ -138,35 +121,20 @@ fn a_brake_that_settles_has_no_friction() {
     for (a, point) in interface.points.iter().enumerate() {
         let answer = interface.respond(a, lift(point), &Stage::Settle);
         assert!(answer.normal_force < 0.0 && answer.status == Status::Slip);
-        let solved = Stage::Solve {
-            friction: interface.frictions(),
-        };
-        assert_eq!(
-            interface.respond(a, lift(point), &solved).status,
-            Status::Open
-        );
+        let solved = Stage::Solve { friction: interface.frictions() };
+        assert_eq!(interface.respond(a, lift(point), &solved).status, Status::Open);
     }
 }
 
 #[test]
 fn pairs_at_rest_stick_and_each_pair_has_its_own_friction() {
-    let stuck = Contact {
-        stick: Some(1e13),
-        ..pad()
-    };
+    let stuck = Contact { stick: Some(1e13), ..pad() };
     let mut other = stuck.clone();
     other.name = "other".into();
     let interface = Interface::build(&model(vec![stuck, other], false), &plates(0.0)).unwrap();
-    assert!(
-        interface
-            .pairs
-            .iter()
-            .all(|p| p.kind == Kind::StickSlip && !p.swept)
-    );
+    assert!(interface.pairs.iter().all(|p| p.kind == Kind::StickSlip && !p.swept));
     assert_eq!(interface.frictions(), [0.5, 0.5]);
-    let stage = Stage::Solve {
-        friction: vec![0.5, 0.1],
-    };
+    let stage = Stage::Solve { friction: vec![0.5, 0.1] };
     // trial w k_t 1e-8 against mu w k_n 2e-8: sticks at 0.5, slips at 0.1
     let g = [1e-8, 0.0, -2e-8];
     let second = interface.pairs[1].points.start;
@@ -181,19 +149,13 @@ fn pairs_at_rest_stick_and_each_pair_has_its_own_friction() {
 
 #[test]
 fn points_at_a_distance_do_not_touch() {
-    let wide = Contact {
-        search_distance: Some(1.0),
-        ..pad()
-    };
+    let wide = Contact { search_distance: Some(1.0), ..pad() };
     let interface = Interface::build(&model(vec![wide], true), &plates(0.01)).unwrap();
     let found = &interface.pairs[0].statistics;
     assert_eq!(found.touching, 0);
     assert!((found.gap[0] - 0.01).abs() < 1e-15 && (found.gap[1] - 0.01).abs() < 1e-15);
     let rest = [0.0; 3];
-    assert_eq!(
-        interface.respond(0, rest, &Stage::Settle).status,
-        Status::Open
-    );
+    assert_eq!(interface.respond(0, rest, &Stage::Settle).status, Status::Open);
 }
 
 #[test]
@@ -212,10 +174,7 @@ fn a_pair_without_points_is_refused_with_the_closest_distance() {
     let message = refused(pad(), true, &plates(0.7));
     assert!(message.starts_with("brake.toml:12: contact \"pad\": none of the 33 points"));
     assert!(message.contains("closest is 7.000e-1 m"), "{message}");
-    let near = Contact {
-        search_distance: Some(0.5),
-        ..pad()
-    };
+    let near = Contact { search_distance: Some(0.5), ..pad() };
     assert!(refused(near, true, &plates(0.7)).contains("search distance of 5.000e-1 m"));
 }
 
@@ -244,16 +203,10 @@ fn merged_surfaces_are_refused() {
 
 #[test]
 fn stick_belongs_to_pairs_at_rest_and_to_no_others() {
-    let stuck = Contact {
-        stick: Some(1e13),
-        ..pad()
-    };
+    let stuck = Contact { stick: Some(1e13), ..pad() };
     assert!(refused(stuck, true, &plates(0.0)).contains("Remove `stick`"));
     assert!(refused(pad(), false, &plates(0.0)).contains("Give stick in N/m3"));
-    let free = Contact {
-        friction: 0.0,
-        ..pad()
-    };
+    let free = Contact { friction: 0.0, ..pad() };
     let interface = Interface::build(&model(vec![free], false), &plates(0.0)).unwrap();
     assert_eq!(interface.pairs[0].kind, Kind::Frictionless);
 }
@@ -262,7 +215,5 @@ fn stick_belongs_to_pairs_at_rest_and_to_no_others() {
 fn a_surface_over_parts_that_turn_differently_is_refused() {
     let mut mesh = plates(0.0);
     mesh.surfaces.get_mut("disc_face").unwrap().tets[3] = 0;
-    assert!(
-        refused(pad(), true, &mesh).contains("\"disc_face\" lies on parts that turn differently")
-    );
+    assert!(refused(pad(), true, &mesh).contains("\"disc_face\" lies on parts that turn differently"));
 }

@@ -20,12 +20,8 @@ pub fn linearise(point: &Point, friction: f64, g: [f64; 3], status: Status) -> [
     let normal = two_sided(point, point.penetration(g));
     let closed = match point.tangential {
         Tangential::Frictionless => frictionless(point, &normal),
-        Tangential::Sliding { direction, .. } => {
-            sliding(point, &normal, friction, &direction.into())
-        }
-        Tangential::StickSlip { stick } | Tangential::Stick { stick } => {
-            sticking(point, &normal, stick, &g.into())
-        }
+        Tangential::Sliding { direction, .. } => sliding(point, &normal, friction, &direction.into()),
+        Tangential::StickSlip { stick } | Tangential::Stick { stick } => sticking(point, &normal, stick, &g.into()),
     };
     closed.tangent
 }

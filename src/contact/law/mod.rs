@@ -73,12 +73,8 @@ pub struct Response {
 
 impl Response {
     /// An open point.
-    const OPEN: Response = Response {
-        force: [0.0; 3],
-        tangent: [[0.0; 3]; 3],
-        normal_force: 0.0,
-        status: Status::Open,
-    };
+    const OPEN: Response =
+        Response { force: [0.0; 3], tangent: [[0.0; 3]; 3], normal_force: 0.0, status: Status::Open };
 }
 
 impl Point {
@@ -114,10 +110,7 @@ mod testing {
     pub fn frame() -> impl Strategy<Value = [[f64; 3]; 2]> {
         (0.0..3.1, -3.1..3.1, -3.1..3.1).prop_map(|(polar, azimuth, turn): (f64, f64, f64)| {
             let rotation = nalgebra::Rotation3::from_euler_angles(polar, azimuth, turn);
-            [
-                (rotation * Vector3::z()).into(),
-                (rotation * Vector3::x()).into(),
-            ]
+            [(rotation * Vector3::z()).into(), (rotation * Vector3::x()).into()]
         })
     }
 
@@ -141,10 +134,7 @@ mod testing {
     }
 
     /// Sliding along a direction that [`point_with`] chooses.
-    pub const SLIDING: Tangential = Tangential::Sliding {
-        direction: [0.0; 3],
-        speed: 2.0,
-    };
+    pub const SLIDING: Tangential = Tangential::Sliding { direction: [0.0; 3], speed: 2.0 };
 
     /// Elastic stick of order one with a bound.
     pub fn stick_slip() -> impl Strategy<Value = Tangential> {
@@ -154,23 +144,13 @@ mod testing {
     /// Points with one tangential law; sliding ones get a direction in their tangent plane.
     pub fn point_with(tangential: Tangential) -> impl Strategy<Value = Point> {
         let numbers = (0.5..2.0, -0.3..0.3);
-        (frame(), law(), numbers, any::<bool>()).prop_map(
-            move |([n, t], law, (weight, gap), separation)| {
-                let mut tangential = tangential;
-                if let Tangential::Sliding { direction, .. } = &mut tangential {
-                    *direction = t;
-                }
-                Point {
-                    weight,
-                    normal: n,
-                    gap,
-                    touching: gap <= 0.0,
-                    separation,
-                    normal_law: law,
-                    tangential,
-                }
-            },
-        )
+        (frame(), law(), numbers, any::<bool>()).prop_map(move |([n, t], law, (weight, gap), separation)| {
+            let mut tangential = tangential;
+            if let Tangential::Sliding { direction, .. } = &mut tangential {
+                *direction = t;
+            }
+            Point { weight, normal: n, gap, touching: gap <= 0.0, separation, normal_law: law, tangential }
+        })
     }
 
     /// `g` moved along the normal so that the penetration is `d`.

@@ -19,14 +19,10 @@ pub(super) struct Normal {
 pub(super) fn two_sided(point: &Point, d: f64) -> Normal {
     let w = point.weight;
     match point.normal_law {
-        NormalLaw::Linear { stiffness: k } => Normal {
-            force: w * k * d,
-            stiffness: w * k,
-        },
-        NormalLaw::Cubic { k1, k3 } => Normal {
-            force: w * (k1 * d + k3 * d.powi(3)),
-            stiffness: w * (k1 + 3.0 * k3 * d.powi(2)),
-        },
+        NormalLaw::Linear { stiffness: k } => Normal { force: w * k * d, stiffness: w * k },
+        NormalLaw::Cubic { k1, k3 } => {
+            Normal { force: w * (k1 * d + k3 * d.powi(3)), stiffness: w * (k1 + 3.0 * k3 * d.powi(2)) }
+        }
     }
 }
 
@@ -52,17 +48,11 @@ mod tests {
             normal_law: NormalLaw::Linear { stiffness: 3.0 },
             tangential: super::super::Tangential::Frictionless,
         };
-        let linear = Normal {
-            force: 3.0,
-            stiffness: 6.0,
-        };
+        let linear = Normal { force: 3.0, stiffness: 6.0 };
         assert_eq!(normal(&point, 0.5), Some(linear));
         assert_eq!(normal(&point, -0.5), None);
         point.normal_law = NormalLaw::Cubic { k1: 3.0, k3: 4.0 };
-        let cubic = Normal {
-            force: 4.0,
-            stiffness: 12.0,
-        };
+        let cubic = Normal { force: 4.0, stiffness: 12.0 };
         assert_eq!(normal(&point, 0.5), Some(cubic));
         point.separation = false;
         assert_eq!(normal(&point, -0.5).unwrap().force, -4.0);

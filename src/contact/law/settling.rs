@@ -18,17 +18,13 @@ pub fn settle(point: &Point, g: [f64; 3]) -> Response {
     let normal: Normal = two_sided(point, point.penetration(g));
     match point.tangential {
         Tangential::Frictionless | Tangential::Sliding { .. } => frictionless(point, &normal),
-        Tangential::StickSlip { stick } | Tangential::Stick { stick } => {
-            sticking(point, &normal, stick, &g.into())
-        }
+        Tangential::StickSlip { stick } | Tangential::Stick { stick } => sticking(point, &normal, stick, &g.into()),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{
-        SLIDING, at_penetration, displacement, point, point_with, tangent_error,
-    };
+    use super::super::testing::{SLIDING, at_penetration, displacement, point, point_with, tangent_error};
     use super::super::{Status, respond};
     use super::*;
     use proptest::prelude::*;

@@ -88,13 +88,7 @@ fn slipping(point: &Point, normal: &Normal, mu: f64, g_t: &Vector3<f64>) -> Resp
 }
 
 /// Full friction along `s`; `turning` is what the change of direction adds to the tangent.
-fn dragged(
-    point: &Point,
-    normal: &Normal,
-    mu: f64,
-    s: &Vector3<f64>,
-    turning: Matrix3<f64>,
-) -> Response {
+fn dragged(point: &Point, normal: &Normal, mu: f64, s: &Vector3<f64>, turning: Matrix3<f64>) -> Response {
     let n = point.n();
     let along = n + mu * s;
     Response {
@@ -121,8 +115,7 @@ pub(super) fn sticking(point: &Point, normal: &Normal, stick: f64, g: &Vector3<f
 mod tests {
     use super::super::normal::two_sided;
     use super::super::testing::{
-        SLIDING, at_penetration, displacement, distance, point, point_with, stick_slip,
-        tangent_error,
+        SLIDING, at_penetration, displacement, distance, point, point_with, stick_slip, tangent_error,
     };
     use super::*;
     use proptest::prelude::*;
@@ -240,10 +233,7 @@ mod tests {
             touching: true,
             separation: true,
             normal_law: crate::model::NormalLaw::Linear { stiffness: 2e13 },
-            tangential: Tangential::Sliding {
-                direction: [1.0, 0.0, 0.0],
-                speed: 0.5,
-            },
+            tangential: Tangential::Sliding { direction: [1.0, 0.0, 0.0], speed: 0.5 },
         };
         let answer = respond(&point, 0.4, [0.0, 0.0, 1e-7]);
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();

@@ -6,9 +6,7 @@ use crate::contact::trace::Trace;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-const ALL: Options = Options {
-    search_distance: Some(f64::INFINITY),
-};
+const ALL: Options = Options { search_distance: Some(f64::INFINITY) };
 
 fn weights(found: &Found) -> f64 {
     found.points.iter().map(|p| p.weight).sum()
@@ -92,9 +90,7 @@ fn cap(nodes: &mut Vec<[f64; 3]>, n: usize) -> Surface {
 fn a_sphere_over_a_plane_has_its_heights_for_gaps() {
     let mut nodes = Vec::new();
     let sphere = cap(&mut nodes, 4);
-    let ceiling = flipped(&patch(&mut nodes, [3, 3], |u, v| {
-        [2.0 * u - 1.0, 2.0 * v - 1.0, 1.0]
-    }));
+    let ceiling = flipped(&patch(&mut nodes, [3, 3], |u, v| [2.0 * u - 1.0, 2.0 * v - 1.0, 1.0]));
     let found = find(&sphere, &ceiling, &nodes, &ALL);
     assert!(found.dropped.is_empty());
     for point in &found.points {
@@ -108,18 +104,13 @@ fn a_plane_over_a_sphere_has_radial_gaps_that_converge_with_the_mesh() {
     for n in [4, 8] {
         let mut nodes = Vec::new();
         let sphere = cap(&mut nodes, n);
-        let plane = flipped(&patch(&mut nodes, [5, 5], |u, v| {
-            [0.5 * u - 0.25, 0.5 * v - 0.25, 1.05]
-        }));
+        let plane = flipped(&patch(&mut nodes, [5, 5], |u, v| [0.5 * u - 0.25, 0.5 * v - 0.25, 1.05]));
         let found = find(&plane, &sphere, &nodes, &ALL);
         let error = |p: &FoundPoint| (p.gap - (length(p.position) - 1.0)).abs();
         errors.push(found.points.iter().map(error).fold(0.0, f64::max));
     }
     // Quadratic facets: at least third order.
-    assert!(
-        errors[0] < 2e-4 && errors[1] < errors[0] / 7.0,
-        "{errors:?}"
-    );
+    assert!(errors[0] < 2e-4 && errors[1] < errors[0] / 7.0, "{errors:?}");
 }
 
 #[test]
@@ -140,14 +131,9 @@ fn points_beyond_an_edge_clamp_to_it_within_the_search_distance() {
     let reach = 0.5 * 0.1 * (2.0 + 2.0_f64.sqrt()) / 3.0;
     let near = find(&slave, &master, &nodes, &Options::default());
     assert!(near.points.iter().all(|p| beyond(p) <= reach));
-    assert_eq!(
-        near.points.len(),
-        all.points.iter().filter(|p| beyond(p) <= reach).count()
-    );
+    assert_eq!(near.points.len(), all.points.iter().filter(|p| beyond(p) <= reach).count());
     assert_eq!(near.points.len() + near.dropped.len(), all.points.len());
-    let own = Options {
-        search_distance: Some(0.2),
-    };
+    let own = Options { search_distance: Some(0.2) };
     let wide = find(&slave, &master, &nodes, &own);
     assert!(wide.points.len() > near.points.len());
     assert!(weights(&wide) < wide.area);
@@ -234,20 +220,9 @@ proptest! {
 fn weights_are_the_exact_quadrature_of_a_uniform_pressure() {
     // Patch test on a curved surface: sum w_a n_a of a half cylinder's closed-form resultant.
     let mut nodes = Vec::new();
-    let half = patch(&mut nodes, [20, 3], |u, v| {
-        [(PI * u).cos(), (PI * u).sin(), v]
-    });
-    let shell = flipped(&patch(&mut nodes, [20, 3], |u, v| {
-        [(PI * u).cos(), (PI * u).sin(), v]
-    }));
+    let half = patch(&mut nodes, [20, 3], |u, v| [(PI * u).cos(), (PI * u).sin(), v]);
+    let shell = flipped(&patch(&mut nodes, [20, 3], |u, v| [(PI * u).cos(), (PI * u).sin(), v]));
     let found = find(&half, &shell, &nodes, &Options::default());
-    let resultant: Vector3<f64> = found
-        .points
-        .iter()
-        .map(|p| -p.weight * Vector3::from(p.normal))
-        .sum();
-    assert!(
-        (resultant - Vector3::new(0.0, 2.0, 0.0)).norm() < 1e-3,
-        "{resultant}"
-    );
+    let resultant: Vector3<f64> = found.points.iter().map(|p| -p.weight * Vector3::from(p.normal)).sum();
+    assert!((resultant - Vector3::new(0.0, 2.0, 0.0)).norm() < 1e-3, "{resultant}");
 }

@@ -10,33 +10,20 @@ impl Model {
     /// # Errors
     /// [`Error::Input`] with a line `file:line: what (item). what to do` for each thing that is wrong.
     pub fn check_against(&self, mesh: &Mesh) -> Result<()> {
-        let mut check = Check {
-            model: self,
-            mesh,
-            messages: Vec::new(),
-        };
+        let mut check = Check { model: self, mesh, messages: Vec::new() };
         check.parts();
         check.names();
         check.loads();
-        self.contacts
-            .iter()
-            .for_each(|contact| check.contact(contact));
+        self.contacts.iter().for_each(|contact| check.contact(contact));
         check.sweep();
-        if check.messages.is_empty() {
-            Ok(())
-        } else {
-            Err(Error::Input(check.messages.join("\n")))
-        }
+        if check.messages.is_empty() { Ok(()) } else { Err(Error::Input(check.messages.join("\n"))) }
     }
 
     /// The rotation under which a contact pair slides for ever: that of its master, where the slave does not turn.
     ///
     /// None on pairs that stick: neither part turns, or both turn together. Meant for a model that [`Model::check_against`] accepts.
     pub fn sliding(&self, contact: &Contact, mesh: &Mesh) -> Option<&Rotation> {
-        match (
-            self.turning(&contact.slave, mesh),
-            self.turning(&contact.master, mesh),
-        ) {
+        match (self.turning(&contact.slave, mesh), self.turning(&contact.master, mesh)) {
             (None, Some(rotation)) => Some(rotation),
             _ => None,
         }
@@ -51,17 +38,13 @@ impl Model {
                 self.swept.contains(&contact.name)
             }
         };
-        (0..self.contacts.len())
-            .filter(|&i| is_swept(&self.contacts[i]))
-            .collect()
+        (0..self.contacts.len()).filter(|&i| is_swept(&self.contacts[i])).collect()
     }
 
     /// The rotation of the part that a surface lies on.
     fn turning(&self, surface: &str, mesh: &Mesh) -> Option<&Rotation> {
         let part = &mesh.parts[mesh.part_of_surface(surface)? as usize];
-        self.rotations
-            .iter()
-            .find(|rotation| &rotation.part == part)
+        self.rotations.iter().find(|rotation| &rotation.part == part)
     }
 }
 
@@ -80,34 +63,16 @@ impl Check<'_> {
     fn parts(&mut self) {
         let (model, mesh) = (self.model, self.mesh);
         let volumes = || mesh.parts.iter().map(String::as_str);
-        for part in model
-            .parts
-            .iter()
-            .filter(|part| !mesh.parts.contains(&part.name))
-        {
+        for part in model.parts.iter().filter(|part| !mesh.parts.contains(&part.name)) {
             let advice = names::advice(&part.name, volumes());
-            self.complain(
-                part.line,
-                format!(
-                    "the mesh has no physical volume (part {:?}). {advice}",
-                    part.name
-                ),
-            );
+            self.complain(part.line, format!("the mesh has no physical volume (part {:?}). {advice}", part.name));
         }
         for (i, part) in model.parts.iter().enumerate() {
             if model.parts[..i].iter().any(|other| other.name == part.name) {
-                self.complain(
-                    part.line,
-                    format!(
-                        "the part is there twice (part {:?}). Keep one of them",
-                        part.name
-                    ),
-                );
+                self.complain(part.line, format!("the part is there twice (part {:?}). Keep one of them", part.name));
             }
         }
-        for volume in
-            volumes().filter(|volume| !model.parts.iter().any(|part| part.name == *volume))
-        {
+        for volume in volumes().filter(|volume| !model.parts.iter().any(|part| part.name == *volume)) {
             let advice = format!("Add [part.{volume:?}] with a material");
             self.complain(
                 model.mesh_line,
@@ -124,11 +89,7 @@ impl Check<'_> {
         }
         for connector in &model.connectors {
             for end in &connector.between {
-                self.node_set(
-                    end,
-                    connector.line,
-                    &format!("connector {:?}", connector.name),
-                );
+                self.node_set(end, connector.line, &format!("connector {:?}", connector.name));
             }
         }
     }
@@ -139,16 +100,9 @@ impl Check<'_> {
         if mesh.surfaces.contains_key(name) || mesh.node_sets.contains_key(name) {
             return true;
         }
-        let all = mesh
-            .surfaces
-            .keys()
-            .chain(mesh.node_sets.keys())
-            .map(String::as_str);
+        let all = mesh.surfaces.keys().chain(mesh.node_sets.keys()).map(String::as_str);
         let advice = names::advice(name, all);
-        self.complain(
-            line,
-            format!("the mesh has no surface or node set {name:?} ({item}). {advice}"),
-        );
+        self.complain(line, format!("the mesh has no surface or node set {name:?} ({item}). {advice}"));
         false
     }
 
@@ -175,9 +129,7 @@ impl Check<'_> {
             let item = format!("load {:?}", load.name);
             match load.kind {
                 LoadKind::ForceByNode(_) => self.node_set(&load.on, load.line, &item),
-                LoadKind::ForceByArea(_) | LoadKind::Pressure(_) => {
-                    self.surface(&load.on, load.line, &item)
-                }
+                LoadKind::ForceByArea(_) | LoadKind::Pressure(_) => self.surface(&load.on, load.line, &item),
             };
         }
     }
@@ -192,7 +144,10 @@ impl Check<'_> {
         };
         if slave == master {
             let part = &self.mesh.parts[slave as usize];
-            self.complain(line, format!("slave and master both lie on the part {part:?} ({item}). Name surfaces of two parts"));
+            self.complain(
+                line,
+                format!("slave and master both lie on the part {part:?} ({item}). Name surfaces of two parts"),
+            );
             return;
         }
         self.motion(contact, &item);
@@ -205,35 +160,19 @@ impl Check<'_> {
         }
         let mesh = self.mesh;
         if !mesh.surfaces[name].inner.is_empty() {
-            let (inner, all) = (
-                mesh.surfaces[name].inner.len(),
-                mesh.surfaces[name].facets.len(),
-            );
-            let what = format!(
-                "{inner} of {all} facets of {name:?} lie between two tetrahedra, not on the skin ({item})"
-            );
-            self.complain(
-                line,
-                format!("{what}. Mesh the two parts apart, without common nodes"),
-            );
+            let (inner, all) = (mesh.surfaces[name].inner.len(), mesh.surfaces[name].facets.len());
+            let what =
+                format!("{inner} of {all} facets of {name:?} lie between two tetrahedra, not on the skin ({item})");
+            self.complain(line, format!("{what}. Mesh the two parts apart, without common nodes"));
             return None;
         }
         let parts = mesh.parts_of_surface(name)?;
         if let [part] = parts[..] {
             return Some(part);
         }
-        let on: Vec<&str> = parts
-            .iter()
-            .map(|&part| mesh.parts[part as usize].as_str())
-            .collect();
-        let what = format!(
-            "the surface {name:?} lies on several parts: {} ({item})",
-            on.join(", ")
-        );
-        self.complain(
-            line,
-            format!("{what}. Make a physical surface for each part, and a contact for each"),
-        );
+        let on: Vec<&str> = parts.iter().map(|&part| mesh.parts[part as usize].as_str()).collect();
+        let what = format!("the surface {name:?} lies on several parts: {} ({item})", on.join(", "));
+        self.complain(line, format!("{what}. Make a physical surface for each part, and a contact for each"));
         None
     }
 
@@ -268,8 +207,7 @@ impl Check<'_> {
     /// Whether a contact has friction, in the file or in the sweep.
     fn has_friction(&self, contact: &Contact) -> bool {
         let swept = self.model.swept.contains(&contact.name);
-        contact.friction > 0.0
-            || (swept && self.model.frictions.iter().any(|&friction| friction > 0.0))
+        contact.friction > 0.0 || (swept && self.model.frictions.iter().any(|&friction| friction > 0.0))
     }
 
     /// A sweep changes something.

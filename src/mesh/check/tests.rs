@@ -91,15 +91,8 @@ const SURFACES: &str = "backplate_inner_back, backplate_outer_back, disc_inner_f
 fn a_good_model_is_accepted_and_its_sliding_pairs_are_found() {
     let (model, mesh) = (model(GOOD), mesh());
     model.check_against(&mesh).unwrap();
-    let sliding = |i: usize| {
-        model
-            .sliding(&model.contacts[i], &mesh)
-            .map(|rotation| rotation.speed)
-    };
-    assert_eq!(
-        [sliding(0), sliding(1), sliding(2)],
-        [Some(5.0), Some(5.0), None]
-    );
+    let sliding = |i: usize| model.sliding(&model.contacts[i], &mesh).map(|rotation| rotation.speed);
+    assert_eq!([sliding(0), sliding(1), sliding(2)], [Some(5.0), Some(5.0), None]);
     assert_eq!(model.swept_contacts(&mesh), [0, 1]);
     let named = self::model(&GOOD.replace("{ values", "{ contacts = [\"pads\"], values"));
     assert_eq!(named.swept_contacts(&mesh), [2]);
@@ -107,10 +100,7 @@ fn a_good_model_is_accepted_and_its_sliding_pairs_are_found() {
 
 #[test]
 fn parts_and_physical_volumes_are_the_same() {
-    let said = said(
-        &GOOD.replace("[part.lining_inner]", "[part.lining_iner]"),
-        &mesh(),
-    );
+    let said = said(&GOOD.replace("[part.lining_inner]", "[part.lining_iner]"), &mesh());
     let lines: Vec<&str> = said.lines().collect();
     let volumes = "disc, lining_inner, backplate_inner, lining_outer, backplate_outer";
     assert_eq!(
@@ -128,10 +118,7 @@ fn parts_and_physical_volumes_are_the_same() {
     let mut twice = model(GOOD);
     twice.parts.push(twice.parts[0].clone());
     let said = twice.check_against(&mesh()).unwrap_err().to_string();
-    assert_eq!(
-        said,
-        "brake.toml:9: the part is there twice (part \"disc\"). Keep one of them"
-    );
+    assert_eq!(said, "brake.toml:9: the part is there twice (part \"disc\"). Keep one of them");
 }
 
 #[test]
@@ -166,25 +153,18 @@ fn names_of_surfaces_and_sets_exist() {
 fn contacts_and_pressures_act_on_surfaces_and_not_on_node_sets() {
     let mut mesh = mesh();
     mesh.node_sets.insert("rim".to_owned(), vec![1, 2, 3]);
-    let text = GOOD.replace(
-        "on = \"backplate_inner_back\"\npressure = 1e6",
-        "on = \"rim\"\nforce = [1, 0, 0]",
-    );
+    let text = GOOD.replace("on = \"backplate_inner_back\"\npressure = 1e6", "on = \"rim\"\nforce = [1, 0, 0]");
     model(&text).check_against(&mesh).unwrap();
     let text = GOOD.replace("on = \"backplate_inner_back\"", "on = \"rim\"");
     let said_of = said(&text, &mesh);
     assert!(
-        said_of.starts_with(
-            "brake.toml:49: \"rim\" is a physical curve or point, not a surface (load \"rim\")"
-        ),
+        said_of.starts_with("brake.toml:49: \"rim\" is a physical curve or point, not a surface (load \"rim\")"),
         "{said_of}"
     );
     let text = GOOD.replace("master = \"disc_inner_face\"", "master = \"rim\"");
     let said_of = said(&text, &mesh);
     assert!(
-        said_of.starts_with(
-            "brake.toml:26: \"rim\" is a physical curve or point, not a surface (contact \"inner\")"
-        ),
+        said_of.starts_with("brake.toml:26: \"rim\" is a physical curve or point, not a surface (contact \"inner\")"),
         "{said_of}"
     );
 }
@@ -252,43 +232,26 @@ fn the_turning_side_is_the_master() {
          Swap slave and master",
     );
     let both = |rotation: &str| {
-        GOOD.replacen(
-            "[[contact]]",
-            &format!("[[rotation]]\npart = \"lining_inner\"\n{rotation}\n[[contact]]"),
-            1,
-        )
+        GOOD.replacen("[[contact]]", &format!("[[rotation]]\npart = \"lining_inner\"\n{rotation}\n[[contact]]"), 1)
     };
     let differently = said(&both("axis = [0, 0, 1]\nspeed = 4"), &mesh());
     assert!(
-        differently.contains(
-            ":30: the parts \"lining_inner\" and \"disc\" turn differently (contact \"inner\")"
-        ),
+        differently.contains(":30: the parts \"lining_inner\" and \"disc\" turn differently (contact \"inner\")"),
         "{differently}"
     );
-    let elsewhere = said(
-        &both("axis = [0, 0, 1]\nthrough = [1, 0, 0]\nspeed = 5"),
-        &mesh(),
-    );
+    let elsewhere = said(&both("axis = [0, 0, 1]\nthrough = [1, 0, 0]\nspeed = 5"), &mesh());
     assert!(elsewhere.contains("turn differently"), "{elsewhere}");
     // Together, with the axis given the other way round and another of its points: such a pair sticks.
-    let together = said(
-        &both("axis = [0, 0, -1]\nthrough = [0, 0, 7]\nspeed = -5"),
-        &mesh(),
-    );
+    let together = said(&both("axis = [0, 0, -1]\nthrough = [0, 0, 7]\nspeed = -5"), &mesh());
     assert!(
-        together.contains(
-            ":31: the pair does not slide and has friction, but no stick (contact \"inner\")"
-        ),
+        together.contains(":31: the pair does not slide and has friction, but no stick (contact \"inner\")"),
         "{together}"
     );
 }
 
 #[test]
 fn a_sweep_needs_something_that_slides() {
-    let still = GOOD.replace(
-        "[[rotation]]\npart = \"disc\"\naxis = [0, 0, 1]\nspeed = 5\n",
-        "",
-    );
+    let still = GOOD.replace("[[rotation]]\npart = \"disc\"\naxis = [0, 0, 1]\nspeed = 5\n", "");
     let said = said(&still.replace("friction = 0.5", "friction = 0"), &mesh());
     assert_eq!(
         said,
@@ -299,8 +262,6 @@ fn a_sweep_needs_something_that_slides() {
 
 #[test]
 fn all_that_is_wrong_is_said_at_once() {
-    let text = GOOD
-        .replace("nodes = \"hub\"", "nodes = \"hup\"")
-        .replace("stick = 1e13\n", "");
+    let text = GOOD.replace("nodes = \"hub\"", "nodes = \"hup\"").replace("stick = 1e13\n", "");
     assert_eq!(said(&text, &mesh()).lines().count(), 2);
 }

@@ -17,10 +17,7 @@ const UNUSED: u32 = u32::MAX;
 pub fn mesh(sections: &Sections, unit: f64) -> Result<Mesh, String> {
     let groups = Groups::new(sections)?;
     let tags = Tags::new(&sections.node_tags)?;
-    let mut mesh = Mesh {
-        parts: groups.names(3).map(str::to_owned).collect(),
-        ..Mesh::default()
-    };
+    let mut mesh = Mesh { parts: groups.names(3).map(str::to_owned).collect(), ..Mesh::default() };
     let elements = tets(sections, &groups, &tags, &mut mesh)?;
     let numbers = compact(sections, unit, &mut mesh)?;
     check_inverted(&mesh, &elements)?;
@@ -45,7 +42,9 @@ impl Tags {
 
     fn place(&self, tag: u64, element: u64) -> Result<u32, String> {
         let place = self.0.get(&tag).copied();
-        place.ok_or_else(|| format!("element {element} uses node {tag}, which $Nodes does not have. Write the mesh again"))
+        place.ok_or_else(|| {
+            format!("element {element} uses node {tag}, which $Nodes does not have. Write the mesh again")
+        })
     }
 
     /// The elements of a block as places of nodes, N each.
@@ -63,33 +62,20 @@ impl Tags {
 }
 
 /// Fills in the tetrahedra and their parts; returns Gmsh's tags of the elements.
-fn tets(
-    sections: &Sections,
-    groups: &Groups,
-    tags: &Tags,
-    mesh: &mut Mesh,
-) -> Result<Vec<u64>, String> {
+fn tets(sections: &Sections, groups: &Groups, tags: &Tags, mesh: &mut Mesh) -> Result<Vec<u64>, String> {
     let mut elements = Vec::new();
-    for block in sections
-        .blocks
-        .iter()
-        .filter(|block| block.kind.dimension == 3)
-    {
+    for block in sections.blocks.iter().filter(|block| block.kind.dimension == 3) {
         let name = groups.part_of_block(block)?;
         if block.kind.number != TET10 {
             let (kind, advice) = (block.kind.name, block.kind.advice());
-            return Err(format!(
-                "the part {name:?} has {kind}, not 10-node tetrahedra. {advice}"
-            ));
+            return Err(format!("the part {name:?} has {kind}, not 10-node tetrahedra. {advice}"));
         }
         let part = mesh.parts.iter().position(|part| part == name);
-        let part = part.ok_or_else(|| {
-            format!("volume elements lie on the surface {name:?}. Write the mesh again")
-        })? as u32;
+        let part =
+            part.ok_or_else(|| format!("volume elements lie on the surface {name:?}. Write the mesh again"))? as u32;
         let tets = tags.elements::<10>(block)?;
         mesh.tet_part.resize(mesh.tet_part.len() + tets.len(), part);
-        mesh.tets
-            .extend(tets.into_iter().map(|nodes| FROM_GMSH.map(|i| nodes[i])));
+        mesh.tets.extend(tets.into_iter().map(|nodes| FROM_GMSH.map(|i| nodes[i])));
         elements.extend_from_slice(&block.elements);
     }
     if mesh.tets.is_empty() {
@@ -119,9 +105,8 @@ fn compact(sections: &Sections, unit: f64, mesh: &mut Mesh) -> Result<Vec<u32>, 
 
 /// Refuses a mesh with inverted elements, telling how many and where.
 fn check_inverted(mesh: &Mesh, elements: &[u64]) -> Result<(), String> {
-    let inverted: Vec<usize> = (0..mesh.tets.len())
-        .filter(|&tet| jacobian::is_inverted(&mesh.tet_nodes(tet)))
-        .collect();
+    let inverted: Vec<usize> =
+        (0..mesh.tets.len()).filter(|&tet| jacobian::is_inverted(&mesh.tet_nodes(tet))).collect();
     let Some(&first) = inverted.first() else {
         return Ok(());
     };
@@ -148,9 +133,7 @@ fn surfaces(
         for name in groups.of_block(block) {
             if block.kind.number != TRI6 {
                 let (kind, advice) = (block.kind.name, block.kind.advice());
-                return Err(format!(
-                    "the surface {name:?} has {kind}, not 6-node triangles. {advice}"
-                ));
+                return Err(format!("the surface {name:?} has {kind}, not 6-node triangles. {advice}"));
             }
             let facets = tags.elements::<6>(block)?;
             let facets = block.elements.iter().copied().zip(facets);
@@ -167,9 +150,7 @@ fn surfaces(
     }
     let all = raw.values().flatten().map(|(_, facet)| facet);
     let skin = Skin::new(mesh.nodes.len(), &mesh.tets, &mesh.tet_part, all);
-    raw.iter()
-        .map(|(name, facets)| Ok(((*name).to_owned(), surface(name, facets, &skin)?)))
-        .collect()
+    raw.iter().map(|(name, facets)| Ok(((*name).to_owned(), surface(name, facets, &skin)?))).collect()
 }
 
 fn surface(name: &str, facets: &[(u64, [u32; 6])], skin: &Skin) -> Result<Surface, String> {

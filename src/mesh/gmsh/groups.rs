@@ -42,17 +42,13 @@ impl<'a> Groups<'a> {
     /// Names of the groups of a dimension, in the order of the file.
     pub fn names(&self, dimension: i32) -> impl Iterator<Item = &'a str> {
         let groups = self.sections.groups.iter();
-        groups
-            .filter(move |group| group.dimension == dimension)
-            .map(|group| group.name.as_str())
+        groups.filter(move |group| group.dimension == dimension).map(|group| group.name.as_str())
     }
 
     /// The named groups that a block of elements is in.
     pub fn of_block(&self, block: &Block) -> Vec<&'a str> {
         let tags = self.tags(block);
-        tags.iter()
-            .filter_map(|&tag| self.names.get(&(block.dimension, tag)).copied())
-            .collect()
+        tags.iter().filter_map(|&tag| self.names.get(&(block.dimension, tag)).copied()).collect()
     }
 
     /// The one part that a block of volume elements is in.
@@ -63,37 +59,22 @@ impl<'a> Groups<'a> {
             (_, []) => Err(format!(
                 "volume {entity} is in no physical volume. Add Physical Volume(\"name\") = {{{entity}}}, or leave Mesh.SaveAll off"
             )),
-            (_, [tag]) => Err(format!(
-                "physical volume {tag} has no name. Write Physical Volume(\"name\") = {{...}}"
-            )),
-            (parts, _) => Err(format!(
-                "volume {entity} is in several physical volumes: {}. Leave it in one",
-                parts.join(", ")
-            )),
+            (_, [tag]) => Err(format!("physical volume {tag} has no name. Write Physical Volume(\"name\") = {{...}}")),
+            (parts, _) => {
+                Err(format!("volume {entity} is in several physical volumes: {}. Leave it in one", parts.join(", ")))
+            }
         }
     }
 
     fn tags(&self, block: &Block) -> &'a [i32] {
-        self.sections
-            .entities
-            .get(&(block.dimension, block.entity))
-            .map_or(&[], Vec::as_slice)
+        self.sections.entities.get(&(block.dimension, block.entity)).map_or(&[], Vec::as_slice)
     }
 
     /// A named group without elements is a mistake of the geometry script (mostly a number that is no longer right).
     fn check_used(&self) -> Result<(), String> {
-        let blocks = self
-            .sections
-            .blocks
-            .iter()
-            .filter(|block| !block.elements.is_empty());
+        let blocks = self.sections.blocks.iter().filter(|block| !block.elements.is_empty());
         let used: HashSet<&str> = blocks.flat_map(|block| self.of_block(block)).collect();
-        match self
-            .sections
-            .groups
-            .iter()
-            .find(|group| !used.contains(group.name.as_str()))
-        {
+        match self.sections.groups.iter().find(|group| !used.contains(group.name.as_str())) {
             None => Ok(()),
             Some(group) => Err(format!(
                 "the {} {:?} has no elements. Correct the entities it lists, or remove it",

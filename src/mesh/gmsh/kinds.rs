@@ -19,12 +19,7 @@ pub const TET10: i32 = 11;
 pub const TRI6: i32 = 9;
 
 const fn kind(number: i32, name: &'static str, dimension: i32, n_nodes: usize) -> Kind {
-    Kind {
-        number,
-        name,
-        dimension,
-        n_nodes,
-    }
+    Kind { number, name, dimension, n_nodes }
 }
 
 static KINDS: [Kind; 26] = [
@@ -66,9 +61,7 @@ impl Kind {
     pub fn advice(&self) -> &'static str {
         match self.number {
             2 | 4 | 20 | 21 | 29 | 30 => "Set Mesh.ElementOrder = 2 and mesh again",
-            _ => {
-                "Mesh with second-order tetrahedra: no recombination, no extruded layers, Mesh.ElementOrder = 2"
-            }
+            _ => "Mesh with second-order tetrahedra: no recombination, no extruded layers, Mesh.ElementOrder = 2",
         }
     }
 }

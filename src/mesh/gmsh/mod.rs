@@ -27,10 +27,7 @@ use std::path::Path;
 /// off the tetrahedra, and inverted elements.
 pub fn read(path: &Path, unit: f64) -> Result<Mesh> {
     let bytes = std::fs::read(path).map_err(|reason| {
-        Error::input(format!(
-            "{}: cannot read the mesh: {reason}. Give its path in [mesh] file",
-            path.display()
-        ))
+        Error::input(format!("{}: cannot read the mesh: {reason}. Give its path in [mesh] file", path.display()))
     })?;
     parse(&bytes, path, unit)
 }

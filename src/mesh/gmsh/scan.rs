@@ -18,13 +18,7 @@ pub struct Scan<'a> {
 impl<'a> Scan<'a> {
     /// At the beginning of a file's bytes, reading text.
     pub fn new(file: &'a Path, bytes: &'a [u8]) -> Self {
-        Scan {
-            file,
-            bytes,
-            at: 0,
-            binary: false,
-            section: "",
-        }
+        Scan { file, bytes, at: 0, binary: false, section: "" }
     }
 
     /// An error here: `file:line: message`, or with the byte's offset in a binary file.
@@ -33,18 +27,13 @@ impl<'a> Scan<'a> {
         if self.binary {
             return Error::Input(format!("{file}: byte {}: {message}", self.at));
         }
-        let line = 1 + self.bytes[..self.at]
-            .iter()
-            .filter(|&&byte| byte == b'\n')
-            .count();
+        let line = 1 + self.bytes[..self.at].iter().filter(|&&byte| byte == b'\n').count();
         Error::Input(format!("{file}:{line}: {message}"))
     }
 
     fn truncated(&self) -> Error {
         let section = self.section;
-        self.error(format_args!(
-            "the file ends inside ${section}. It is truncated: write the mesh again"
-        ))
+        self.error(format_args!("the file ends inside ${section}. It is truncated: write the mesh again"))
     }
 
     /// Goes into the next section and says its name; none at the end of the file.
@@ -73,13 +62,10 @@ impl<'a> Scan<'a> {
             return Err(self.truncated());
         }
         let (section, rest) = (self.section, &self.bytes[self.at..]);
-        let end = rest
-            .strip_prefix(b"$End")
-            .and_then(|rest| rest.strip_prefix(section.as_bytes()));
+        let end = rest.strip_prefix(b"$End").and_then(|rest| rest.strip_prefix(section.as_bytes()));
         if end.is_none() {
-            let what = format_args!(
-                "expected $End{section}: the section holds more than it announces. Write the mesh again"
-            );
+            let what =
+                format_args!("expected $End{section}: the section holds more than it announces. Write the mesh again");
             return Err(self.error(what));
         }
         self.at += 4 + section.len();
@@ -90,10 +76,7 @@ impl<'a> Scan<'a> {
     pub fn skip_section(&mut self) -> Result<()> {
         let end = format!("$End{}", self.section);
         let rest = &self.bytes[self.at..];
-        match rest
-            .windows(end.len())
-            .position(|window| window == end.as_bytes())
-        {
+        match rest.windows(end.len()).position(|window| window == end.as_bytes()) {
             Some(position) => self.at += position + end.len(),
             None => return Err(self.truncated()),
         }
@@ -103,10 +86,7 @@ impl<'a> Scan<'a> {
     /// The rest of the line as text.
     pub fn line(&mut self) -> Result<&'a str> {
         let rest = &self.bytes[self.at..];
-        let end = rest
-            .iter()
-            .position(|&byte| byte == b'\n')
-            .unwrap_or(rest.len());
+        let end = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
         let line = std::str::from_utf8(&rest[..end]);
         let line = line.map_err(|_| self.error("this is no text. Is this a Gmsh mesh?"))?;
         self.at += (end + 1).min(rest.len());
@@ -115,20 +95,12 @@ impl<'a> Scan<'a> {
 
     /// A C `int`.
     pub fn int(&mut self) -> Result<i32> {
-        if self.binary {
-            Ok(i32::from_le_bytes(self.take()?))
-        } else {
-            self.word("a whole number")
-        }
+        if self.binary { Ok(i32::from_le_bytes(self.take()?)) } else { self.word("a whole number") }
     }
 
     /// A C `size_t` of 8 bytes.
     pub fn size(&mut self) -> Result<u64> {
-        if self.binary {
-            Ok(u64::from_le_bytes(self.take()?))
-        } else {
-            self.word("a whole number, 0 or above")
-        }
+        if self.binary { Ok(u64::from_le_bytes(self.take()?)) } else { self.word("a whole number, 0 or above") }
     }
 
     /// The number of things that follow, each at least one byte long: a count that cannot be is an error and not an allocation.
@@ -142,11 +114,7 @@ impl<'a> Scan<'a> {
 
     /// A C `double`.
     pub fn double(&mut self) -> Result<f64> {
-        if self.binary {
-            Ok(f64::from_le_bytes(self.take()?))
-        } else {
-            self.word("a number")
-        }
+        if self.binary { Ok(f64::from_le_bytes(self.take()?)) } else { self.word("a number") }
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
@@ -162,19 +130,14 @@ impl<'a> Scan<'a> {
     fn word<T: FromStr>(&mut self, expected: &str) -> Result<T> {
         self.skip_space();
         let rest = &self.bytes[self.at..];
-        let end = rest
-            .iter()
-            .position(u8::is_ascii_whitespace)
-            .unwrap_or(rest.len());
+        let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         if end == 0 {
             return Err(self.truncated());
         }
         let word = String::from_utf8_lossy(&rest[..end]);
         let value = word.parse().map_err(|_| {
             let section = self.section;
-            self.error(format_args!(
-                "expected {expected} in ${section}, found {word:?}. Write the mesh again"
-            ))
+            self.error(format_args!("expected {expected} in ${section}, found {word:?}. Write the mesh again"))
         })?;
         self.at += end;
         Ok(value)
@@ -182,9 +145,6 @@ impl<'a> Scan<'a> {
 
     fn skip_space(&mut self) {
         let rest = &self.bytes[self.at..];
-        self.at += rest
-            .iter()
-            .position(|byte| !byte.is_ascii_whitespace())
-            .unwrap_or(rest.len());
+        self.at += rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(rest.len());
     }
 }

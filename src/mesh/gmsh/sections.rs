@@ -71,14 +71,11 @@ pub fn sections(scan: &mut Scan) -> Result<Sections> {
         }
         scan.binary = false;
     }
-    match ["Nodes", "Elements"]
-        .into_iter()
-        .find(|needed| !seen.contains(needed))
-    {
+    match ["Nodes", "Elements"].into_iter().find(|needed| !seen.contains(needed)) {
         None => Ok(sections),
-        Some(name) => Err(scan.error(format_args!(
-            "the file has no ${name}. It is truncated, or was saved before meshing"
-        ))),
+        Some(name) => {
+            Err(scan.error(format_args!("the file has no ${name}. It is truncated, or was saved before meshing")))
+        }
     }
 }
 
@@ -87,28 +84,20 @@ fn format(scan: &mut Scan) -> Result<bool> {
     let line = scan.line()?;
     let words: Vec<&str> = line.split_whitespace().collect();
     let [version, binary, size] = words[..] else {
-        return Err(scan.error(format_args!(
-            "$MeshFormat is {line:?}. Save the mesh as version 4.1"
-        )));
+        return Err(scan.error(format_args!("$MeshFormat is {line:?}. Save the mesh as version 4.1")));
     };
     if version != "4.1" {
         let advice = "Save it as 4.1 (Mesh.MshFileVersion = 4.1, or gmsh -format msh41)";
-        return Err(scan.error(format_args!(
-            "the mesh has Gmsh's format {version}, not 4.1. {advice}"
-        )));
+        return Err(scan.error(format_args!("the mesh has Gmsh's format {version}, not 4.1. {advice}")));
     }
     let binary = binary == "1";
     if binary && size != "8" {
-        let what = format_args!(
-            "size_t has {size} bytes, not 8. Save the mesh on a 64-bit machine, or as text"
-        );
+        let what = format_args!("size_t has {size} bytes, not 8. Save the mesh on a 64-bit machine, or as text");
         return Err(scan.error(what));
     }
     scan.binary = binary;
     if binary && scan.int()? != 1 {
-        return Err(
-            scan.error("the file is big-endian. Save it as text, or on a little-endian machine")
-        );
+        return Err(scan.error("the file is big-endian. Save it as text, or on a little-endian machine"));
     }
     scan.close_section()?;
     scan.binary = false;
@@ -121,19 +110,11 @@ fn physical_names(scan: &mut Scan, groups: &mut Vec<Group>) -> Result<()> {
     for _ in 0..scan.count()? {
         let (dimension, tag) = (scan.int()?, scan.int()?);
         let line = scan.line()?.trim();
-        let name = line
-            .strip_prefix('"')
-            .and_then(|rest| rest.strip_suffix('"'));
+        let name = line.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
         let Some(name) = name else {
-            return Err(scan.error(format_args!(
-                "expected a name in quotes, found {line:?}. Write the mesh again"
-            )));
+            return Err(scan.error(format_args!("expected a name in quotes, found {line:?}. Write the mesh again")));
         };
-        groups.push(Group {
-            dimension,
-            tag,
-            name: name.to_owned(),
-        });
+        groups.push(Group { dimension, tag, name: name.to_owned() });
     }
     scan.close_section()
 }
@@ -188,9 +169,7 @@ fn nodes(scan: &mut Scan, sections: &mut Sections) -> Result<()> {
     }
     if sections.node_tags.len() != n_nodes {
         let found = sections.node_tags.len();
-        return Err(scan.error(format_args!(
-            "$Nodes announces {n_nodes} nodes and has {found}. Write the mesh again"
-        )));
+        return Err(scan.error(format_args!("$Nodes announces {n_nodes} nodes and has {found}. Write the mesh again")));
     }
     scan.close_section()
 }
@@ -204,13 +183,7 @@ fn elements(scan: &mut Scan, blocks: &mut Vec<Block>) -> Result<()> {
             return Err(scan.error(format_args!("unknown Gmsh element type {number}. {advice}")));
         };
         let count = scan.count()?;
-        let mut block = Block {
-            dimension,
-            entity,
-            kind,
-            elements: Vec::new(),
-            nodes: Vec::new(),
-        };
+        let mut block = Block { dimension, entity, kind, elements: Vec::new(), nodes: Vec::new() };
         for _ in 0..count {
             block.elements.push(scan.size()?);
             for _ in 0..kind.n_nodes {

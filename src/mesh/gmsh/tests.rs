@@ -5,9 +5,7 @@ use crate::mesh::{Mesh, quality::quality};
 use std::path::{Path, PathBuf};
 
 fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
 }
 
 fn read(name: &str) -> Mesh {
@@ -51,14 +49,8 @@ fn normal_sum(mesh: &Mesh, surface: &str) -> [f64; 3] {
 fn text_bytes_and_parameters_are_read_alike() {
     let ascii = read("two_blocks_ascii.msh");
     assert_eq!(ascii.parts, ["lower", "upper block"]);
-    assert_eq!(
-        ascii.surfaces.keys().collect::<Vec<_>>(),
-        ["bottom", "interface", "top"]
-    );
-    assert_eq!(
-        ascii.node_sets.keys().collect::<Vec<_>>(),
-        ["corner", "edge"]
-    );
+    assert_eq!(ascii.surfaces.keys().collect::<Vec<_>>(), ["bottom", "interface", "top"]);
+    assert_eq!(ascii.node_sets.keys().collect::<Vec<_>>(), ["corner", "edge"]);
     for other in ["two_blocks_binary.msh", "two_blocks_parametric.msh"] {
         let other = read(other);
         assert_eq!(other.tets, ascii.tets);
@@ -89,18 +81,11 @@ fn blocks_have_their_volume_sets_and_interface() {
     assert!(mesh.surfaces["top"].inner.is_empty());
     for (name, z) in [("bottom", -1e-6), ("interface", 1e-6), ("top", 1e-6)] {
         let sum = normal_sum(&mesh, name);
-        assert!(
-            sum[0].abs() < 1e-18 && sum[1].abs() < 1e-18 && (sum[2] - z).abs() < 1e-18,
-            "{name} {sum:?}"
-        );
+        assert!(sum[0].abs() < 1e-18 && sum[1].abs() < 1e-18 && (sum[2] - z).abs() < 1e-18, "{name} {sum:?}");
     }
     let nodes = mesh.node_set("top").unwrap();
     assert!(nodes.windows(2).all(|pair| pair[0] < pair[1]));
-    assert!(
-        nodes
-            .iter()
-            .all(|&node| (mesh.nodes[node as usize][2] - 1.5e-3).abs() < 1e-15)
-    );
+    assert!(nodes.iter().all(|&node| (mesh.nodes[node as usize][2] - 1.5e-3).abs() < 1e-15));
     assert_eq!(mesh.node_set("nothing"), None);
 }
 
@@ -120,13 +105,7 @@ fn midsides_lie_on_their_edges() {
 fn the_reference_brake_reads_with_its_names_and_facets_outward() {
     let mesh = read("pads_on_disc.msh");
     assert_eq!((mesh.nodes.len(), mesh.tets.len()), (6750, 3292));
-    let parts = [
-        "disc",
-        "lining_inner",
-        "backplate_inner",
-        "lining_outer",
-        "backplate_outer",
-    ];
+    let parts = ["disc", "lining_inner", "backplate_inner", "lining_outer", "backplate_outer"];
     assert_eq!(mesh.parts, parts);
     let surfaces: Vec<&str> = mesh.surfaces.keys().map(String::as_str).collect();
     let expected = [
@@ -139,11 +118,7 @@ fn the_reference_brake_reads_with_its_names_and_facets_outward() {
         "lining_outer_face",
     ];
     assert_eq!(surfaces, expected);
-    assert!(
-        mesh.surfaces
-            .values()
-            .all(|surface| surface.inner.is_empty())
-    );
+    assert!(mesh.surfaces.values().all(|surface| surface.inner.is_empty()));
     // The inner pad lies below the disc (z < 0), the outer one above.
     for (name, sign) in [
         ("disc_inner_face", -1.0),
@@ -158,20 +133,13 @@ fn the_reference_brake_reads_with_its_names_and_facets_outward() {
         }
     }
     // Out of the disc, the normals of its bore point to the axis.
-    let volume: f64 = mesh.surfaces["hub"]
-        .facets
-        .iter()
-        .map(|facet| below(&mesh, facet).0)
-        .sum();
+    let volume: f64 = mesh.surfaces["hub"].facets.iter().map(|facet| below(&mesh, facet).0).sum();
     assert!(volume < 0.0);
     let area = normal_sum(&mesh, "lining_inner_face")[2];
     assert!((area / 0.004495969950628393 - 1.0).abs() < 1e-3, "{area}");
     assert_eq!(mesh.part_of_surface("lining_outer_face"), Some(3));
     for quality in quality(&mesh) {
-        assert!(
-            quality.min > 0.05 && quality.median > 0.3 && quality.min_ratio > 0.5,
-            "{quality:?}"
-        );
+        assert!(quality.min > 0.05 && quality.median > 0.3 && quality.min_ratio > 0.5, "{quality:?}");
     }
 }
 
@@ -186,31 +154,13 @@ fn nodes_off_the_tetrahedra_are_left_out() {
 fn other_files_and_versions_are_named() {
     let error = super::read(Path::new("no/such.msh"), 1.0).unwrap_err();
     assert_eq!(error.exit_code(), 2);
-    assert!(
-        error
-            .to_string()
-            .starts_with("no/such.msh: cannot read the mesh: No such file")
-    );
-    assert!(
-        said(b"*HEADING\n")
-            .contains("bad.msh:2: expected a section such as $Nodes, found \"*HEADING\"")
-    );
+    assert!(error.to_string().starts_with("no/such.msh: cannot read the mesh: No such file"));
+    assert!(said(b"*HEADING\n").contains("bad.msh:2: expected a section such as $Nodes, found \"*HEADING\""));
     assert!(said(b"").contains("does not begin with $MeshFormat"));
-    complains(
-        "4.1 0 8",
-        "2.2 0 8",
-        "Gmsh's format 2.2, not 4.1. Save it as 4.1",
-    );
-    complains(
-        "$Nodes",
-        "$PartitionedEntities",
-        "the mesh is partitioned. Save the mesh unpartitioned",
-    );
+    complains("4.1 0 8", "2.2 0 8", "Gmsh's format 2.2, not 4.1. Save it as 4.1");
+    complains("$Nodes", "$PartitionedEntities", "the mesh is partitioned. Save the mesh unpartitioned");
     let mut big_endian = BINARY.to_vec();
-    let one = BINARY
-        .windows(4)
-        .position(|bytes| bytes == [1, 0, 0, 0])
-        .unwrap();
+    let one = BINARY.windows(4).position(|bytes| bytes == [1, 0, 0, 0]).unwrap();
     big_endian[one..one + 4].reverse();
     assert!(said(&big_endian).contains("the file is big-endian"));
 }
@@ -241,40 +191,18 @@ fn no_cut_panics() {
 
 #[test]
 fn wrong_numbers_are_located() {
-    complains(
-        "45 357 1 357",
-        "45 x 1 357",
-        "expected a whole number, 0 or above in $Nodes, found \"x\"",
-    );
-    complains(
-        "45 357 1 357",
-        "45 356 1 357",
-        "$Nodes announces 356 nodes and has 357",
-    );
-    complains(
-        "45 357 1 357",
-        "45 999999999999 1 357",
-        "the file ends inside $Nodes",
-    );
+    complains("45 357 1 357", "45 x 1 357", "expected a whole number, 0 or above in $Nodes, found \"x\"");
+    complains("45 357 1 357", "45 356 1 357", "$Nodes announces 356 nodes and has 357");
+    complains("45 357 1 357", "45 999999999999 1 357", "the file ends inside $Nodes");
     complains("\n2\n0 0 1\n", "\n1\n0 0 1\n", "node 1 is there twice");
-    complains(
-        "\n2\n0 0 1\n",
-        "\n2\n0 nan 1\n",
-        "a node lies at [0.0, NaN, 1.0]",
-    );
-    complains(
-        "\n2\n0 0 1\n",
-        "\n1000\n0 0 1\n",
-        "uses node 2, which $Nodes does not have",
-    );
+    complains("\n2\n0 0 1\n", "\n2\n0 nan 1\n", "a node lies at [0.0, NaN, 1.0]");
+    complains("\n2\n0 0 1\n", "\n1000\n0 0 1\n", "uses node 2, which $Nodes does not have");
 }
 
 /// The lines of a tetrahedron alone, of any kind.
 fn one_element(kind: i32, n_nodes: usize) -> String {
     let tags: Vec<String> = (1..=n_nodes).map(|tag| tag.to_string()).collect();
-    let nodes: String = (1..=n_nodes)
-        .map(|i| format!("{i} {} {}\n", i * i, i * i * i))
-        .collect();
+    let nodes: String = (1..=n_nodes).map(|i| format!("{i} {} {}\n", i * i, i * i * i)).collect();
     format!(
         "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"block\"\n$EndPhysicalNames\n\
          $Entities\n0 0 0 1\n1 0 0 0 1 1 1 1 1 0\n$EndEntities\n\
@@ -288,7 +216,9 @@ fn one_element(kind: i32, n_nodes: usize) -> String {
 #[test]
 fn other_elements_are_named() {
     let linear = said(one_element(4, 4).as_bytes());
-    assert!(linear.ends_with("the part \"block\" has 4-node tetrahedra, not 10-node tetrahedra. Set Mesh.ElementOrder = 2 and mesh again"));
+    assert!(linear.ends_with(
+        "the part \"block\" has 4-node tetrahedra, not 10-node tetrahedra. Set Mesh.ElementOrder = 2 and mesh again"
+    ));
     assert!(said(one_element(5, 8).as_bytes()).contains("\"block\" has 8-node hexahedra"));
     assert!(said(one_element(17, 20).as_bytes()).contains("\"block\" has 20-node hexahedra"));
     assert!(said(one_element(77, 4).as_bytes()).contains("unknown Gmsh element type 77"));
@@ -305,26 +235,21 @@ fn linear_facets_are_named() {
     }
     let bytes = ASCII.replacen(&format!("{}\n", block.join("\n")), &linear, 1);
     let said = said(bytes.as_bytes());
-    assert!(said.contains("the surface \"bottom\" has 3-node triangles, not 6-node triangles. Set Mesh.ElementOrder = 2"), "{said}");
+    assert!(
+        said.contains("the surface \"bottom\" has 3-node triangles, not 6-node triangles. Set Mesh.ElementOrder = 2"),
+        "{said}"
+    );
 }
 
 #[test]
 fn volumes_must_be_in_one_named_part() {
-    complains(
-        " 1 1 6 1 2 3 4 5 6 ",
-        " 0 6 1 2 3 4 5 6 ",
-        "has no elements",
-    );
+    complains(" 1 1 6 1 2 3 4 5 6 ", " 0 6 1 2 3 4 5 6 ", "has no elements");
     let bare = one_element(11, 10).replace("3 1 \"block\"", "3 2 \"block\"");
     assert!(said(bare.as_bytes()).contains("the physical volume \"block\" has no elements"));
     let unnamed = one_element(11, 10).replace("1\n3 1 \"block\"", "0");
     assert!(said(unnamed.as_bytes()).contains("physical volume 1 has no name"));
-    let outside = one_element(11, 10)
-        .replace("1\n3 1 \"block\"", "0")
-        .replace("1 1 1 1 1 0\n", "1 1 1 0 0\n");
-    assert!(
-        said(outside.as_bytes()).contains("volume 1 is in no physical volume. Add Physical Volume")
-    );
+    let outside = one_element(11, 10).replace("1\n3 1 \"block\"", "0").replace("1 1 1 1 1 0\n", "1 1 1 0 0\n");
+    assert!(said(outside.as_bytes()).contains("volume 1 is in no physical volume. Add Physical Volume"));
     complains(
         " 1 1 6 1 2 3 4 5 6 ",
         " 2 1 2 6 1 2 3 4 5 6 ",
@@ -351,39 +276,18 @@ fn facets_and_sets_lie_on_tetrahedra() {
     // Without the upper block its top belongs to nothing.
     let elements = ASCII.find("$Elements").unwrap();
     let upper = elements + ASCII[elements..].find("\n3 2 11 ").unwrap();
-    let counts: Vec<&str> = ASCII[elements..]
-        .lines()
-        .nth(1)
-        .unwrap()
-        .split(' ')
-        .collect();
+    let counts: Vec<&str> = ASCII[elements..].lines().nth(1).unwrap().split(' ').collect();
     let blocks: usize = counts[0].parse().unwrap();
-    let bare = ASCII[..upper].replacen(
-        &format!("$Elements\n{blocks} "),
-        &format!("$Elements\n{} ", blocks - 1),
-        1,
-    ) + "\n$EndElements\n";
-    let bare = bare
-        .replacen("7\n0 7", "6\n0 7", 1)
-        .replacen("3 2 \"upper block\"\n", "", 1);
+    let bare = ASCII[..upper].replacen(&format!("$Elements\n{blocks} "), &format!("$Elements\n{} ", blocks - 1), 1)
+        + "\n$EndElements\n";
+    let bare = bare.replacen("7\n0 7", "6\n0 7", 1).replacen("3 2 \"upper block\"\n", "", 1);
     let said_of = said(bare.as_bytes());
-    assert!(
-        said_of.contains("of the surface \"top\" is no face of a tetrahedron"),
-        "{said_of}"
-    );
+    assert!(said_of.contains("of the surface \"top\" is no face of a tetrahedron"), "{said_of}");
 }
 
 #[test]
 fn inverted_elements_are_counted_and_named() {
     // The corner of the blocks pulled far beyond its neighbours turns its elements inside out.
-    complains(
-        "\n1\n0 0 0\n",
-        "\n1\n2 2 2\n",
-        " tetrahedra are inverted (Jacobian 0 or below), first element ",
-    );
-    complains(
-        "\n1\n0 0 0\n",
-        "\n1\n2 2 2\n",
-        "of the part \"lower\". Set Mesh.HighOrderOptimize = 2",
-    );
+    complains("\n1\n0 0 0\n", "\n1\n2 2 2\n", " tetrahedra are inverted (Jacobian 0 or below), first element ");
+    complains("\n1\n0 0 0\n", "\n1\n2 2 2\n", "of the part \"lower\". Set Mesh.HighOrderOptimize = 2");
 }

@@ -38,31 +38,18 @@ fn unknown_keys_offer_the_nearest() {
     assert!(said.contains("unknown key \"contacts\""), "{said}");
     assert!(said.contains("Did you mean \"contact\"?"), "{said}");
     let said = parsed(&GOOD.replace("friction = 0.5", "fricton = 0.5")).unwrap_err();
-    assert!(
-        said.contains(":36: unknown key \"fricton\" ([[contact]]). Did you mean \"friction\"?"),
-        "{said}"
-    );
+    assert!(said.contains(":36: unknown key \"fricton\" ([[contact]]). Did you mean \"friction\"?"), "{said}");
 }
 
 #[test]
 fn missing_keys_say_what_to_add() {
-    let unit = "\"unit\" is missing ([mesh]). Add unit = \"mm\" (or m, cm, um, in, ft), the unit of the mesh's coordinates";
-    complains(
-        "[mesh]\nfile = \"brake.msh\"\nunit = \"mm\"",
-        "[mesh]\nfile = \"brake.msh\"",
-        0,
-        unit,
-    );
+    let unit =
+        "\"unit\" is missing ([mesh]). Add unit = \"mm\" (or m, cm, um, in, ft), the unit of the mesh's coordinates";
+    complains("[mesh]\nfile = \"brake.msh\"\nunit = \"mm\"", "[mesh]\nfile = \"brake.msh\"", 0, unit);
     let said = parsed("").unwrap_err();
-    assert!(
-        said.contains("\"mesh\" is missing (top of the file). Add [mesh]"),
-        "{said}"
-    );
+    assert!(said.contains("\"mesh\" is missing (top of the file). Add [mesh]"), "{said}");
     let said = parsed(&GOOD.replace("friction = 0.5", "")).unwrap_err();
-    assert!(
-        said.contains(":31: \"friction\" is missing ([[contact]])"),
-        "{said}"
-    );
+    assert!(said.contains(":31: \"friction\" is missing ([[contact]])"), "{said}");
     complains(
         "[material.iron]\nyoung = 110e9",
         "[material.iron]",
@@ -76,24 +63,11 @@ fn doubled_keys_and_names_are_refused() {
     let twice = "\"young\" is given twice ([material.iron]). Keep one of them";
     complains("young = 110e9", "young = 110e9\nyoung = 1e9", 1, twice);
     let said = parsed(&GOOD.replace("part.a_pad", "part.disc")).unwrap_err();
-    assert!(
-        said.contains(":21: \"disc\" is given twice ([part.disc])"),
-        "{said}"
-    );
+    assert!(said.contains(":21: \"disc\" is given twice ([part.disc])"), "{said}");
     let pair = "[[contact]]\nname = \"pair\"\nslave = \"a\"\nmaster = \"b\"\nlaw = { linear = 1 }\nfriction = 0\n[[connector]]";
-    complains(
-        "[[connector]]",
-        pair,
-        0,
-        "the name is taken by line 31 (contact \"pair\"). Give each its own name",
-    );
+    complains("[[connector]]", pair, 0, "the name is taken by line 31 (contact \"pair\"). Give each its own name");
     let load = "[[load]]\non = \"back\"\npressure = 1\n[stability]";
-    complains(
-        "[stability]",
-        load,
-        0,
-        "the name is taken by line 42 (load \"back\"). Give each its own name",
-    );
+    complains("[stability]", load, 0, "the name is taken by line 42 (load \"back\"). Give each its own name");
     let rotation = "[[rotation]]\npart = \"disc\"\naxis = [0, 0, 1]\nspeed = 1\n[[contact]]";
     complains(
         "[[contact]]",
@@ -111,21 +85,12 @@ fn the_unit_must_be_known() {
 
 #[test]
 fn names_within_the_file_must_exist() {
-    let said =
-        "unknown material \"irn\" (part \"disc\"). Did you mean \"iron\"? There is: iron, lining";
+    let said = "unknown material \"irn\" (part \"disc\"). Did you mean \"iron\"? There is: iron, lining";
     complains("material = \"iron\"", "material = \"irn\"", 0, said);
     let said = "unknown part \"disk\" (rotation of \"disk\"). Did you mean \"disc\"? There is: disc, a_pad";
     complains("part = \"disc\"", "part = \"disk\"", 0, said);
     let said = parsed(&GOOD.replace("contacts = [\"pair\"]", "contacts = [\"par\"]")).unwrap_err();
-    assert!(
-        said.ends_with(
-            ":48: unknown contact \"par\" (sweep). Did you mean \"pair\"? There is: pair"
-        ),
-        "{said}"
-    );
+    assert!(said.ends_with(":48: unknown contact \"par\" (sweep). Did you mean \"pair\"? There is: pair"), "{said}");
     let said = parsed(&GOOD.replace("material = \"lining\"", "")).unwrap_err();
-    assert!(
-        said.contains(":21: \"material\" is missing ([part.a_pad])"),
-        "{said}"
-    );
+    assert!(said.contains(":21: \"material\" is missing ([part.a_pad])"), "{said}");
 }

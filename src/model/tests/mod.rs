@@ -79,24 +79,14 @@ fn the_documented_example_parses_and_uses_every_kind() {
     let model = parse(EXAMPLE, Path::new("brake.toml")).unwrap();
     assert_eq!(model.title, "floating-caliper brake");
     assert_eq!(model.parts.len(), 9);
-    assert_eq!(
-        model.frictions,
-        [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
-    );
+    assert_eq!(model.frictions, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]);
     assert_eq!(model.swept, ["disc / inner pad", "disc / outer pad"]);
     let reduction = model.reduction.unwrap();
     assert_eq!((reduction.contacts, reduction.band), (104, [0.0, 12_000.0]));
-    assert_eq!(
-        model.contacts[1].law,
-        NormalLaw::Cubic { k1: 2e13, k3: 1e22 }
-    );
+    assert_eq!(model.contacts[1].law, NormalLaw::Cubic { k1: 2e13, k3: 1e22 });
     assert_eq!(model.loads[1].kind, LoadKind::Pressure(4e6));
     // The shim's x axis lies along the mesh's y.
-    let shim = model
-        .parts
-        .iter()
-        .find(|part| part.name == "shim_outer")
-        .unwrap();
+    let shim = model.parts.iter().find(|part| part.name == "shim_outer").unwrap();
     let elasticity = shim.material.elasticity;
     assert!(elasticity[1][1] > 1.2 * elasticity[0][0]);
 }
@@ -109,13 +99,7 @@ fn values_come_in_si_units_and_parts_in_the_order_of_the_file() {
     assert_eq!((model.mesh_unit, model.mesh_line), (1e-3, 3));
     let names: Vec<&str> = model.parts.iter().map(|part| part.name.as_str()).collect();
     assert_eq!(names, ["disc", "a_pad"]);
-    assert_eq!(
-        model.parts[0].rayleigh,
-        Rayleigh {
-            alpha: 10.0,
-            beta: 1e-8
-        }
-    );
+    assert_eq!(model.parts[0].rayleigh, Rayleigh { alpha: 10.0, beta: 1e-8 });
     assert_eq!(model.parts[1].rayleigh, Rayleigh::default());
     assert_eq!(model.fixes[0].axes, [true, false, true]);
     assert_eq!(model.rotations[0].through, [1e-3, 2e-3, 3e-3]);
@@ -126,10 +110,7 @@ fn values_come_in_si_units_and_parts_in_the_order_of_the_file() {
     assert_eq!(model.connectors[0].name, "pin / hole");
     assert_eq!(model.connectors[0].at, Some([1e-2, 0.0, 0.0]));
     assert_eq!(model.loads[0].name, "back");
-    assert_eq!(
-        model.loads[0].kind,
-        LoadKind::ForceByNode([0.0, 0.0, 4000.0])
-    );
+    assert_eq!(model.loads[0].kind, LoadKind::ForceByNode([0.0, 0.0, 4000.0]));
     assert_eq!((model.sweep_line, model.reduction), (48, None));
 }
 
@@ -137,9 +118,5 @@ fn values_come_in_si_units_and_parts_in_the_order_of_the_file() {
 fn a_missing_file_is_the_users_mistake() {
     let error = read(Path::new("no/such.toml")).unwrap_err();
     assert_eq!(error.exit_code(), 2);
-    assert!(
-        error
-            .to_string()
-            .starts_with("no/such.toml: cannot read the model file: ")
-    );
+    assert!(error.to_string().starts_with("no/such.toml: cannot read the model file: "));
 }
