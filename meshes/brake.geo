@@ -527,6 +527,16 @@ For i In {0:#near()-1}
     Transfinite Curve{near(i)} = 1 + vane_n;
   EndIf
 EndFor
+// the two sides of a vane are meshed differently where they are fine: mirror images across its thickness make slivers
+If (size == 4)
+  near() = Surface In BoundingBox {-disc_R - 1, -disc_R - 1, -z0 - 0.01, disc_R + 1, disc_R + 1, z0 + 0.01};
+  For i In {0:#near()-1}
+    b() = BoundingBox Surface{near(i)};
+    If (b(5) - b(2) > z0 && near(i) % 2)
+      MeshAlgorithm Surface{near(i)} = 5;
+    EndIf
+  EndFor
+EndIf
 Mesh.MeshSizeExtendFromBoundary = 1;
 Mesh.MeshSizeFromPoints = 1;
 Mesh.MeshSizeFromCurvature = per_turn_(k);

@@ -3,13 +3,12 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use crate::Result;
 use crate::element::tet10::{MassProperties, mass_properties};
-use crate::equilibrium::free_motions;
 use crate::mesh::quality;
 use crate::petsc::{Comm, Factor, FactorKind};
-use crate::{Error, Result};
 
-use super::brake::Brake;
+use crate::sweep::Brake;
 
 pub fn run(comm: &Comm, path: &Path) -> Result<()> {
     let brake = Brake::read(comm, path)?;
@@ -20,15 +19,7 @@ pub fn run(comm: &Comm, path: &Path) -> Result<()> {
     if comm.is_root() {
         print!("{text}");
     }
-    let free = free_motions(&brake.mesh, &brake.interface, &brake.held, &brake.links);
-    if !free.is_empty() {
-        let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
-        return Err(Error::input(format!(
-            "{}: held by nothing:\n{}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions",
-            path.display(),
-            list.join("\n")
-        )));
-    }
+    brake.require_held()?;
     memory(comm, &brake)
 }
 

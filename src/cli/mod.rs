@@ -1,6 +1,5 @@
 //! The command line: arguments, one file a command, exit codes.
 
-mod brake;
 mod check;
 mod friction;
 mod progress;

@@ -10,9 +10,9 @@ use crate::report::vtu::{Cells, Grid, Values};
 use crate::stability::Mode;
 use crate::{Error, Result};
 
-use super::brake::{Brake, Families};
 use crate::assembly::System;
 use crate::contact::law::{Response, Status};
+use crate::sweep::{Brake, Families};
 
 /// An equilibrium with its balance, ready to be written.
 pub struct State {

@@ -6,10 +6,9 @@ use crate::Result;
 use crate::petsc::{Comm, FactorStats, ORDERING};
 use crate::report::tables::{self, ModeRow};
 use crate::stability::Count;
-use crate::sweep::Sweep;
+use crate::sweep::{Brake, Sweep};
 
 use super::Run;
-use super::brake::Brake;
 use super::progress::Progress;
 use super::results::{self, State};
 use super::statics::{equilibrium_text, save_last, say};
@@ -17,7 +16,8 @@ use super::statics::{equilibrium_text, save_last, say};
 pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     let start = Instant::now();
     let brake = Brake::read(comm, &run.model)?;
-    let frictions = brake.frictions(run.friction.as_ref())?;
+    brake.require_held()?;
+    let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
     let band = band.unwrap_or(brake.model.band);
     let folder = results::folder(comm, run, "stability")?;
     let progress = Progress::new(comm, frictions.len());

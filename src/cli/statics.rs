@@ -3,17 +3,17 @@
 use crate::equilibrium::Step;
 use crate::petsc::Comm;
 use crate::report::tables;
-use crate::sweep::{Event, Sweep};
+use crate::sweep::{Brake, Event, Sweep};
 use crate::{Error, Result};
 
 use super::Run;
-use super::brake::Brake;
 use super::progress::Progress;
 use super::results::{self, State};
 
 pub fn run(comm: &Comm, run: &Run) -> Result<()> {
     let brake = Brake::read(comm, &run.model)?;
-    let frictions = brake.frictions(run.friction.as_ref())?;
+    brake.require_held()?;
+    let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
     let folder = results::folder(comm, run, "static")?;
     let progress = Progress::new(comm, frictions.len());
     progress.say("assembling");

@@ -53,10 +53,7 @@ pub fn oriented(surface: &Surface, nodes: &[[f64; 3]], outward: [f64; 3]) -> Sur
         |facet: &[u32; 6]| Facet::gather(nodes, facet).normal([0.0, 0.0]).dot(&Vector3::from(outward)) < 0.0;
     let turned = flipped(surface);
     let facets = surface.facets.iter().zip(&turned.facets);
-    Surface {
-        facets: facets.map(|(f, t)| if points_inward(f) { *t } else { *f }).collect(),
-        ..surface.clone()
-    }
+    Surface { facets: facets.map(|(f, t)| if points_inward(f) { *t } else { *f }).collect(), ..surface.clone() }
 }
 
 /// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.

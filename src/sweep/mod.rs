@@ -3,6 +3,10 @@
 //! [`Sweep`] owns what all values share: the system, its contact evaluation, the factors' analysis, the last equilibrium. Each
 //! call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
 
+mod brake;
+
+pub use brake::{Brake, Families};
+
 use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::assembly::{self, Connectivity, Connectors, Elements, Link, System, Tets};
-use crate::contact::interface::Interface;
+use crate::contact::Interface;
+use crate::equilibrium::free_motions;
 use crate::mesh::{self, Mesh};
 use crate::model::{self, Model};
 use crate::petsc::Comm;
@@ -11,21 +12,30 @@ use crate::{Error, Result};
 
 /// A model with its mesh and contact interface, the same on every rank.
 pub struct Brake {
+    /// What the user wrote.
     pub model: Model,
+    /// The mesh, m.
     pub mesh: Mesh,
+    /// Contact points of all pairs.
     pub interface: Interface,
+    /// Forces (N) at nodes.
     pub loads: Vec<(u32, [f64; 3])>,
+    /// Which displacements of each node are zero.
     pub held: Vec<[bool; 3]>,
+    /// Connectors.
     pub links: Vec<Link>,
 }
 
 /// The families of elements of a brake.
 pub struct Families<'a> {
+    /// The tetrahedra.
     pub tets: Tets<'a>,
+    /// The connectors.
     pub connectors: Connectors,
 }
 
 impl Families<'_> {
+    /// All of them, as the assembly takes them.
     pub fn list(&self) -> [&dyn Elements; 2] {
         [&self.tets, &self.connectors]
     }
@@ -33,8 +43,28 @@ impl Families<'_> {
 
 impl Brake {
     /// Reads and checks model and mesh and finds the contact points. Collective: all ranks fail together.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file and line, whatever is wrong.
     pub fn read(comm: &Comm, path: &Path) -> Result<Brake> {
         comm.agree(Brake::read_alone(path))
+    }
+
+    /// Refuses a brake of which a part is held by nothing.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the parts and their free motions.
+    pub fn require_held(&self) -> Result<()> {
+        let free = free_motions(&self.mesh, &self.interface, &self.held, &self.links);
+        if free.is_empty() {
+            return Ok(());
+        }
+        let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
+        Err(Error::input(format!(
+            "{}: held by nothing:\n{}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions",
+            self.model.file.display(),
+            list.join("\n")
+        )))
     }
 
     fn read_alone(path: &Path) -> Result<Brake> {
@@ -48,11 +78,18 @@ impl Brake {
         Ok(Brake { model, mesh, interface, loads, held, links })
     }
 
+    /// The families of elements.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a part has no material.
     pub fn families(&self) -> Result<Families<'_>> {
         Ok(Families { tets: Tets::new(&self.model, &self.mesh)?, connectors: Connectors::new(&self.links, &self.mesh) })
     }
 
     /// Assembles M, C, K and the load. Collective.
+    ///
+    /// # Errors
+    /// METIS's and PETSc's.
     pub fn assemble(&self, comm: &Comm, families: &Families) -> Result<System> {
         let contacts: [&dyn Connectivity; 1] = [&self.interface.trace];
         let mut system = System::assemble(comm, &self.held, &families.list(), &contacts)?;
@@ -61,9 +98,12 @@ impl Brake {
     }
 
     /// The friction values to analyse: the command line's, else the model's sweep, else the swept pairs' own.
-    pub fn frictions(&self, asked: Option<&super::Frictions>) -> Result<Vec<f64>> {
+    ///
+    /// # Errors
+    /// [`Error::Input`] where nothing slides.
+    pub fn frictions(&self, asked: Option<&[f64]>) -> Result<Vec<f64>> {
         if let Some(list) = asked {
-            return Ok(list.0.clone());
+            return Ok(list.to_vec());
         }
         if !self.model.frictions.is_empty() {
             return Ok(self.model.frictions.clone());
