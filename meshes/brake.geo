@@ -16,12 +16,12 @@ EndIf
 // ---------------------------------------------------------------------------------------------- what the size decides
 k = size - 1;
 // element edge, mm                small   medium  full    million
-h_disc_()     = {  34    ,  13.5  ,  5.7   ,  4.3    };
+h_disc_()     = {  34    ,  13.8  ,  5.7   ,  4.25   };
 h_lining_()   = {  13    ,  7     ,  3.8   ,  3.0    };
-h_plate_()    = {  15    ,  8     ,  4.3   ,  3.4    };
+h_plate_()    = {  15    ,  8.2   ,  4.3   ,  3.4    };
 h_piston_()   = {  14    ,  9     ,  5     ,  3.8    };
-h_caliper_()  = {  26    ,  13    ,  4.5   ,  3.8    };
-h_bracket_()  = {  32    ,  13    ,  4.8   ,  4.0    };
+h_caliper_()  = {  25    ,  13    ,  4.5   ,  3.75   };
+h_bracket_()  = {  30    ,  13.5  ,  4.8   ,  3.95   };
 per_turn_()   = {  6     ,  8     ,  7     ,  9      };  // elements around a full circle of a fillet, at least
 per_hole_()   = {  8     ,  8     ,  12    ,  16     };  // elements around a hole
 wall_h_()     = {  20    ,  7     ,  4.5   ,  3.5    };  // and along it
@@ -36,7 +36,7 @@ h_caliper = h_caliper_(k);  h_bracket = h_bracket_(k);  vanes = vanes_(k);  rmin
 disc_R = 140;  disc_t = 24;  cheek_t = 8;        // radius, thickness over both cheeks, one cheek
 rub_r = 90;                                      // inner radius of the rubbing faces
 cheek_r = 86;                                    // bore of the inner cheek
-vane_r0 = (size == 1) ? cheek_r - 6 : 92;  vane_r1 = (size == 1) ? disc_R + 20 : 135;  vane_t = 180 / vanes;  // small: flush
+vane_r0 = (size == 1) ? cheek_r - 6 : 92;  vane_r1 = (size == 1) ? disc_R + 20 : 135;  vane_t = 200 / vanes;  // small: flush
 hat_R = 78;  hat_t = 7;  hat_z = 46;             // hat: outer radius, wall, height of its top
 bore_R = 32;  hub_n = 5;  hub_pcd = 108;  hub_d = 14.5;
 // pads
@@ -323,7 +323,7 @@ For e In {-1:1:2}
   pu() = {e*55, e*ear_x0, e*78, e*82, e*81, e*55};
   pv() = {66,   86,       86,   70,   33,   33};
   pr() = {0,    0,        0,    0,    10,   10};
-  w0 = -brk_z;  w1 = -18;  Call RoundPoly;
+  w0 = -brk_z;  w1 = -brk_gap;  Call RoundPoly;
   arms() += {vol};
 EndFor
 // inboard cross-bar below the inner pad, outboard tie bar between hat and outer pad
@@ -519,21 +519,26 @@ For i In {0:#walls()-1}
   MeshSize { PointsOf { Surface{walls(i)}; } } = wall_h_(k);
 EndFor
 MeshSize { PointsOf { Surface{bore()}; } } = Min(2*Pi*pis_R/per_hole_(k), h_caliper);
-// element counts over the height of a vane's edges
+// Elements over the height of a vane's edges. Where the vanes are finely meshed, both of their sides regularly but with
+// other counts: where nodes of both sides lie in a plane they make slivers across the vane.
 near() = Curve In BoundingBox {-disc_R - 1, -disc_R - 1, -z0 - 0.01, disc_R + 1, disc_R + 1, z0 + 0.01};
 For i In {0:#near()-1}
   b() = BoundingBox Curve{near(i)};
+  a = (Atan2(b(1) + b(4), b(0) + b(3)) - Pi/2) / (2*Pi) * vanes + vanes;
+  a = (a - Floor(a) > 0.5) ? 1 : 0;
   If (b(5) - b(2) > z0 && b(3) - b(0) < 0.1 && b(4) - b(1) < 0.1)
-    Transfinite Curve{near(i)} = 1 + vane_n;
+    Transfinite Curve{near(i)} = 1 + vane_n + ((size == 4) ? a : 0);
+  ElseIf (size == 4 && b(5) - b(2) < 0.1 && Sqrt((b(3) - b(0))^2 + (b(4) - b(1))^2) > 0.9*(vane_r1 - vane_r0) && Sqrt((b(3) - b(0))^2 + (b(4) - b(1))^2) < 1.1*(vane_r1 - vane_r0))
+    Transfinite Curve{near(i)} = 1 + Ceil((vane_r1 - vane_r0) / h_disc) + a;
   EndIf
 EndFor
-// the two sides of a vane are meshed differently where they are fine: mirror images across its thickness make slivers
 If (size == 4)
   near() = Surface In BoundingBox {-disc_R - 1, -disc_R - 1, -z0 - 0.01, disc_R + 1, disc_R + 1, z0 + 0.01};
   For i In {0:#near()-1}
     b() = BoundingBox Surface{near(i)};
-    If (b(5) - b(2) > z0 && near(i) % 2)
-      MeshAlgorithm Surface{near(i)} = 5;
+    l = Sqrt((b(3) - b(0))^2 + (b(4) - b(1))^2);
+    If (b(5) - b(2) > z0 && l > 0.9*(vane_r1 - vane_r0) && l < 1.1*(vane_r1 - vane_r0))
+      Transfinite Surface{near(i)} Alternate;
     EndIf
   EndFor
 EndIf

@@ -30,16 +30,14 @@ impl Session {
         if finalized != 0 {
             return Err(Error::Library("MPI cannot be started twice in one process".into()));
         }
-        for (name, value) in OPTIONS {
-            set_option(name, value)?;
+        let own = OPTIONS.iter().map(|(name, value)| (name.to_string(), value.to_string()));
+        for (name, value) in own.chain(options.iter().cloned()) {
+            set_option(&name, &value)?;
         }
         // SAFETY: no arguments are passed, so PETSc reads neither the command line nor a file.
         check(unsafe { sys::SlepcInitialize(ptr::null_mut(), ptr::null_mut(), ptr::null(), ptr::null()) })?;
         // SAFETY: `collect` has the signature of a handler and no context.
         check(unsafe { sys::PetscPushErrorHandler(Some(collect), ptr::null_mut()) })?;
-        for (name, value) in options {
-            set_option(name, value)?;
-        }
         Ok(Comm::world(Rc::new(Session { _private: () })))
     }
 }
