@@ -15,19 +15,19 @@ EndIf
 
 // ---------------------------------------------------------------------------------------------- what the size decides
 k = size - 1;
-// element edge, mm                small   medium  full    million
-h_disc_()     = {  34    ,  13.8  ,  5.7   ,  4.25   };
-h_lining_()   = {  13    ,  7     ,  3.8   ,  3.0    };
-h_plate_()    = {  15    ,  8.2   ,  4.3   ,  3.4    };
-h_piston_()   = {  14    ,  9     ,  5     ,  3.8    };
-h_caliper_()  = {  25    ,  13    ,  4.5   ,  3.75   };
-h_bracket_()  = {  30    ,  13.5  ,  4.8   ,  3.95   };
-per_turn_()   = {  6     ,  8     ,  7     ,  9      };  // elements around a full circle of a fillet, at least
-per_hole_()   = {  8     ,  8     ,  12    ,  16     };  // elements around a hole
-wall_h_()     = {  20    ,  7     ,  4.5   ,  3.5    };  // and along it
-vanes_()      = {  7     ,  17    ,  37    ,  37     };  // primes: no doublet of a low nodal diameter is split
-vane_n_()     = {  1     ,  1     ,  1     ,  2      };  // elements over a vane's height
-rmin_()       = {  100   ,  8.5   ,  0     ,  0      };  // corner radii below this stay sharp
+// element edge, mm    small  medium    full  million
+h_disc_()     = {     34,   13.8,    5.7,   4.25 };
+h_lining_()   = {     13,      7,    3.8,    3.0 };
+h_plate_()    = {     15,    8.2,    4.3,    3.4 };
+h_piston_()   = {     14,      9,      5,    3.8 };
+h_caliper_()  = {     25,     13,    4.5,   3.75 };
+h_bracket_()  = {     30,   13.5,    4.8,   3.95 };
+per_turn_()   = {      6,      8,      7,      9 };  // elements around a full circle of a fillet, at least
+per_hole_()   = {      8,      8,     12,     16 };  // elements around a hole
+wall_h_()     = {     20,      7,    4.5,    3.5 };  // and along it
+vanes_()      = {      7,     17,     37,     37 };  // primes: no doublet of a low nodal diameter is split
+vane_n_()     = {      1,      1,      1,      2 };  // elements over a vane's height
+rmin_()       = {    100,    8.5,      0,      0 };  // corner radii below this stay sharp
 vane_n = vane_n_(k);  h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);
 h_caliper = h_caliper_(k);  h_bracket = h_bracket_(k);  vanes = vanes_(k);  rmin = rmin_(k);
 
