@@ -9,6 +9,8 @@
 //!
 //! Everything that takes a handle is collective over its communicator unless it says otherwise.
 
+mod block;
+pub mod dense;
 pub mod eigen;
 pub mod error;
 mod factor;
@@ -19,6 +21,7 @@ pub mod nonlinear;
 mod session;
 mod vector;
 
+pub use block::Block;
 pub use factor::{Factor, FactorKind, FactorStats, ORDERING};
 pub use matrix::Matrix;
 pub use metis::partition;
@@ -27,3 +30,5 @@ pub use vector::{Gather, Vector};
 
 /// PETSc's "work it out": a macro in its headers.
 const DETERMINE: i32 = -1;
+/// PETSc's "choose for me".
+const DEFAULT: i32 = -2;

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::mode::Residual;
+use super::subspace;
 use super::{Mode, Pencil};
 use crate::petsc::eigen::{self, Options, Quadratic};
 use crate::petsc::{Factor, FactorKind};
@@ -16,11 +17,23 @@ pub struct Solver {
     pub ldl: Factor,
     /// Real shift of the inverted problem, 1/s: 0, unless the structure has rigid motions.
     pub shift: f64,
+    /// How eigenpairs are found.
+    pub method: Method,
+}
+
+/// How eigenpairs are found; both give the same modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// Blocked solves on one growing subspace.
+    #[default]
+    Subspace,
+    /// SLEPc's TOAR, one vector at a time: the reference.
+    Toar,
 }
 
 impl Default for Solver {
     fn default() -> Self {
-        Solver { lu: Factor::new(FactorKind::Unsymmetric), ldl: Factor::new(FactorKind::Symmetric), shift: 0.0 }
+        Solver { lu: Factor::new(FactorKind::Unsymmetric), ldl: Factor::new(FactorKind::Symmetric), shift: 0.0, method: Method::default() }
     }
 }
 
@@ -73,10 +86,9 @@ pub fn solve(
     let mut margin = 4 + expected / 20;
     let mut n_solves = 0;
     for _ in 0..TRIES {
-        let n_wanted = (2 * (expected + margin)).min(2 * n_equations(pencil));
-        let found = nearest(pencil, solver, n_wanted, progress)?;
+        let found = nearest(pencil, solver, band[1], expected, margin, progress)?;
         n_solves += found.n_solves;
-        if let Some(count) = complete(pencil, solver, &found, band, expected, n_wanted)? {
+        if let Some(count) = complete(pencil, solver, &found, band, expected)? {
             return finish(pencil, found, band, count, n_solves);
         }
         margin *= 3;
@@ -92,15 +104,27 @@ fn n_equations(pencil: &Pencil) -> usize {
     pencil.k.comm().sum(pencil.k.n_local() as f64) as usize
 }
 
+/// Eigenpairs nearest to the shift, some beyond the band's end. TOAR is asked for a number, the subspace for a radius.
 fn nearest(
     pencil: &Pencil,
     solver: &Solver,
-    n_wanted: usize,
+    end: f64,
+    expected: usize,
+    margin: usize,
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<eigen::Found> {
     let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: solver.shift, factor: &solver.lu };
-    let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
-    eigen::solve(&problem, &options, &mut |converged, solves| progress(converged, n_wanted, solves))
+    match solver.method {
+        Method::Subspace => {
+            let radius = TAU * end * (1.0 + margin as f64 / (2 * expected + 2) as f64) + solver.shift.abs();
+            subspace::solve(&problem, radius, expected + margin, progress)
+        }
+        Method::Toar => {
+            let n_wanted = (2 * (expected + margin)).min(2 * n_equations(pencil));
+            let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
+            eigen::solve(&problem, &options, &mut |converged, solves| progress(converged, n_wanted, solves))
+        }
+    }
 }
 
 /// The count at which found and expected numbers agree; none where the search must be widened.
@@ -113,13 +137,12 @@ fn complete(
     found: &eigen::Found,
     band: [f64; 2],
     expected: usize,
-    n_wanted: usize,
 ) -> Result<Option<Count>> {
     let mut moduli: Vec<f64> = found.pairs.iter().map(|pair| pair.lambda.norm() / TAU).collect();
     moduli.sort_by(f64::total_cmp);
     let all = found.n_converged >= 2 * n_equations(pencil);
     let reach = if all { f64::INFINITY } else { moduli.last().copied().unwrap_or(0.0) };
-    if found.n_converged < n_wanted || reach <= band[1] {
+    if reach <= band[1] {
         return Ok(None);
     }
     let below = |f: f64| found.pairs.iter().map(|pair| weight(pair, f)).sum::<f64>().round() as usize;
