@@ -115,7 +115,7 @@ pub fn weighted_product(rows: &[Vec<f64>; 6], along: [f64; 3], about: [f64; 3]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::algebra::{cross, norm};
+    use crate::algebra::{cross, norm};
     use crate::element::coupling::rigid_displacement;
     use crate::element::samples::Random;
     use nalgebra::{DMatrix, DVector};

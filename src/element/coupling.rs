@@ -13,7 +13,7 @@
 //!
 //! A collinear cloud can turn about its line unseen: `T` is singular, and that is an error, not a small number.
 
-use super::algebra::{cofactor_columns, cross, dot, product, scale, skew, sub};
+use crate::algebra::{cofactor_columns, cross, dot, product, scale, skew, sub};
 
 /// Nodes with weights, e.g. a surface's points with their contact areas. Both slices have the same length.
 #[derive(Debug, Clone, Copy)]
@@ -167,7 +167,7 @@ pub fn rigid_displacement(shift: [f64; 3], turn: [f64; 3], origin: [f64; 3], x: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::algebra::norm;
+    use crate::algebra::norm;
     use crate::element::samples::Random;
 
     fn random_cloud(random: &mut Random, n: usize) -> (Vec<[f64; 3]>, Vec<f64>) {

@@ -17,7 +17,7 @@
 //! the 7-point rule; areas and traction loads, which take its length, are exact on plane facets only and otherwise as good
 //! as the facet's shape (a quarter of a cylinder in 2, 4, 8 facets along the arc: 4e-4, 2e-5, 2e-6 of its area).
 
-use super::algebra::{cross, norm};
+use crate::algebra::{cross, norm};
 use super::quadrature::{Point, TRIANGLE_7};
 
 /// Shape functions `N_a` at `(xi, eta)`.
@@ -169,7 +169,7 @@ fn add(sum: &mut [f64; 3], factor: f64, v: [f64; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::algebra::{dot, sub};
+    use crate::algebra::{dot, sub};
     use crate::element::samples::{Random, curved_tet};
     use crate::element::tet10;
     use proptest::prelude::*;
