@@ -1,4 +1,5 @@
 //! squeal
+mod algebra;
 pub mod assembly;
 pub mod cli;
 pub mod contact;

@@ -16,5 +16,5 @@ mod system;
 
 pub use dofs::DofMap;
 pub use pattern::{BlockRows, Pattern};
-pub use structure::{Connectors, Link, Tets, held, links, loads};
+pub use structure::{Link, Tets, held, links, loads};
 pub use system::{Connectivity, ElementMatrices, Elements, System};

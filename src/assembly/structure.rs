@@ -1,6 +1,6 @@
 //! The full finite element structure as families of elements: tetrahedra by part, and connectors.
 
-use crate::element::connector::{ConnectorError, Properties, RelativeMotion, relative_motion, weighted_product};
+use crate::element::connector::{RelativeMotion, relative_motion};
 use crate::element::coupling::Cloud;
 use crate::element::{tet10, tri6};
 use crate::mesh::{Mesh, Surface};
@@ -30,11 +30,6 @@ impl<'a> Tets<'a> {
         Ok(Tets { mesh, parts: mesh.parts.iter().map(part).collect::<Result<_>>()? })
     }
 
-    /// Coordinates of tetrahedron `e`.
-    pub fn coordinates(&self, e: usize) -> [[f64; 3]; 10] {
-        self.mesh.tets[e].map(|n| self.mesh.nodes[n as usize])
-    }
-
     /// Model part of tetrahedron `e`.
     pub fn part(&self, e: usize) -> &'a Part {
         self.parts[self.mesh.tet_part[e] as usize]
@@ -54,7 +49,7 @@ impl Connectivity for Tets<'_> {
 impl Elements for Tets<'_> {
     /// `C = alpha M + beta K` with the part's own coefficients.
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
-        let (x, part) = (self.coordinates(e), self.part(e));
+        let (x, part) = (self.mesh.tet_nodes(e), self.part(e));
         let mut mass = [0.0; 100];
         out.reset(10);
         tet10::stiffness(&x, &part.material.elasticity, &mut out.k);
@@ -75,47 +70,37 @@ impl Elements for Tets<'_> {
     }
 }
 
-/// A connector on its mesh: two clouds of nodes with weights, and what acts between their mean motions.
+/// A connector on its mesh: a spring and damper between the mean motions of two clouds of nodes.
+///
+/// A surface's cloud is its midside nodes with their contact weights, any other set's all nodes with equal weights.
 pub struct Link {
-    /// Nodes and weights of the two clouds. A surface's are its midside nodes with their contact weights, any other set's all
-    /// nodes with equal weights.
-    pub clouds: [(Vec<u32>, Vec<f64>); 2],
-    /// The common reference point, m.
-    pub reference: [f64; 3],
-    /// Stiffness and damping.
-    pub properties: Properties,
+    /// The nodes of both clouds, one after the other.
+    pub nodes: Vec<u32>,
+    /// The motion of the second cloud relative to the first.
+    pub motion: RelativeMotion,
+    /// Stiffness along (N/m) and about (N m/rad) x, y, z.
+    pub stiffness: [f64; 6],
+    /// Damping along (N s/m) and about (N m s/rad) x, y, z.
+    pub damping: [f64; 6],
 }
 
 impl Link {
-    /// The motion of the second cloud relative to the first: six rows on the nodes of both.
-    ///
-    /// # Errors
-    /// Where a cloud lies on a line.
-    pub fn motion(&self, mesh: &Mesh) -> std::result::Result<RelativeMotion, ConnectorError> {
-        let points = self.clouds.each_ref().map(|(nodes, _)| coordinates(mesh, nodes));
-        let cloud = |i: usize| Cloud { nodes: &points[i], weights: &self.clouds[i].1 };
-        relative_motion([cloud(0), cloud(1)], self.reference)
-    }
-
-    /// The nodes of both clouds, as the columns of [`Link::motion`] have them.
-    pub fn nodes(&self) -> Vec<u32> {
-        self.clouds.iter().flat_map(|(nodes, _)| nodes.iter().copied()).collect()
-    }
-
     fn new(connector: &Connector, mesh: &Mesh) -> std::result::Result<Link, String> {
         let set = |name: &String| cloud(mesh, name).ok_or_else(|| format!("the mesh has no {name:?}"));
-        let clouds = [set(&connector.between[0])?, set(&connector.between[1])?];
-        let centres = clouds.each_ref().map(|(nodes, weights)| centroid(&coordinates(mesh, nodes), weights));
+        let [(first, first_weights), (second, second_weights)] =
+            [set(&connector.between[0])?, set(&connector.between[1])?];
+        let points = [coordinates(mesh, &first), coordinates(mesh, &second)];
+        let clouds = [
+            Cloud { nodes: &points[0], weights: &first_weights },
+            Cloud { nodes: &points[1], weights: &second_weights },
+        ];
+        let centres = clouds.map(|cloud| cloud.centroid());
         let middle = [0, 1, 2].map(|i| 0.5 * (centres[0][i] + centres[1][i]));
-        let properties = Properties {
-            stiffness: connector.stiffness,
-            rotational_stiffness: connector.rotational_stiffness,
-            damping: connector.damping,
-            rotational_damping: [0.0; 3],
-        };
-        let link = Link { clouds, reference: connector.at.unwrap_or(middle), properties };
-        link.motion(mesh).map_err(|error| error.to_string())?;
-        Ok(link)
+        let motion = relative_motion(clouds, connector.at.unwrap_or(middle)).map_err(|error| error.to_string())?;
+        let [[kx, ky, kz], [rx, ry, rz]] = [connector.stiffness, connector.rotational_stiffness];
+        let [cx, cy, cz] = connector.damping;
+        let nodes = [first, second].concat();
+        Ok(Link { nodes, motion, stiffness: [kx, ky, kz, rx, ry, rz], damping: [cx, cy, cz, 0.0, 0.0, 0.0] })
     }
 }
 
@@ -133,49 +118,27 @@ pub fn links(model: &Model, mesh: &Mesh) -> Result<Vec<Link>> {
     model.connectors.iter().map(link).collect()
 }
 
-/// Springs and dampers between mean motions of node sets.
-pub struct Connectors {
-    members: Vec<(Vec<u32>, ElementMatrices)>,
-}
-
-impl Connectors {
-    /// Computes the matrices of links.
-    pub fn new(links: &[Link], mesh: &Mesh) -> Connectors {
-        let member = |link: &Link| {
-            let rows = link.motion(mesh).expect("checked when the link was made").rows;
-            let p = &link.properties;
-            let k = weighted_product(&rows, p.stiffness, p.rotational_stiffness);
-            let c = weighted_product(&rows, p.damping, p.rotational_damping);
-            let m = vec![0.0; k.len()];
-            (link.nodes(), ElementMatrices { k, m, c })
-        };
-        Connectors { members: links.iter().map(member).collect() }
-    }
-}
-
-impl Connectivity for Connectors {
+impl Connectivity for Vec<Link> {
     fn len(&self) -> usize {
-        self.members.len()
+        Vec::len(self)
     }
 
     fn nodes(&self, e: usize) -> &[u32] {
-        &self.members[e].0
+        &self[e].nodes
     }
 }
 
-impl Elements for Connectors {
+impl Elements for Vec<Link> {
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
-        out.clone_from(&self.members[e].1);
+        let link = &self[e];
+        out.reset(link.nodes.len());
+        out.k = link.motion.weighted_product(link.stiffness);
+        out.c = link.motion.weighted_product(link.damping);
     }
 }
 
 fn coordinates(mesh: &Mesh, nodes: &[u32]) -> Vec<[f64; 3]> {
     nodes.iter().map(|&n| mesh.nodes[n as usize]).collect()
-}
-
-fn centroid(points: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {
-    let total: f64 = weights.iter().sum();
-    [0, 1, 2].map(|i| points.iter().zip(weights).map(|(x, w)| w * x[i]).sum::<f64>() / total)
 }
 
 /// Nodes of a named set with their weights.

@@ -1,21 +1,21 @@
 //! Friction values and bands as people type them.
 
+use crate::model::{LARGEST_FRICTION, spaced};
+
 /// A list of friction values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frictions(pub Vec<f64>);
-
-/// Friction beyond this is a typing error.
-const LARGEST: f64 = 2.0;
 
 /// `0.5`, `0.2,0.5` or `FROM:TO:STEP`, the end included.
 pub fn parse(text: &str) -> Result<Frictions, String> {
     let values = match text.split(':').collect::<Vec<_>>()[..] {
         [list] => list.split(',').map(number).collect::<Result<Vec<_>, _>>()?,
-        [from, to, step] => range(number(from)?, number(to)?, number(step)?)?,
+        [from, to, step] => spaced(number(from)?, number(to)?, number(step)?)
+            .ok_or_else(|| format!("the range {text} is empty or endless"))?,
         _ => return Err("expected one value, a list 0.2,0.5 or a range FROM:TO:STEP".into()),
     };
-    match values.iter().find(|mu| !(0.0..=LARGEST).contains(*mu)) {
-        Some(mu) => Err(format!("friction {mu} is out of range: 0 to {LARGEST}")),
+    match values.iter().find(|mu| !(0.0..=LARGEST_FRICTION).contains(*mu)) {
+        Some(mu) => Err(format!("friction {mu} is out of range: 0 to {LARGEST_FRICTION}")),
         None => Ok(Frictions(values)),
     }
 }
@@ -33,16 +33,6 @@ pub fn band(text: &str) -> Result<[f64; 2], String> {
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }
-}
-
-/// Values `from + i step` computed without accumulating rounding, up to `to` with a millionth of a step to spare.
-pub fn range(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
-    let n = (to - from) / step;
-    if step == 0.0 || n < 0.0 || !n.is_finite() || n > 1e5 {
-        return Err(format!("the range {from}:{to}:{step} is empty or endless"));
-    }
-    let digits = |i: usize| (1e12 * (from + i as f64 * step)).round() / 1e12;
-    Ok((0..=(n + 1e-6).floor() as usize).map(digits).collect())
 }
 
 #[cfg(test)]

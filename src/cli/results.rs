@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
+use crate::Result;
 use crate::equilibrium::{Balance, Equilibrium};
 use crate::petsc::Vector;
 use crate::report::folder::Folder;
 use crate::report::tables::PairRow;
 use crate::report::vtu::{Cells, Grid, Values};
 use crate::stability::Mode;
-use crate::{Error, Result};
 
 use crate::assembly::System;
 use crate::contact::law::{Response, Status};
@@ -205,8 +205,5 @@ pub fn csv_table(folder: &Folder, name: &str, body: impl FnOnce(&mut dyn Write) 
 /// The folder on the root; the refusal on all ranks alike.
 pub fn folder(comm: &crate::petsc::Comm, run: &super::Run, command: &str) -> Result<Option<Folder>> {
     let made = if comm.is_root() { Folder::create(&run.folder(command), run.force).map(Some) } else { Ok(None) };
-    match comm.agree(made) {
-        Err(Error::Elsewhere(code)) => Err(Error::Elsewhere(code)),
-        other => other,
-    }
+    comm.agree(made)
 }

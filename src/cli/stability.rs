@@ -10,8 +10,8 @@ use crate::sweep::{Brake, Sweep};
 
 use super::Run;
 use super::progress::Progress;
-use super::results::{self, State};
-use super::statics::{equilibrium_text, save_last, say};
+use super::results;
+use super::statics::{Record, save_last, say};
 
 pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     let start = Instant::now();
@@ -25,30 +25,23 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     let families = brake.families()?;
     let system = brake.assemble(comm, &families)?;
     let mut sweep = Sweep::new(&system, &brake.interface)?;
-    let (mut modes, mut pairs, mut steps, mut counts) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut details = String::new();
+    let (mut modes, mut counts, mut record) = (Vec::new(), Vec::new(), Record::default());
     for &friction in &frictions {
         let outcome = sweep.equilibrium(friction, &mut |event| say(&progress, &event));
-        let equilibrium = match outcome {
+        let mut equilibrium = match outcome {
             Ok(equilibrium) => equilibrium,
             Err(error) => return Err(save_last(error, comm, &brake, &system, &sweep, folder)),
         };
-        let state = State::new(&brake, &families, &system, &equilibrium)?;
-        details += &equilibrium_text(&brake, &state, &equilibrium.steps);
-        pairs.extend(state.pair_rows(&brake));
-        if let Some(folder) = &folder {
-            state.write(folder, &brake, &equilibrium.responses)?;
-        }
+        record.add(&brake, &families, &system, &mut equilibrium, folder.as_ref())?;
         let found = sweep.modes(&equilibrium, band, &mut |event| say(&progress, &event))?;
         for mode in found.modes.iter().filter(|mode| mode.is_unstable()) {
             results::write_mode(folder.as_ref(), &brake, &system, friction, mode)?;
         }
         let rows: Vec<ModeRow> =
             found.modes.iter().enumerate().map(|(i, mode)| ModeRow::new(friction, i, mode)).collect();
-        details += &modes_text(&rows, &found.count, found.n_solves);
+        record.text += &modes_text(&rows, &found.count, found.n_solves);
         modes.extend(rows);
         counts.push((friction, found.count));
-        steps.extend(equilibrium.steps.into_iter().map(|step| (friction, step)));
         progress.advance();
     }
     progress.finish();
@@ -60,9 +53,8 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
         summary += &costs_text(&sweep.costs(), start.elapsed().as_secs_f64(), comm.size());
         summary += &files_text(&place.display().to_string());
         folder.write("modes.csv", |out| tables::modes(out, &modes))?;
-        results::csv_table(&folder, "contact.csv", |out| tables::pairs(out, &pairs))?;
-        results::csv_table(&folder, "convergence.csv", |out| tables::convergence(out, &steps))?;
-        folder.write("details.txt", |out| out.write_all(details.as_bytes()))?;
+        record.write(&folder)?;
+        folder.write("details.txt", |out| out.write_all(record.text.as_bytes()))?;
         folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
         folder.finish()?;
         print!("{summary}");

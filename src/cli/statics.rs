@@ -1,9 +1,11 @@
 //! `squeal static`: equilibria.
 
-use crate::equilibrium::Step;
+use crate::assembly::System;
+use crate::equilibrium::{Equilibrium, Step};
 use crate::petsc::Comm;
-use crate::report::tables;
-use crate::sweep::{Brake, Event, Sweep};
+use crate::report::folder::Folder;
+use crate::report::tables::{self, PairRow};
+use crate::sweep::{Brake, Event, Families, Sweep};
 use crate::{Error, Result};
 
 use super::Run;
@@ -20,33 +22,57 @@ pub fn run(comm: &Comm, run: &Run) -> Result<()> {
     let families = brake.families()?;
     let system = brake.assemble(comm, &families)?;
     let mut sweep = Sweep::new(&system, &brake.interface)?;
-    let (mut rows, mut steps) = (Vec::new(), Vec::new());
-    let mut summary = format!("{}\n", brake.model.title);
+    let mut record = Record { text: format!("{}\n", brake.model.title), ..Record::default() };
     for &friction in &frictions {
         let outcome = sweep.equilibrium(friction, &mut |event| say(&progress, &event));
-        let equilibrium = match outcome {
+        let mut equilibrium = match outcome {
             Ok(equilibrium) => equilibrium,
             Err(error) => return Err(save_last(error, comm, &brake, &system, &sweep, folder)),
         };
-        let state = State::new(&brake, &families, &system, &equilibrium)?;
-        summary += &equilibrium_text(&brake, &state, &equilibrium.steps);
-        rows.extend(state.pair_rows(&brake));
-        if let Some(folder) = &folder {
-            state.write(folder, &brake, &equilibrium.responses)?;
-        }
-        steps.extend(equilibrium.steps.into_iter().map(|step| (friction, step)));
+        record.add(&brake, &families, &system, &mut equilibrium, folder.as_ref())?;
         progress.advance();
     }
     progress.finish();
     if let Some(folder) = folder {
-        results::csv_table(&folder, "contact.csv", |out| tables::pairs(out, &rows))?;
-        results::csv_table(&folder, "convergence.csv", |out| tables::convergence(out, &steps))?;
-        summary += &format!("results in {}\n", run.folder("static").display());
+        record.write(&folder)?;
+        let summary = format!("{}results in {}\n", record.text, run.folder("static").display());
         folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
         folder.finish()?;
         print!("{summary}");
     }
     Ok(())
+}
+
+/// What the equilibria of a run leave behind: the report in words, and rows of the tables.
+#[derive(Default)]
+pub struct Record {
+    pub text: String,
+    rows: Vec<PairRow>,
+    steps: Vec<(f64, Step)>,
+}
+
+impl Record {
+    /// Reports an equilibrium, whose steps it takes, and draws it. Collective.
+    pub fn add(
+        &mut self,
+        brake: &Brake,
+        families: &Families,
+        system: &System,
+        equilibrium: &mut Equilibrium,
+        folder: Option<&Folder>,
+    ) -> Result<()> {
+        let state = State::new(brake, families, system, equilibrium)?;
+        self.text += &equilibrium_text(brake, &state, &equilibrium.steps);
+        self.rows.extend(state.pair_rows(brake));
+        self.steps.extend(equilibrium.steps.drain(..).map(|step| (state.friction, step)));
+        folder.map_or(Ok(()), |folder| state.write(folder, brake, &equilibrium.responses))
+    }
+
+    /// Writes the tables.
+    pub fn write(&self, folder: &Folder) -> Result<()> {
+        results::csv_table(folder, "contact.csv", |out| tables::pairs(out, &self.rows))?;
+        results::csv_table(folder, "convergence.csv", |out| tables::convergence(out, &self.steps))
+    }
 }
 
 /// What a sweep is doing, for a person who waits.
@@ -66,7 +92,7 @@ pub fn say(progress: &Progress, event: &Event) {
 }
 
 /// The report of one equilibrium.
-pub fn equilibrium_text(brake: &Brake, state: &State, steps: &[Step]) -> String {
+fn equilibrium_text(brake: &Brake, state: &State, steps: &[Step]) -> String {
     let mut text = format!("\nfriction {:.3}\n", state.friction);
     for step in steps {
         let last = step.iterations.last().expect("a step has its start");
@@ -107,9 +133,9 @@ pub fn save_last(
     error: Error,
     comm: &Comm,
     brake: &Brake,
-    system: &crate::assembly::System,
+    system: &System,
     sweep: &Sweep,
-    folder: Option<crate::report::folder::Folder>,
+    folder: Option<Folder>,
 ) -> Error {
     let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return error };
     let saved = results::write_last(folder.as_ref(), brake, system, u).and_then(|()| match folder {

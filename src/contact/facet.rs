@@ -1,48 +1,8 @@
-//! Geometry of one quadratic facet: six nodes, a curved triangle in space.
+//! Geometry of one quadratic facet: six nodes, a curved triangle in space. Its shape functions are the element's,
+//! [`tri6`], with (r, s) for the reference coordinates.
 
+use crate::element::tri6::{self, EDGES};
 use nalgebra::Vector3;
-
-/// Degree-4 rule on the triangle (Strang and Fix 1973, six points): area coordinates `(1 - 2a, a, a)` and
-/// permutations, weight as a fraction of the triangle's area.
-const RULE: [(f64, f64); 2] =
-    [(0.445_948_490_915_964_9, 0.223_381_589_678_011_47), (0.091_576_213_509_770_74, 0.109_951_743_655_321_87)];
-
-/// Corners at the ends of each edge; edge `k` has the midside node `3 + k`.
-pub(super) const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
-
-/// Natural coordinates (r, s) of the six nodes.
-pub(super) const NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
-
-/// Shape functions at (r, s), with `L = 1 - r - s`: corners `L(2L-1), r(2r-1), s(2s-1)`, midsides `4Lr, 4rs, 4sL`.
-pub(super) fn shape([r, s]: [f64; 2]) -> [f64; 6] {
-    let l = 1.0 - r - s;
-    [l * (2.0 * l - 1.0), r * (2.0 * r - 1.0), s * (2.0 * s - 1.0), 4.0 * l * r, 4.0 * r * s, 4.0 * s * l]
-}
-
-/// First derivatives `[dN/dr, dN/ds]` of each shape function.
-fn gradient([r, s]: [f64; 2]) -> [[f64; 2]; 6] {
-    let l = 1.0 - r - s;
-    [
-        [1.0 - 4.0 * l, 1.0 - 4.0 * l],
-        [4.0 * r - 1.0, 0.0],
-        [0.0, 4.0 * s - 1.0],
-        [4.0 * (l - r), -4.0 * r],
-        [4.0 * s, 4.0 * r],
-        [-4.0 * s, 4.0 * (l - s)],
-    ]
-}
-
-/// Second derivatives `[d2N/dr2, d2N/drds, d2N/ds2]`, constant on the triangle.
-const CURVATURE: [[f64; 3]; 6] =
-    [[4.0, 4.0, 4.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0], [-8.0, -4.0, 0.0], [0.0, 4.0, 0.0], [0.0, -4.0, -8.0]];
-
-/// The points of the degree-4 rule with their fractions of the area.
-pub(super) fn rule() -> impl Iterator<Item = ([f64; 2], f64)> {
-    RULE.into_iter().flat_map(|(a, w)| {
-        let b = 1.0 - 2.0 * a;
-        [([a, a], w), ([b, a], w), ([a, b], w)]
-    })
-}
 
 /// The six nodes' positions of a facet; all geometry follows from `x(r, s) = sum N_j x_j`.
 #[derive(Debug, Clone, Copy)]
@@ -59,19 +19,19 @@ impl Facet {
 
     /// `x = sum N_j x_j`.
     pub fn position(&self, at: [f64; 2]) -> Vector3<f64> {
-        let n = shape(at);
+        let n = tri6::shape(at);
         (0..6).map(|j| n[j] * self.nodes[j]).sum()
     }
 
     /// The two tangents `x_r, x_s`.
     pub fn tangents(&self, at: [f64; 2]) -> [Vector3<f64>; 2] {
-        let dn = gradient(at);
+        let dn = tri6::derivatives(at);
         [0, 1].map(|k| (0..6).map(|j| dn[j][k] * self.nodes[j]).sum())
     }
 
     /// The second derivatives `x_rr, x_rs, x_ss`.
     pub fn curvatures(&self) -> [Vector3<f64>; 3] {
-        [0, 1, 2].map(|k| (0..6).map(|j| CURVATURE[j][k] * self.nodes[j]).sum())
+        [0, 1, 2].map(|k| (0..6).map(|j| tri6::SECOND_DERIVATIVES[j][k] * self.nodes[j]).sum())
     }
 
     /// The outward unit normal `x_r x x_s / |x_r x x_s|`; NaN where the facet is degenerate.
@@ -80,14 +40,9 @@ impl Facet {
         xr.cross(&xs).normalize()
     }
 
-    /// Area `int |x_r x x_s| dr ds` by the degree-4 rule (exact on plane facets, also with curved edges).
+    /// Area, exact on plane facets.
     pub fn area(&self) -> f64 {
-        rule()
-            .map(|(at, w)| {
-                let [xr, xs] = self.tangents(at);
-                0.5 * w * xr.cross(&xs).norm()
-            })
-            .sum()
+        tri6::area(&self.nodes.map(Into::into))
     }
 
     /// Mean length of the three chords between corners.
@@ -116,24 +71,6 @@ mod tests {
     /// A point of the reference triangle.
     fn inside() -> impl Strategy<Value = [f64; 2]> {
         (0.0..1.0, 0.0..1.0).prop_map(|(a, b): (f64, f64)| [a * (1.0 - b), b])
-    }
-
-    #[test]
-    fn shape_functions_are_one_at_their_own_node_and_zero_at_the_others() {
-        for (i, at) in NODES.into_iter().enumerate() {
-            for (j, n) in shape(at).into_iter().enumerate() {
-                assert_eq!(n, f64::from(i == j));
-            }
-        }
-    }
-
-    #[test]
-    fn a_plane_facet_with_a_curved_edge_has_its_exact_area() {
-        // A parabola of height h over the edge (0,1) takes 2/3 h off the unit triangle.
-        let mut x = NODES.map(|[r, s]| Vector3::new(r, s, 0.0));
-        x[3].y = 0.06;
-        let exact = 0.5 - 2.0 / 3.0 * 0.06;
-        assert!((Facet { nodes: x }.area() - exact).abs() < 1e-15);
     }
 
     proptest! {

@@ -55,12 +55,10 @@ impl Pair {
 pub enum Kind {
     /// Nothing.
     Frictionless,
-    /// Sliding for ever: one of the two parts turns.
+    /// Sliding for ever: the master turns.
     Sliding,
     /// Elastic stick with a Coulomb bound.
     StickSlip,
-    /// Elastic stick without bound.
-    Stick,
 }
 
 /// What the search found for a pair.
@@ -104,19 +102,20 @@ pub enum Stage {
 }
 
 impl Interface {
-    /// Finds the contact points of every pair of the model.
+    /// Finds the contact points of every pair of a model that [`Model::check_against`] accepts.
     ///
-    /// A pair slides where the parts of its two surfaces have different imposed velocities; t is the direction of the
-    /// master's velocity `omega x (x - through)` against the slave's.
+    /// A pair slides where its master turns; t is the direction of the master's velocity `omega x (x - through)`.
     ///
     /// # Errors
-    /// With the model file's line: an unknown or empty surface, a pair without any point (with the closest distance
-    /// found), surfaces that share nodes, a surface over parts that turn differently, `stick` on a
-    /// sliding pair, friction without `stick` on another.
+    /// With the model file's line: a pair without any point (with the closest distance found), surfaces that share nodes.
+    ///
+    /// # Panics
+    /// Where a surface is not in the mesh.
     pub fn build(model: &Model, mesh: &Mesh) -> Result<Interface> {
         let mut interface = Interface::default();
-        for contact in &model.contacts {
-            super::pairing::add_pair(&mut interface, model, mesh, contact)?;
+        let swept = model.swept_contacts(mesh);
+        for (i, contact) in model.contacts.iter().enumerate() {
+            super::pairing::add_pair(&mut interface, model, mesh, contact, swept.contains(&i))?;
         }
         Ok(interface)
     }

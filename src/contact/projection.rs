@@ -10,7 +10,9 @@
 //! What comes out is never farther than the closest point of the boundary, and where it lies inside it is a minimum.
 //! Several starts matter only beyond a facet's own radius of curvature, where f has more than one.
 
-use super::facet::{EDGES, Facet, NODES, rule};
+use super::facet::Facet;
+use crate::element::quadrature::TRIANGLE_7;
+use crate::element::tri6::{EDGES, NODES};
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 /// The closest point of a facet.
@@ -30,7 +32,7 @@ pub(super) fn project(facet: &Facet, p: &Vector3<f64>) -> Projection {
     let local = Facet { nodes: facet.nodes.map(|x| x - p) };
     let edges = (0..3).flat_map(|k| edge_candidates(&local, k));
     let boundary = lowest(&local, edges);
-    let inside = rule().map(|(at, _)| at);
+    let inside = TRIANGLE_7.iter().map(|point| point.at);
     let ends = std::iter::once(boundary).chain(inside);
     let at = lowest(&local, ends.map(|start| descend(&local, start)));
     Projection { at, position: facet.position(at), distance: local.position(at).norm() }

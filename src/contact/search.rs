@@ -8,8 +8,9 @@
 //! ends at the first box beyond the best facet found. The result does not depend on the order of the tree: among facets
 //! whose distances agree (a point that projects on a common edge) the lowest index is taken.
 
-use super::facet::{Facet, NODES, shape};
+use super::facet::Facet;
 use super::projection::{Projection, project};
+use crate::element::tri6::{NODES, shape};
 use crate::mesh::Surface;
 use nalgebra::Vector3;
 use rstar::RTree;

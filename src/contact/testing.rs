@@ -1,11 +1,12 @@
 //! Surfaces for the tests of this room.
 
-use super::facet::{Facet, NODES};
-use crate::mesh::{Mesh, Surface};
+use super::facet::Facet;
+use crate::element::tri6::NODES;
+use crate::mesh::{self, Mesh, Surface};
 use crate::model::{Contact, Model, NormalLaw, Rotation};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A triangle of about unit size whose six nodes all lie a little off their places.
 pub fn bent_facet() -> impl Strategy<Value = Facet> {
@@ -45,15 +46,6 @@ pub fn flipped(surface: &Surface) -> Surface {
         facets: surface.facets.iter().map(|&[a, b, c, ab, bc, ca]| [a, c, b, ca, bc, ab]).collect(),
         ..surface.clone()
     }
-}
-
-/// Turns every facet so that its normal at the first corner points along `outward`.
-pub fn oriented(surface: &Surface, nodes: &[[f64; 3]], outward: [f64; 3]) -> Surface {
-    let points_inward =
-        |facet: &[u32; 6]| Facet::gather(nodes, facet).normal([0.0, 0.0]).dot(&Vector3::from(outward)) < 0.0;
-    let turned = flipped(surface);
-    let facets = surface.facets.iter().zip(&turned.facets);
-    Surface { facets: facets.map(|(f, t)| if points_inward(f) { *t } else { *f }).collect(), ..surface.clone() }
 }
 
 /// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.
@@ -106,57 +98,8 @@ pub fn skin(nodes: Vec<[f64; 3]>, surfaces: Vec<(&str, &str, Surface)>) -> Mesh 
     mesh
 }
 
-/// Nodes (m) and 6-node physical surfaces of an ASCII Gmsh 4.1 mesh, unoriented; enough for the test mesh.
-pub fn read_surfaces(text: &str, unit: f64) -> (Vec<[f64; 3]>, BTreeMap<String, Surface>) {
-    let section = |name: &str| -> Vec<Vec<&str>> {
-        let start = text.find(&format!("${name}\n")).unwrap() + name.len() + 2;
-        let end = text.find(&format!("$End{name}")).unwrap();
-        let lines = text[start..end].lines();
-        lines.map(|l| l.split_whitespace().collect()).collect()
-    };
-    let int = |word: &str| word.parse::<usize>().unwrap();
-
-    let names: BTreeMap<usize, String> = section("PhysicalNames")[1..]
-        .iter()
-        .filter(|w| w[0] == "2")
-        .map(|w| (int(w[1]), w[2].trim_matches('"').to_owned()))
-        .collect();
-
-    let entities = section("Entities");
-    let skipped = 1 + int(entities[0][0]) + int(entities[0][1]);
-    let physical: BTreeMap<usize, usize> = entities[skipped..][..int(entities[0][2])]
-        .iter()
-        .filter(|w| w[7] != "0")
-        .map(|w| (int(w[0]), int(w[8])))
-        .collect();
-
-    let mut nodes = Vec::new();
-    let mut index = BTreeMap::new();
-    let lines = section("Nodes");
-    let mut at = 1;
-    while at < lines.len() {
-        let n = int(lines[at][3]);
-        for k in 0..n {
-            index.insert(int(lines[at + 1 + k][0]), nodes.len() as u32);
-            let x = &lines[at + 1 + n + k];
-            nodes.push([0, 1, 2].map(|i| x[i].parse::<f64>().unwrap() * unit));
-        }
-        at += 1 + 2 * n;
-    }
-
-    let mut surfaces: BTreeMap<String, Surface> = BTreeMap::new();
-    let lines = section("Elements");
-    let mut at = 1;
-    while at < lines.len() {
-        let (tag, kind, n) = (int(lines[at][1]), lines[at][2], int(lines[at][3]));
-        if let (Some(name), "9") = (physical.get(&tag).and_then(|p| names.get(p)), kind) {
-            let surface = surfaces.entry(name.clone()).or_default();
-            for words in &lines[at + 1..][..n] {
-                surface.facets.push(std::array::from_fn(|j| index[&int(words[1 + j])]));
-                surface.tets.push(0);
-            }
-        }
-        at += 1 + n;
-    }
-    (nodes, surfaces)
+/// Two pads on a disc, the mesh of `tests/data`.
+pub fn pads_on_disc() -> Mesh {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/pads_on_disc.msh");
+    mesh::read(Path::new(file), 1e-3).unwrap()
 }

@@ -10,6 +10,8 @@
 //! reference node that follows a cloud of nodes needs full blocks, a super-element has retained points for nodes:
 //! other traces, the same contact code.
 
+use crate::algebra::product;
+
 /// The blocks of B, compressed by points.
 #[derive(Debug, Clone)]
 pub struct Trace {
@@ -142,14 +144,10 @@ fn add(sum: &mut [[f64; 3]; 3], block: &[[f64; 3]; 3]) {
     }
 }
 
-/// `A B`.
-fn product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::dot;
     use proptest::prelude::*;
 
     type Block = [[f64; 3]; 3];
@@ -160,10 +158,6 @@ mod tests {
 
     fn vector() -> impl Strategy<Value = [f64; 3]> {
         prop::array::uniform3(-1.0..1.0)
-    }
-
-    fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-        (0..3).map(|i| a[i] * b[i]).sum()
     }
 
     #[test]

@@ -11,19 +11,6 @@
 
 use super::coupling::{Cloud, CouplingError, MeanMotion, mean_motion};
 
-/// Stiffness and damping along and about the three global axes.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Properties {
-    /// Translational stiffness, N/m.
-    pub stiffness: [f64; 3],
-    /// Rotational stiffness, N m/rad.
-    pub rotational_stiffness: [f64; 3],
-    /// Translational damping, N s/m.
-    pub damping: [f64; 3],
-    /// Rotational damping, N m s/rad.
-    pub rotational_damping: [f64; 3],
-}
-
 /// Which cloud of a connector cannot be coupled, and why.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{} cloud of the connector: {source}", if *.cloud == 0 { "first" } else { "second" })]
@@ -40,17 +27,6 @@ pub struct RelativeMotion {
     /// The six rows of `G`: displacement x, y, z (no unit), rotation x, y, z (1/m). Columns are the dofs of the first
     /// cloud's nodes in order, then of the second's, three a node; a node in both clouds has two sets, to be added.
     pub rows: [Vec<f64>; 6],
-}
-
-/// Dense matrices of a connector on the dofs of [`RelativeMotion::rows`], row-major and symmetric.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ConnectorMatrices {
-    /// Number of rows, three a node of either cloud.
-    pub n_dofs: usize,
-    /// `K = G^T diag(k) G`, N/m.
-    pub stiffness: Vec<f64>,
-    /// `C = G^T diag(c) G`, N s/m.
-    pub damping: Vec<f64>,
 }
 
 /// The motion of the second cloud relative to the first, both as rigid bodies seen at `reference` (m).
@@ -74,58 +50,38 @@ pub fn relative_motion(clouds: [Cloud; 2], reference: [f64; 3]) -> Result<Relati
     Ok(RelativeMotion { rows: std::array::from_fn(row) })
 }
 
-/// Stiffness and damping matrices of a connector between two clouds with a common reference point (m).
-///
-/// Dense over all nodes of both clouds: meant for the tens of nodes of a pin or bore. For large clouds add
-/// `G^T diag(k) G` from [`relative_motion`] as six rank-one terms.
-///
-/// # Errors, panics
-/// As [`relative_motion`].
-pub fn connector_matrices(
-    clouds: [Cloud; 2],
-    reference: [f64; 3],
-    properties: &Properties,
-) -> Result<ConnectorMatrices, ConnectorError> {
-    let motion = relative_motion(clouds, reference)?;
-    Ok(ConnectorMatrices {
-        n_dofs: motion.rows[0].len(),
-        stiffness: weighted_product(&motion.rows, properties.stiffness, properties.rotational_stiffness),
-        damping: weighted_product(&motion.rows, properties.damping, properties.rotational_damping),
-    })
-}
-
-/// `G^T diag(along, about) G`, row-major.
-pub fn weighted_product(rows: &[Vec<f64>; 6], along: [f64; 3], about: [f64; 3]) -> Vec<f64> {
-    let n = rows[0].len();
-    let mut matrix = vec![0.0; n * n];
-    for (row, k) in rows.iter().zip(along.into_iter().chain(about)) {
-        if k == 0.0 {
-            continue;
-        }
-        for (i, line) in matrix.chunks_exact_mut(n).enumerate() {
-            for (entry, g) in line.iter_mut().zip(row) {
-                // (k g_i) g_j and (k g_j) g_i round differently: k (g_i g_j) keeps the matrix exactly symmetric
-                *entry += k * (row[i] * g);
+impl RelativeMotion {
+    /// `G^T diag(k) G`, row-major on the columns of [`RelativeMotion::rows`] and exactly symmetric; `k` along x, y, z, then
+    /// about them: of stiffness (N/m and N m/rad) the connector's `K`, of damping (N s/m and N m s/rad) its `C`.
+    ///
+    /// Dense over all nodes of both clouds: meant for the tens of nodes of a pin or bore.
+    pub fn weighted_product(&self, k: [f64; 6]) -> Vec<f64> {
+        let n = self.rows[0].len();
+        let mut matrix = vec![0.0; n * n];
+        for (row, k) in self.rows.iter().zip(k) {
+            if k == 0.0 {
+                continue;
+            }
+            for (i, line) in matrix.chunks_exact_mut(n).enumerate() {
+                for (entry, g) in line.iter_mut().zip(row) {
+                    // (k g_i) g_j and (k g_j) g_i round differently: k (g_i g_j) keeps the matrix exactly symmetric
+                    *entry += k * (row[i] * g);
+                }
             }
         }
+        matrix
     }
-    matrix
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::algebra::{cross, norm};
-    use crate::element::coupling::rigid_displacement;
-    use crate::element::samples::Random;
+    use crate::algebra::{cross, norm};
+    use crate::element::samples::{Random, rigid_displacement};
     use nalgebra::{DMatrix, DVector};
 
-    const BUSHING: Properties = Properties {
-        stiffness: [1e6, 2e6, 5e5],
-        rotational_stiffness: [3e2, 4e2, 50.0],
-        damping: [10.0, 20.0, 5.0],
-        rotational_damping: [0.1, 0.2, 0.3],
-    };
+    /// Along and about x, y, z.
+    const STIFFNESS: [f64; 6] = [1e6, 2e6, 5e5, 3e2, 4e2, 50.0];
 
     struct Case {
         nodes: [Vec<[f64; 3]>; 2],
@@ -152,8 +108,8 @@ mod tests {
         }
 
         fn stiffness(&self) -> DMatrix<f64> {
-            let matrices = connector_matrices(self.clouds(), self.reference, &BUSHING).unwrap();
-            DMatrix::from_row_slice(matrices.n_dofs, matrices.n_dofs, &matrices.stiffness)
+            let motion = relative_motion(self.clouds(), self.reference).unwrap();
+            DMatrix::from_row_slice(36, 36, &motion.weighted_product(STIFFNESS))
         }
     }
 
@@ -208,15 +164,10 @@ mod tests {
         let (shift, turn) = (random.vector(), random.vector());
         let mut u = DVector::zeros(36);
         u.rows_mut(15, 21).copy_from(&rigid(&case.nodes[1], shift, turn, case.reference));
-        let matrices = connector_matrices(case.clouds(), case.reference, &BUSHING).unwrap();
-        for (matrix, along, about) in [
-            (&matrices.stiffness, BUSHING.stiffness, BUSHING.rotational_stiffness),
-            (&matrices.damping, BUSHING.damping, BUSHING.rotational_damping),
-        ] {
-            let energy = u.dot(&(DMatrix::from_row_slice(36, 36, matrix) * &u));
-            let exact: f64 = (0..3).map(|i| along[i] * shift[i].powi(2) + about[i] * turn[i].powi(2)).sum();
-            assert!((energy / exact - 1.0).abs() < 1e-12);
-        }
+        let energy = u.dot(&(case.stiffness() * &u));
+        let motion = shift.into_iter().chain(turn);
+        let exact: f64 = STIFFNESS.into_iter().zip(motion).map(|(k, q)| k * q * q).sum();
+        assert!((energy / exact - 1.0).abs() < 1e-12);
     }
 
     #[test]

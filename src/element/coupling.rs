@@ -13,7 +13,7 @@
 //!
 //! A collinear cloud can turn about its line unseen: `T` is singular, and that is an error, not a small number.
 
-use super::algebra::{cofactor_columns, cross, dot, product, scale, skew, sub};
+use crate::algebra::{cofactor_columns, dot, product, scale, skew, sub};
 
 /// Nodes with weights, e.g. a surface's points with their contact areas. Both slices have the same length.
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +22,14 @@ pub struct Cloud<'a> {
     pub nodes: &'a [[f64; 3]],
     /// Weights: none negative, not all zero; only their ratios matter.
     pub weights: &'a [f64],
+}
+
+impl Cloud<'_> {
+    /// `x_bar = sum w_n x_n / sum w`, m; not finite where there is no weight.
+    pub fn centroid(&self) -> [f64; 3] {
+        let total: f64 = self.weights.iter().sum();
+        [0, 1, 2].map(|i| self.nodes.iter().zip(self.weights).map(|(x, w)| w * x[i]).sum::<f64>() / total)
+    }
 }
 
 /// Why a cloud has no mean rigid motion.
@@ -102,11 +110,7 @@ impl MeanMotion {
 /// If nodes and weights differ in number.
 pub fn mean_motion(cloud: Cloud, reference: [f64; 3]) -> Result<MeanMotion, CouplingError> {
     let weights = normalised(cloud)?;
-    // x_bar = sum w^ x
-    let mut centre = [0.0; 3];
-    for (x, w) in cloud.nodes.iter().zip(&weights) {
-        (0..3).for_each(|i| centre[i] += w * x[i]);
-    }
+    let centre = cloud.centroid();
     let arms: Vec<[f64; 3]> = cloud.nodes.iter().map(|&x| sub(x, centre)).collect();
     let inverse = inverse_inertia(&arms, &weights, cloud.nodes)?;
     let lever = skew(sub(reference, centre));
@@ -158,17 +162,11 @@ fn inverse_inertia(arms: &[[f64; 3]], weights: &[f64], nodes: &[[f64; 3]]) -> Re
     Ok(cofactors.map(|column| scale(1.0 / det, column)))
 }
 
-/// A rigid motion's displacement at `x`: `u = shift + turn x (x - origin)`.
-pub fn rigid_displacement(shift: [f64; 3], turn: [f64; 3], origin: [f64; 3], x: [f64; 3]) -> [f64; 3] {
-    let swing = cross(turn, sub(x, origin));
-    std::array::from_fn(|i| shift[i] + swing[i])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::algebra::norm;
-    use crate::element::samples::Random;
+    use crate::algebra::{cross, norm};
+    use crate::element::samples::{Random, rigid_displacement};
 
     fn random_cloud(random: &mut Random, n: usize) -> (Vec<[f64; 3]>, Vec<f64>) {
         let nodes = (0..n).map(|_| random.vector().map(|v| 0.3 + 0.05 * v)).collect();

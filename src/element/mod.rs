@@ -9,7 +9,6 @@
 //!   quadrature   points and weights on the reference tetrahedron and triangle
 //!   tet10        the body:     stiffness, mass, mass properties, recovered stress
 //!   tri6         its skin:     area, normal, consistent loads of traction and pressure
-//!   material     elasticity:   laws, rotation into global axes, positive definiteness
 //!   coupling     a cloud's mean rigid motion as 3x3 blocks on its nodes (distributing coupling)
 //!   connector    spring and damper between the mean motions of two clouds
 //! ```
@@ -24,10 +23,8 @@
 //! | `D` | elasticity, 6x6 |
 //! | `w` | quadrature weight (they add up to the reference element's volume or area) |
 
-mod algebra;
 pub mod connector;
 pub mod coupling;
-pub mod material;
 pub mod quadrature;
 #[cfg(test)]
 mod samples;

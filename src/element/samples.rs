@@ -2,7 +2,9 @@
 //! degree.
 
 use super::quadrature::Point;
-use super::tet10::{EDGES, NODES, min_max_jacobian};
+use super::tet10::NODES;
+use crate::algebra::{cross, sub};
+use crate::mesh::jacobian::{determinants, straight};
 
 /// A small linear congruential generator (Knuth's MMIX constants): the same numbers on every machine.
 pub struct Random(u64);
@@ -44,14 +46,9 @@ impl Random {
 /// A straight-edged element of random shape, not too flat, about a metre across.
 pub fn straight_tet(random: &mut Random) -> [[f64; 3]; 10] {
     loop {
-        let mut x = NODES;
-        for corner in &mut x[..4] {
-            for value in corner {
-                *value += 0.4 * random.signed();
-            }
-        }
-        straighten(&mut x);
-        if min_max_jacobian(&x).0 > 0.3 {
+        let corner = |a: usize| NODES[a].map(|value| value + 0.4 * random.signed());
+        let x = straight([0, 1, 2, 3].map(corner));
+        if smallest_jacobian(&x) > 0.3 {
             return x;
         }
     }
@@ -61,22 +58,23 @@ pub fn straight_tet(random: &mut Random) -> [[f64; 3]; 10] {
 pub fn curved_tet(random: &mut Random, offset: f64) -> [[f64; 3]; 10] {
     loop {
         let mut x = straight_tet(random);
-        for midside in &mut x[4..] {
-            for value in midside {
-                *value += offset * random.signed();
-            }
+        for value in x[4..].as_flattened_mut() {
+            *value += offset * random.signed();
         }
-        if min_max_jacobian(&x).0 > 0.05 {
+        if smallest_jacobian(&x) > 0.05 {
             return x;
         }
     }
 }
 
-/// Puts the midsides into the middle of their edges.
-pub fn straighten(x: &mut [[f64; 3]; 10]) {
-    for (midside, [i, j]) in EDGES.iter().enumerate() {
-        x[4 + midside] = std::array::from_fn(|k| 0.5 * (x[*i][k] + x[*j][k]));
-    }
+fn smallest_jacobian(x: &[[f64; 3]; 10]) -> f64 {
+    determinants(x).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// A rigid motion's displacement at `x`: `u = shift + turn x (x - origin)`.
+pub fn rigid_displacement(shift: [f64; 3], turn: [f64; 3], origin: [f64; 3], x: [f64; 3]) -> [f64; 3] {
+    let swing = cross(turn, sub(x, origin));
+    std::array::from_fn(|i| shift[i] + swing[i])
 }
 
 /// A positive definite elasticity without any symmetry of its own: `A A^T + I`, of order one.

@@ -17,11 +17,17 @@
 //! the 7-point rule; areas and traction loads, which take its length, are exact on plane facets only and otherwise as good
 //! as the facet's shape (a quarter of a cylinder in 2, 4, 8 facets along the arc: 4e-4, 2e-5, 2e-6 of its area).
 
-use super::algebra::{cross, norm};
 use super::quadrature::{Point, TRIANGLE_7};
+use crate::algebra::{cross, norm};
+
+/// Reference coordinates of the six nodes.
+pub const NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
+
+/// The two corners of each edge; its midside is node `3 + index`.
+pub const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
 /// Shape functions `N_a` at `(xi, eta)`.
-pub const fn shape(xi: f64, eta: f64) -> [f64; 6] {
+pub const fn shape([xi, eta]: [f64; 2]) -> [f64; 6] {
     let zeta = 1.0 - xi - eta;
     [
         zeta * (2.0 * zeta - 1.0),
@@ -34,7 +40,7 @@ pub const fn shape(xi: f64, eta: f64) -> [f64; 6] {
 }
 
 /// Derivatives `[dN_a/dxi, dN_a/deta]` at `(xi, eta)`, one row a node.
-pub const fn derivatives(xi: f64, eta: f64) -> [[f64; 2]; 6] {
+pub const fn derivatives([xi, eta]: [f64; 2]) -> [[f64; 2]; 6] {
     let zeta = 1.0 - xi - eta;
     [
         [1.0 - 4.0 * zeta, 1.0 - 4.0 * zeta],
@@ -52,40 +58,15 @@ pub const fn derivatives(xi: f64, eta: f64) -> [[f64; 2]; 6] {
 pub const SECOND_DERIVATIVES: [[f64; 3]; 6] =
     [[4.0, 4.0, 4.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0], [-8.0, -4.0, 0.0], [0.0, 4.0, 0.0], [0.0, -4.0, -8.0]];
 
-/// The point of the facet at `(xi, eta)`, m: `x = sum_a N_a x_a`.
-pub fn position(x: &[[f64; 3]; 6], xi: f64, eta: f64) -> [f64; 3] {
-    combine(x, &shape(xi, eta))
-}
-
-/// The tangents `[a_xi, a_eta]` at `(xi, eta)`, m: `a_xi = sum_a dN_a/dxi x_a`.
-pub fn tangents(x: &[[f64; 3]; 6], xi: f64, eta: f64) -> [[f64; 3]; 2] {
-    tangents_from(x, &derivatives(xi, eta))
-}
-
-/// The area normal `a_xi x a_eta` at `(xi, eta)`, m2: along the outward normal, twice the area of a plane facet long.
-pub fn area_normal(x: &[[f64; 3]; 6], xi: f64, eta: f64) -> [f64; 3] {
-    let [along_xi, along_eta] = tangents(x, xi, eta);
-    cross(along_xi, along_eta)
-}
-
 /// Area, m2: `integral of dA = sum_q w |a_xi x a_eta|`.
 pub fn area(x: &[[f64; 3]; 6]) -> f64 {
     area_normals(x).map(|(_, normal)| norm(normal)).sum()
 }
 
-/// Area vector, m2: `integral of n dA = sum_q w a_xi x a_eta`, exact on curved facets; zero summed over a closed skin.
-pub fn area_vector(x: &[[f64; 3]; 6]) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for (_, normal) in area_normals(x) {
-        add(&mut sum, 1.0, normal);
-    }
-    sum
-}
-
 /// Each node's share of the area, m2: `integral of N_a dA`. A plane straight facet: 0 at corners, area/3 at midsides.
 ///
 /// The force of a uniform traction `t` (Pa) on node `a` is `t` times this.
-pub fn nodal_areas(x: &[[f64; 3]; 6]) -> [f64; 6] {
+fn nodal_areas(x: &[[f64; 3]; 6]) -> [f64; 6] {
     let mut areas = [0.0; 6];
     for (n, normal) in area_normals(x) {
         let da = norm(normal);
@@ -97,7 +78,7 @@ pub fn nodal_areas(x: &[[f64; 3]; 6]) -> [f64; 6] {
 }
 
 /// Each node's share of the area vector, m2: `integral of N_a n dA`, exact on curved facets.
-pub fn nodal_area_vectors(x: &[[f64; 3]; 6]) -> [[f64; 3]; 6] {
+fn nodal_area_vectors(x: &[[f64; 3]; 6]) -> [[f64; 3]; 6] {
     let mut vectors = [[0.0; 3]; 6];
     for (n, normal) in area_normals(x) {
         for a in 0..6 {
@@ -121,7 +102,7 @@ static SHAPES: [[f64; 6]; 7] = {
     let mut table = [[0.0; 6]; 7];
     let mut q = 0;
     while q < 7 {
-        table[q] = shape(TRIANGLE_7[q].at[0], TRIANGLE_7[q].at[1]);
+        table[q] = shape(TRIANGLE_7[q].at);
         q += 1;
     }
     table
@@ -131,7 +112,7 @@ static DERIVATIVES: [[[f64; 2]; 6]; 7] = {
     let mut table = [[[0.0; 2]; 6]; 7];
     let mut q = 0;
     while q < 7 {
-        table[q] = derivatives(TRIANGLE_7[q].at[0], TRIANGLE_7[q].at[1]);
+        table[q] = derivatives(TRIANGLE_7[q].at);
         q += 1;
     }
     table
@@ -140,14 +121,10 @@ static DERIVATIVES: [[[f64; 2]; 6]; 7] = {
 /// At each point of the rule: shape values and `w (a_xi x a_eta)`.
 fn area_normals(x: &[[f64; 3]; 6]) -> impl Iterator<Item = (&'static [f64; 6], [f64; 3])> + '_ {
     let weighted = |(q, point): (usize, &Point<2>)| {
-        let [along_xi, along_eta] = tangents_from(x, &DERIVATIVES[q]);
+        let [along_xi, along_eta] = [0, 1].map(|k| combine(x, &DERIVATIVES[q].map(|row| row[k])));
         (&SHAPES[q], cross(along_xi, along_eta).map(|c| point.weight * c))
     };
     TRIANGLE_7.iter().enumerate().map(weighted)
-}
-
-fn tangents_from(x: &[[f64; 3]; 6], d: &[[f64; 2]; 6]) -> [[f64; 3]; 2] {
-    [combine(x, &d.map(|row| row[0])), combine(x, &d.map(|row| row[1]))]
 }
 
 /// `sum_a c_a x_a`
@@ -169,18 +146,21 @@ fn add(sum: &mut [f64; 3], factor: f64, v: [f64; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::algebra::{dot, sub};
+    use crate::algebra::{dot, sub};
     use crate::element::samples::{Random, curved_tet};
     use crate::element::tet10;
     use proptest::prelude::*;
-
-    const NODES: [[f64; 2]; 6] = [[0., 0.], [1., 0.], [0., 1.], [0.5, 0.], [0.5, 0.5], [0., 0.5]];
 
     /// Facets of a tet10, outward, in the node order of a tri6.
     const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
 
     fn skin(x: &[[f64; 3]; 10]) -> [[[f64; 3]; 6]; 4] {
         FACES.map(|face| face.map(|a| x[a]))
+    }
+
+    /// `integral of n dA`
+    fn area_vector(x: &[[f64; 3]; 6]) -> [f64; 3] {
+        nodal_area_vectors(x).into_iter().fold([0.0; 3], |sum, v| [0, 1, 2].map(|i| sum[i] + v[i]))
     }
 
     fn facet(map: impl Fn(f64, f64) -> [f64; 3]) -> [[f64; 3]; 6] {
@@ -192,13 +172,13 @@ mod tests {
         let mut random = Random::seeded(51);
         for _ in 0..20 {
             let (xi, eta) = (random.unit(), random.unit());
-            let (n, volume) = (shape(xi, eta), tet10::shape([xi, eta, 0.0]));
+            let (n, volume) = (shape([xi, eta]), tet10::shape([xi, eta, 0.0]));
             for (a, b) in [0, 1, 2, 4, 5, 6].into_iter().enumerate() {
                 assert!((n[a] - volume[b]).abs() < 1e-14);
             }
         }
         for a in 0..6 {
-            let n = shape(NODES[a][0], NODES[a][1]);
+            let n = shape(NODES[a]);
             assert!((0..6).all(|b| n[b] == if a == b { 1.0 } else { 0.0 }));
         }
     }
@@ -207,14 +187,14 @@ mod tests {
         #[test]
         fn derivatives_are_central_differences(xi in -0.2..1.2, eta in -0.2..1.2) {
             let h = 0.01; // exact for quadratics up to round-off
-            let d = derivatives(xi, eta);
+            let d = derivatives([xi, eta]);
             for a in 0..6 {
-                let along_xi = (shape(xi + h, eta)[a] - shape(xi - h, eta)[a]) / (2.0 * h);
-                let along_eta = (shape(xi, eta + h)[a] - shape(xi, eta - h)[a]) / (2.0 * h);
+                let along_xi = (shape([xi + h, eta])[a] - shape([xi - h, eta])[a]) / (2.0 * h);
+                let along_eta = (shape([xi, eta + h])[a] - shape([xi, eta - h])[a]) / (2.0 * h);
                 prop_assert!((along_xi - d[a][0]).abs() < 1e-12 && (along_eta - d[a][1]).abs() < 1e-12);
                 for k in 0..2 {
-                    let dxi = (derivatives(xi + h, eta)[a][k] - derivatives(xi - h, eta)[a][k]) / (2.0 * h);
-                    let deta = (derivatives(xi, eta + h)[a][k] - derivatives(xi, eta - h)[a][k]) / (2.0 * h);
+                    let dxi = (derivatives([xi + h, eta])[a][k] - derivatives([xi - h, eta])[a][k]) / (2.0 * h);
+                    let deta = (derivatives([xi, eta + h])[a][k] - derivatives([xi, eta - h])[a][k]) / (2.0 * h);
                     prop_assert!((dxi - SECOND_DERIVATIVES[a][k]).abs() < 1e-11);
                     prop_assert!((deta - SECOND_DERIVATIVES[a][k + 1]).abs() < 1e-11);
                 }
@@ -237,6 +217,14 @@ mod tests {
             let total: f64 = load.iter().map(|f| f[i]).sum();
             assert!((total - [1.0, -2.0, 3.0][i] * exact).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn a_plane_facet_with_a_curved_edge_has_its_exact_area() {
+        // A parabola of height h over the edge (0,1) takes 2/3 h off the unit triangle.
+        let mut x = facet(|xi, eta| [xi, eta, 0.0]);
+        x[3][1] = 0.06;
+        assert!((area(&x) - (0.5 - 2.0 / 3.0 * 0.06)).abs() < 1e-15);
     }
 
     /// Area of a quarter cylinder of radius and height 1 in `n` by `n` squares of two facets, relative error.

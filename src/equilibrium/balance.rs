@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::algebra::{cross, dot, norm, sub};
 use crate::assembly::{DofMap, ElementMatrices, Elements};
 use crate::contact::interface::{Interface, Pair};
 use crate::contact::law::{Response, Status};
@@ -30,7 +31,7 @@ impl Wrench {
     /// Moment about the axis through a point, N m.
     pub fn about(&self, through: [f64; 3], axis: [f64; 3]) -> f64 {
         let lever = cross(through, self.force);
-        dot([0, 1, 2].map(|i| self.moment[i] - lever[i]), axis)
+        dot(sub(self.moment, lever), axis)
     }
 }
 
@@ -173,16 +174,4 @@ impl PairForces {
         }
         forces
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }

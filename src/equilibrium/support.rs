@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use crate::algebra::cross;
 use crate::assembly::Link;
 use crate::contact::interface::Interface;
 use crate::contact::law::Tangential;
@@ -65,7 +66,7 @@ impl Bodies {
         let x = mesh.nodes[node as usize];
         let r = [0, 1, 2].map(|i| (x[i] - self.centroid[body][i]) / self.size[body]);
         // u = a + b x r, so that v.u = v.a + (r x v).b
-        let moment = [r[1] * v[2] - r[2] * v[1], r[2] * v[0] - r[0] * v[2], r[0] * v[1] - r[1] * v[0]];
+        let moment = cross(r, v);
         for i in 0..3 {
             row[6 * body + i] += v[i];
             row[6 * body + 3 + i] += moment[i];
@@ -126,7 +127,13 @@ pub fn free_motions(mesh: &Mesh, interface: &Interface, held: &[[bool; 3]], link
         }
     }
     for link in links {
-        resist_link(&bodies, mesh, link, &mut resist);
+        for (values, _) in link.motion.rows.iter().zip(link.stiffness).filter(|(_, k)| *k > 0.0) {
+            resist(&mut |row| {
+                for (&node, v) in link.nodes.iter().zip(values.chunks_exact(3)) {
+                    bodies.accumulate(row, mesh, node, [v[0], v[1], v[2]]);
+                }
+            });
+        }
     }
     null_space(gram, &bodies)
 }
@@ -144,19 +151,6 @@ fn resisted_directions(interface: &Interface, a: usize) -> Vec<[f64; 3]> {
     match point.tangential {
         Tangential::StickSlip { .. } => (0..3).map(unit).collect(),
         _ => vec![point.normal],
-    }
-}
-
-fn resist_link(bodies: &Bodies, mesh: &Mesh, link: &Link, resist: &mut dyn FnMut(&mut dyn FnMut(&mut [f64]))) {
-    let Ok(motion) = link.motion(mesh) else { return };
-    let (nodes, p) = (link.nodes(), &link.properties);
-    let stiffness = p.stiffness.into_iter().chain(p.rotational_stiffness);
-    for (values, _) in motion.rows.iter().zip(stiffness).filter(|(_, k)| *k > 0.0) {
-        resist(&mut |row| {
-            for (&node, v) in nodes.iter().zip(values.chunks_exact(3)) {
-                bodies.accumulate(row, mesh, node, [v[0], v[1], v[2]]);
-            }
-        });
     }
 }
 

@@ -130,5 +130,7 @@ mod tests {
         assert!(is_inverted(&x));
         x[4] = [0.4, 0.0, 0.0];
         assert!(!is_inverted(&x));
+        x[4][1] = f64::NAN;
+        assert!(is_inverted(&x), "a coordinate that is not a number is not taken for a good element");
     }
 }

@@ -19,7 +19,6 @@
 //!   0 ------- 4 ------- 1
 //! ```
 
-pub mod adjacency;
 mod check;
 mod gmsh;
 pub mod jacobian;

@@ -69,7 +69,6 @@ fn values(item: &Item, raw: &FrictionSweep) -> Result<Vec<f64>> {
     }
 }
 
-/// `from`, `from + step`, ... up to `to` (reached within rounding); values are rounded to 12 digits, so that 0.1 + 2 * 0.1 is 0.3.
 fn range(item: &Item, from: &Number, to: &Number, step: &Number) -> Result<Vec<f64>> {
     let (low, high) = (friction(item, from)?, friction(item, to)?);
     let step_value = item.positive(step, "step", RANGE)?;
@@ -77,13 +76,19 @@ fn range(item: &Item, from: &Number, to: &Number, step: &Number) -> Result<Vec<f
         let what = format_args!("the range is empty: from {low} to {high}");
         return Err(item.error(&from.span(), what, RANGE));
     }
-    let n_steps = ((high - low) / step_value + 1e-9).floor();
-    if n_steps > LONGEST_SWEEP {
-        let what = format_args!("a step of {step_value} makes {n_steps} values");
-        return Err(item.error(&step.span(), what, "Give a larger step"));
-    }
-    let value = |i: usize| ((low + i as f64 * step_value) * 1e12).round() / 1e12;
-    Ok((0..=n_steps as usize).map(value).collect())
+    spaced(low, high, step_value).ok_or_else(|| {
+        let what = format_args!("a step of {step_value} makes more than {LONGEST_SWEEP} values");
+        item.error(&step.span(), what, "Give a larger step")
+    })
+}
+
+/// The values `from + i step` up to `to` (reached within a millionth of a step), rounded to 12 digits, so that 0.1 + 2 * 0.1 is 0.3.
+///
+/// None where there is no such value, or more than 10000.
+pub fn spaced(from: f64, to: f64, step: f64) -> Option<Vec<f64>> {
+    let n_steps = ((to - from) / step + 1e-6).floor();
+    let value = |i: usize| ((from + i as f64 * step) * 1e12).round() / 1e12;
+    (0.0..LONGEST_SWEEP).contains(&n_steps).then(|| (0..=n_steps as usize).map(value).collect())
 }
 
 /// The reduction.

@@ -1,6 +1,8 @@
 //! Elasticity matrices from engineering constants.
 //!
-//! Voigt order xx yy zz xy yz zx, engineering shear strains, so that `sigma = C eps` and `C = S^-1`.
+//! Voigt order xx yy zz xy yz zx, engineering shear strains, so that `sigma = C eps` and `C = S^-1`. The laws take any
+//! numbers: constants outside their thermodynamic bounds give a matrix that is not positive definite, which one test
+//! ([`is_positive_definite`]) finds.
 
 #![allow(non_snake_case)] // symbols of the formulas
 
@@ -89,6 +91,7 @@ pub fn symmetric(matrix: &Matrix6<f64>) -> Matrix6<f64> {
 /// Elasticity in global axes of a material whose axes are the columns of `axes`: `C' = T C T^T`.
 ///
 /// T takes stresses, `sigma' = R sigma R^T`; its transpose takes the strains back, as the work is the same in both axes.
+/// It is Bond's matrix: Auld, *Acoustic Fields and Waves in Solids* I (1973), section 3.D (there in the order yz zx xy).
 pub fn rotate(elasticity: &Matrix6<f64>, axes: &Matrix3<f64>) -> Matrix6<f64> {
     let mut T = Matrix6::zeros();
     for (column, &(i, j)) in VOIGT.iter().enumerate() {
@@ -128,6 +131,7 @@ pub fn axes_from(x_axis: [f64; 3], y_axis: [f64; 3]) -> Option<Matrix3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     const LINING: Transverse =
         Transverse { young: 9e9, young_axial: 1.5e9, poisson: 0.25, poisson_axial: 0.10, shear_axial: 2e9 };
@@ -149,6 +153,45 @@ mod tests {
             (false, false) => 0.0,
         });
         assert!(close(&C, &lame));
+    }
+
+    proptest! {
+        #[test]
+        fn turned_axes_turn_the_tensor_of_fourth_order(
+            entries in prop::collection::vec(-1.0..1.0, 36),
+            first in prop::array::uniform3(0.1..1.0),
+            second in prop::array::uniform3(-1.0..-0.1),
+        ) {
+            let A = Matrix6::from_column_slice(&entries);
+            let C = A * A.transpose() + Matrix6::identity();
+            let unit = |v: [f64; 3]| Vector3::from(v).normalize().into();
+            prop_assume!(axes_from(unit(first), unit(second)).is_some());
+            let R = axes_from(unit(first), unit(second)).unwrap();
+            prop_assert!((R.transpose() * R - Matrix3::identity()).norm() < 1e-14 && R.determinant() > 0.0);
+            let voigt = |i, j| VOIGT.iter().position(|&pair| pair == (i, j) || pair == (j, i)).unwrap();
+            let turned = rotate(&C, &R);
+            for (I, (i, j)) in VOIGT.into_iter().enumerate() {
+                for (J, (k, l)) in VOIGT.into_iter().enumerate() {
+                    // C'_ijkl = R_ip R_jq R_kr R_ls C_pqrs
+                    let term = |n: usize| {
+                        let (p, q, r, s) = (n / 27, n / 9 % 3, n / 3 % 3, n % 3);
+                        R[(i, p)] * R[(j, q)] * R[(k, r)] * R[(l, s)] * C[(voigt(p, q), voigt(r, s))]
+                    };
+                    prop_assert!((turned[(I, J)] - (0..81).map(term).sum::<f64>()).abs() < 1e-12);
+                }
+            }
+        }
+
+        #[test]
+        fn a_matrix_is_positive_definite_where_its_smallest_eigenvalue_is(
+            entries in prop::collection::vec(-1.0..1.0, 36),
+            shift in -1.0..3.0,
+            unit in prop::sample::select(vec![1e-3, 1.0, 1e12]),
+        ) {
+            let A = Matrix6::from_column_slice(&entries);
+            let C = (A * A.transpose() - shift * Matrix6::identity()) * unit;
+            prop_assert_eq!(is_positive_definite(&C), C.symmetric_eigenvalues().min() > 0.0);
+        }
     }
 
     #[test]
@@ -199,6 +242,7 @@ mod tests {
     fn impossible_constants_are_not_positive_definite() {
         assert!(from_compliance(&isotropic_compliance(1e9, 0.5)).is_none());
         assert!(from_compliance(&isotropic_compliance(1e9, 0.49999)).is_some());
+        assert!(from_compliance(&isotropic_compliance(f64::NAN, 0.3)).is_none());
         let lining = Transverse { poisson_axial: 0.3, ..LINING };
         assert!(from_compliance(&transverse_compliance(&lining)).is_none());
     }

@@ -35,6 +35,8 @@ mod source;
 mod tests;
 mod types;
 
+pub use analysis::spaced;
+pub use contacts::LARGEST_FRICTION;
 pub use read::{parse, read};
 pub use source::located;
 pub use types::{

@@ -5,7 +5,7 @@
 //! * [`Vector`], [`Matrix`], [`Factor`] own one PETSc object each. Borrowed arrays exist only inside closures.
 //! * [`nonlinear`] runs SNES, [`eigen`] runs PEP on what the caller's trait objects compute; callbacks are registered
 //!   inside `solve` and forgotten when it returns. Errors and panics inside them come out of `solve`.
-//! * Every call goes through one checked door ([`error::check`]), which turns PETSc's frames into an error.
+//! * Every call goes through one checked door (`error::check`), which turns PETSc's frames into an error.
 //!
 //! Everything that takes a handle is collective over its communicator unless it says otherwise.
 

@@ -138,9 +138,10 @@ pub fn sweep(rows: &[ModeRow], counts: &[(f64, Count)]) -> String {
 
 /// A sentence: does it squeal, where, from which friction on.
 pub fn verdict(rows: &[ModeRow]) -> String {
-    let first = rows.iter().filter(|row| row.unstable).min_by(|a, b| {
-        (a.friction, -a.growth_rate).partial_cmp(&(b.friction, -b.growth_rate)).expect("numbers are finite")
-    });
+    let first = rows
+        .iter()
+        .filter(|row| row.unstable)
+        .min_by(|a, b| a.friction.total_cmp(&b.friction).then(b.growth_rate.total_cmp(&a.growth_rate)));
     match first {
         Some(row) => {
             let worst = rows

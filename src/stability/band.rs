@@ -182,7 +182,7 @@ fn finish(pencil: &Pencil, found: eigen::Found, band: [f64; 2], count: Count, n_
             modes.push(mode);
         }
     }
-    modes.sort_by(|a, b| (a.lambda.im, a.lambda.re).partial_cmp(&(b.lambda.im, b.lambda.re)).expect("finite"));
+    modes.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im).then(a.lambda.re.total_cmp(&b.lambda.re)));
     Ok(Band { modes, count, n_solves })
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::assembly::{self, Connectivity, Connectors, Elements, Link, System, Tets};
+use crate::assembly::{self, Connectivity, Elements, Link, System, Tets};
 use crate::contact::Interface;
 use crate::equilibrium::free_motions;
 use crate::mesh::{self, Mesh};
@@ -31,13 +31,13 @@ pub struct Families<'a> {
     /// The tetrahedra.
     pub tets: Tets<'a>,
     /// The connectors.
-    pub connectors: Connectors,
+    pub links: &'a Vec<Link>,
 }
 
 impl Families<'_> {
     /// All of them, as the assembly takes them.
     pub fn list(&self) -> [&dyn Elements; 2] {
-        [&self.tets, &self.connectors]
+        [&self.tets, self.links]
     }
 }
 
@@ -83,7 +83,7 @@ impl Brake {
     /// # Errors
     /// [`Error::Input`] where a part has no material.
     pub fn families(&self) -> Result<Families<'_>> {
-        Ok(Families { tets: Tets::new(&self.model, &self.mesh)?, connectors: Connectors::new(&self.links, &self.mesh) })
+        Ok(Families { tets: Tets::new(&self.model, &self.mesh)?, links: &self.links })
     }
 
     /// Assembles M, C, K and the load. Collective.

@@ -21,7 +21,7 @@ pub fn linearise(point: &Point, friction: f64, g: [f64; 3], status: Status) -> [
     let closed = match point.tangential {
         Tangential::Frictionless => frictionless(point, &normal),
         Tangential::Sliding { direction, .. } => sliding(point, &normal, friction, &direction.into()),
-        Tangential::StickSlip { stick } | Tangential::Stick { stick } => sticking(point, &normal, stick, &g.into()),
+        Tangential::StickSlip { stick } => sticking(point, &normal, stick, &g.into()),
     };
     closed.tangent
 }

@@ -18,7 +18,7 @@ pub fn settle(point: &Point, g: [f64; 3]) -> Response {
     let normal: Normal = two_sided(point, point.penetration(g));
     match point.tangential {
         Tangential::Frictionless | Tangential::Sliding { .. } => frictionless(point, &normal),
-        Tangential::StickSlip { stick } | Tangential::Stick { stick } => sticking(point, &normal, stick, &g.into()),
+        Tangential::StickSlip { stick } => sticking(point, &normal, stick, &g.into()),
     }
 }
 

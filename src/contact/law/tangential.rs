@@ -21,11 +21,6 @@ pub enum Tangential {
         /// k_t, N/m3.
         stick: f64,
     },
-    /// Elastic stick `-w k_t g_t` without bound. Its force jumps where a point opens: for pairs that may not.
-    Stick {
-        /// k_t, N/m3.
-        stick: f64,
-    },
 }
 
 /// Force and tangent of a point by its true law; `friction` is mu.
@@ -55,7 +50,6 @@ fn closed(point: &Point, mu: f64, normal: &Normal, g: &Vector3<f64>) -> Response
     match point.tangential {
         Tangential::Frictionless => frictionless(point, normal),
         Tangential::Sliding { direction, .. } => sliding(point, normal, mu, &direction.into()),
-        Tangential::Stick { stick } => sticking(point, normal, stick, g),
         Tangential::StickSlip { stick } => {
             let g_t = point.tangent_plane() * g;
             let bound = mu * normal.force.max(0.0);

@@ -1,7 +1,7 @@
 //! What the search finds on planes, cylinders, spheres and the test brake.
 
 use super::*;
-use crate::contact::testing::{flipped, oriented, patch, read_surfaces};
+use crate::contact::testing::{flipped, pads_on_disc, patch};
 use crate::contact::trace::Trace;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -170,13 +170,10 @@ fn nothing_faces_a_surface_of_the_same_side() {
 
 #[test]
 fn pads_on_a_disc_have_the_reference_points_and_areas() {
-    let text = include_str!("../../../tests/data/pads_on_disc.msh");
-    let (nodes, surfaces) = read_surfaces(text, 1e-3);
-    for (side, up) in [("inner", 1.0), ("outer", -1.0)] {
-        let surface = |name: &str, z: f64| oriented(&surfaces[name], &nodes, [0.0, 0.0, z]);
-        let slave = surface(&format!("lining_{side}_face"), up);
-        let master = surface(&format!("disc_{side}_face"), -up);
-        let found = find(&slave, &master, &nodes, &Options::default());
+    let mesh = pads_on_disc();
+    for side in ["inner", "outer"] {
+        let surface = |part: &str| &mesh.surfaces[&format!("{part}_{side}_face")];
+        let found = find(surface("lining"), surface("disc"), &mesh.nodes, &Options::default());
         assert_eq!((found.points.len(), found.dropped.len()), (118, 0));
         assert!((found.area / 4.495969950628393e-3 - 1.0).abs() < 1e-12);
         assert!((weights(&found) / found.area - 1.0).abs() < 1e-13);

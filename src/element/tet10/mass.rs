@@ -1,7 +1,7 @@
 //! The consistent mass matrix and the integrals that describe a rigid body.
 
 use super::shape::{GRADIENTS_14, jacobian, shapes_at};
-use crate::element::algebra::{cofactor_columns, sub};
+use crate::algebra::{cofactor_columns, sub};
 use crate::element::quadrature::TETRAHEDRON_14;
 use std::ops::AddAssign;
 
@@ -120,7 +120,7 @@ pub fn mass_properties(x: &[[f64; 3]; 10], density: f64) -> MassProperties {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::algebra::{apply, cross, dot};
+    use crate::algebra::{apply, cross, dot};
     use crate::element::samples::{Random, collapsed_gauss, curved_tet, straight_tet};
     use crate::element::tet10::{EDGES, gradients, position, shape};
     use nalgebra::DMatrix;

@@ -1,6 +1,5 @@
 //! Shape functions, their gradients and the Jacobian.
 
-use crate::element::algebra::cofactor_columns;
 use crate::element::quadrature::{Point, TETRAHEDRON_4, TETRAHEDRON_14};
 
 /// Reference coordinates of the ten nodes.
@@ -86,15 +85,6 @@ pub(super) const fn gradients_at<const Q: usize>(rule: &[Point<3>; Q]) -> [[[f64
 
 pub(super) static GRADIENTS_4: [[[f64; 3]; 10]; 4] = gradients_at(&TETRAHEDRON_4);
 pub(super) static GRADIENTS_14: [[[f64; 3]; 10]; 14] = gradients_at(&TETRAHEDRON_14);
-static GRADIENTS_AT_NODES: [[[f64; 3]; 10]; 10] = {
-    let mut table = [[[0.0; 3]; 10]; 10];
-    let mut a = 0;
-    while a < 10 {
-        table[a] = gradients(NODES[a]);
-        a += 1;
-    }
-    table
-};
 
 /// The point of the element at reference coordinates `at`, m: `x = sum_a N_a x_a`.
 pub fn position(x: &[[f64; 3]; 10], at: [f64; 3]) -> [f64; 3] {
@@ -116,27 +106,10 @@ pub fn jacobian(x: &[[f64; 3]; 10], gradients: &[[f64; 3]; 10]) -> [[f64; 3]; 3]
     j
 }
 
-/// Smallest and largest `detJ` (m3; six times the volume of a straight-edged element) over the ten nodes and all points
-/// at which stiffness and mass are integrated.
-///
-/// A smallest value that is not positive marks an element that must not be used: turned inside out or folded. `detJ` is
-/// a cubic over the element, so between the 28 samples it could dip a little lower.
-pub fn min_max_jacobian(x: &[[f64; 3]; 10]) -> (f64, f64) {
-    GRADIENTS_AT_NODES
-        .iter()
-        .chain(&GRADIENTS_4)
-        .chain(&GRADIENTS_14)
-        .map(|gradients| cofactor_columns(&jacobian(x, gradients)).1)
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), det| {
-            // A coordinate that is NaN makes every sample NaN, which `min` would pass over.
-            if det.is_nan() { (f64::NAN, f64::NAN) } else { (low.min(det), high.max(det)) }
-        })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::samples::{Random, curved_tet, straight_tet};
+    use crate::element::samples::{Random, curved_tet};
 
     #[test]
     fn shape_function_a_is_one_at_node_a_and_zero_at_the_others() {
@@ -203,28 +176,5 @@ mod tests {
                 assert!(((ahead[i] - behind[i]) / (2.0 * h) - j[i][k]).abs() < 1e-12);
             }
         }
-    }
-
-    #[test]
-    fn a_straight_element_has_a_constant_jacobian_and_a_mirrored_one_a_negative() {
-        let x = straight_tet(&mut Random::seeded(4));
-        let (low, high) = min_max_jacobian(&x);
-        assert!(low > 0.0 && high - low < 1e-13 * high);
-        let mirrored = x.map(|p| [-p[0], p[1], p[2]]);
-        assert!(min_max_jacobian(&mirrored).1 < 0.0);
-    }
-
-    #[test]
-    fn a_folded_element_shows_a_negative_jacobian() {
-        let mut x = straight_tet(&mut Random::seeded(5));
-        x[4] = std::array::from_fn(|i| x[0][i] + 1.3 * (x[1][i] - x[0][i])); // midside beyond its corner
-        assert!(min_max_jacobian(&x).0 < 0.0);
-    }
-
-    #[test]
-    fn a_coordinate_that_is_not_a_number_is_not_taken_for_a_good_element() {
-        let mut x = straight_tet(&mut Random::seeded(6));
-        x[7][1] = f64::NAN;
-        assert!(min_max_jacobian(&x).0.is_nan());
     }
 }

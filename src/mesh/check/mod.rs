@@ -1,6 +1,7 @@
 //! Whether model file and mesh go together, and what only both can tell: which contact pairs slide.
 
 use super::Mesh;
+use crate::algebra::{cross, sub};
 use crate::model::{Contact, LoadKind, Model, Rotation, located, names};
 use crate::{Error, Result};
 
@@ -225,12 +226,8 @@ impl Check<'_> {
 fn turn_together(a: &Rotation, b: &Rotation) -> bool {
     let omega = |r: &Rotation| r.axis.map(|x| x * r.speed);
     let (omega_a, omega_b) = (omega(a), omega(b));
-    let gap: [f64; 3] = std::array::from_fn(|i| a.through[i] - b.through[i]);
     // The axes coincide where (x_a - x_b) x omega = 0.
-    let arm: [f64; 3] = std::array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        gap[j] * a.axis[k] - gap[k] * a.axis[j]
-    });
+    let arm = cross(sub(a.through, b.through), a.axis);
     let same_omega = (0..3).all(|i| (omega_a[i] - omega_b[i]).abs() <= 1e-9 * a.speed.abs());
     same_omega && arm.iter().all(|x| x.abs() <= 1e-9)
 }
