@@ -23,7 +23,7 @@ const FUNCTIONS: &[&str] = &[
     "Mat(MatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
     "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
     "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",
-    "KSP(SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
+    "KSP(Create|Destroy|Solve|GMRESSetRestart|SetPCSide|SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
     "PC(SetType|ShellSetApply|ShellSetApplyTranspose|ShellSetContext|ShellGetContext|ShellSetName)",
     "SNES(Create|Destroy|SetType|SetFunction|SetJacobian|SetConvergenceTest|SetTolerances|SetFromOptions|SetOptionsPrefix|Solve|GetKSP|GetLineSearch)",
     "SNES(GetConvergedReason|GetIterationNumber|GetFunctionNorm|MonitorSet|SetFunctionDomainError|SetMaxLinearSolveFailures|GetSolution|LineSearchSetType|LineSearchSetTolerances|LineSearchGetLambda|GetNumberFunctionEvals)",

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::Result;
-use crate::petsc::{Comm, FactorStats, ORDERING};
+use crate::petsc::{Comm, ORDERING};
 use crate::report::tables::{self, ModeRow};
 use crate::stability::Count;
 use crate::sweep::{Brake, Sweep};
@@ -50,7 +50,7 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
         let mut summary = format!("{}: complex modes {}-{} Hz\n\n", brake.model.title, band[0], band[1]);
         summary += &tables::sweep(&modes, &counts);
         summary += &format!("\n{}\n", tables::verdict(&modes));
-        summary += &costs_text(&sweep.costs(), start.elapsed().as_secs_f64(), comm.size());
+        summary += &costs_text(&sweep, start.elapsed().as_secs_f64(), comm.size());
         summary += &files_text(&place.display().to_string());
         folder.write("modes.csv", |out| tables::modes(out, &modes))?;
         record.write(&folder)?;
@@ -85,21 +85,26 @@ fn modes_text(rows: &[ModeRow], count: &Count, n_solves: usize) -> String {
     text
 }
 
-fn costs_text(costs: &[FactorStats; 2], seconds: f64, ranks: usize) -> String {
-    let mut text = format!("\n{seconds:.1} s on {ranks} rank{}\n", if ranks == 1 { "" } else { "s" });
-    for (name, cost) in ["LU", "LDL^T"].iter().zip(costs) {
-        if cost.n_factorisations > 0 {
-            text += &format!(
-                "{name}: {} analyses {:.1} s, {} factorisations {:.1} s, {:.0} M entries, {:.0} MB, ordering {}\n",
-                cost.n_analyses,
-                cost.analysis_seconds,
-                cost.n_factorisations,
-                cost.factorisation_seconds,
-                1e-6 * cost.entries,
-                cost.used_mb,
-                ORDERING.get(cost.ordering as usize).unwrap_or(&"?")
-            );
-        }
+/// What the run cost: seconds of its stages, and each factor.
+fn costs_text(sweep: &Sweep, seconds: f64, ranks: usize) -> String {
+    let [equilibria, modes] = sweep.seconds();
+    let mut text = format!(
+        "\n{seconds:.1} s on {ranks} rank{}: equilibria {equilibria:.1} s, modes {modes:.1} s; {} iterations with a neighbour's factor\n",
+        if ranks == 1 { "" } else { "s" },
+        sweep.n_iterations()
+    );
+    let names = ["equilibrium LU", "modes LU", "modes LDL^T"];
+    for (name, cost) in names.iter().zip(&sweep.costs()).filter(|(_, cost)| cost.n_factorisations > 0) {
+        text += &format!(
+            "{name}: {} analysis {:.1} s, {} factorisations {:.1} s, {:.0} M entries, {:.0} MB, ordering {}\n",
+            cost.n_analyses,
+            cost.analysis_seconds,
+            cost.n_factorisations,
+            cost.factorisation_seconds,
+            1e-6 * cost.entries,
+            cost.used_mb,
+            ORDERING.get(cost.ordering as usize).unwrap_or(&"?")
+        );
     }
     text
 }

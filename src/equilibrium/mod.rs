@@ -10,6 +10,7 @@ mod balance;
 mod contacts;
 mod newton;
 mod path;
+mod step_factor;
 mod support;
 
 pub use balance::{Balance, PairForces};

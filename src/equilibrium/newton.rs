@@ -5,10 +5,14 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::{Response, Stage};
 use crate::petsc::nonlinear::{self, LineSearch, Problem, Verdict};
-use crate::petsc::{Factor, Matrix, Vector};
+use crate::petsc::{Matrix, Vector};
+
+use super::step_factor::StepFactor;
 
 /// Residual at which an equilibrium counts as converged, relative to the larger of the loads and the contact forces.
 const TOLERANCE: f64 = 1e-9;
+/// A step's linear residual, relative to the step's own, over the equilibrium's: Newton's last steps stay quadratic.
+const FORCING: f64 = 1e-3;
 /// Newton steps at most.
 const MAX_ITERATIONS: usize = 40;
 
@@ -47,7 +51,7 @@ impl Step {
 struct Newton<'a, 'b> {
     system: &'a System,
     contacts: &'b mut Contacts<'a>,
-    factor: &'b mut Factor,
+    factor: &'b mut StepFactor,
     tangent: &'b mut Matrix,
     stage: &'b Stage,
     work: Vector,
@@ -76,7 +80,8 @@ impl Problem for Newton<'_, '_> {
         let responses = self.contacts.respond(u, self.stage)?;
         self.tangent.copy_from(&self.system.k)?;
         self.contacts.add_blocks(responses.iter().map(|r| r.tangent), self.tangent)?;
-        self.factor.factorise(self.tangent)
+        self.factor.adopt(responses.iter().map(|r| r.status).collect());
+        Ok(())
     }
 
     fn jacobian(&self) -> &Matrix {
@@ -84,7 +89,8 @@ impl Problem for Newton<'_, '_> {
     }
 
     fn correct(&mut self, r: &Vector, du: &mut Vector) -> Result<()> {
-        self.factor.solve(r, du)
+        let residual = self.iterations.last().map_or(1.0, |it| it.residual);
+        self.factor.solve(self.tangent, r, du, FORCING * residual.min(1.0))
     }
 
     fn judge(&mut self, iteration: usize, residual: f64, _step: f64) -> Verdict {
@@ -115,7 +121,7 @@ impl Newton<'_, '_> {
 pub(super) struct Workspace<'a, 'b> {
     pub system: &'a System,
     pub contacts: &'b mut Contacts<'a>,
-    pub factor: &'b mut Factor,
+    pub factor: &'b mut StepFactor,
     pub tangent: &'b mut Matrix,
 }
 

@@ -5,7 +5,9 @@ use super::newton::{self, Iteration, Step, Workspace};
 use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::contact::{Response, Stage};
-use crate::petsc::{Factor, Matrix, Vector};
+use crate::petsc::{FactorStats, Matrix, Vector};
+
+use super::step_factor::StepFactor;
 use crate::{Error, Result};
 
 /// A converged state.
@@ -30,7 +32,10 @@ pub struct Path<'a> {
     system: &'a System,
     contacts: Contacts<'a>,
     tangent: Matrix,
+    factor: StepFactor,
     state: Option<(f64, Vector)>,
+    /// The equilibrium before `state`, for extrapolation.
+    before: Option<(f64, Vector)>,
     steps: Vec<Step>,
 }
 
@@ -41,12 +46,18 @@ impl<'a> Path<'a> {
     /// PETSc's.
     pub fn new(system: &'a System, interface: &'a Interface) -> Result<Path<'a>> {
         let contacts = Contacts::new(interface, system)?;
-        Ok(Path { system, contacts, tangent: system.k.duplicate()?, state: None, steps: Vec::new() })
+        let (tangent, factor) = (system.k.duplicate()?, StepFactor::new());
+        Ok(Path { system, contacts, tangent, factor, state: None, before: None, steps: Vec::new() })
     }
 
     /// The evaluator of the contact points.
     pub fn contacts(&mut self) -> &mut Contacts<'a> {
         &mut self.contacts
+    }
+
+    /// Costs of the tangent's factor, and the iterations with factors of neighbouring tangents.
+    pub fn costs(&self) -> (FactorStats, usize) {
+        self.factor.costs()
     }
 
     /// The last converged or attempted displacement, for output after a failure.
@@ -61,33 +72,40 @@ impl<'a> Path<'a> {
     pub fn advance(
         &mut self,
         friction: f64,
-        factor: &mut Factor,
         progress: &mut dyn FnMut(&str, usize, &Iteration),
     ) -> Result<Equilibrium> {
         if self.state.is_none() {
-            self.settle(factor, progress)?;
+            self.settle(progress)?;
         }
         loop {
-            let (reached, u) = self.state.take().expect("settled above");
-            let mut trial = u.duplicate()?;
-            self.state = Some((reached, u));
-            let goal = self.next_goal(reached, friction);
-            let responses = self.rise(reached, goal, &mut trial, factor, progress)?;
-            let (goal, responses) = responses;
-            self.state = Some((goal, trial));
+            let reached = self.state.as_ref().expect("settled above").0;
+            let (goal, u, responses) = self.rise(reached, self.next_goal(reached, friction), progress)?;
+            self.before = self.state.replace((goal, u));
             if goal == friction {
                 return self.equilibrium(responses);
             }
         }
     }
 
+    /// `u + (u - u_before) (goal - mu) / (mu - mu_before)`: the last equilibrium, carried on.
+    fn predict(&self, goal: f64) -> Result<Vector> {
+        let (mu, u) = self.state.as_ref().expect("a path under way has a state");
+        let mut trial = u.duplicate()?;
+        if let Some((mu_before, before)) = self.before.as_ref().filter(|(mu_before, _)| mu_before != mu) {
+            let ratio = (goal - mu) / (mu - mu_before);
+            trial.scale(1.0 + ratio)?;
+            trial.axpy(-ratio, before)?;
+        }
+        Ok(trial)
+    }
+
     /// Rest to the frictionless equilibrium of the true laws.
-    fn settle(&mut self, factor: &mut Factor, progress: &mut dyn FnMut(&str, usize, &Iteration)) -> Result<()> {
+    fn settle(&mut self, progress: &mut dyn FnMut(&str, usize, &Iteration)) -> Result<()> {
         let mut u = self.system.zeros()?;
         for (stage, label) in
             [(Stage::Settle, "settle"), (self.contacts.interface().stage(0.0), "contact without friction at the disc")]
         {
-            let (step, _) = self.newton(&stage, label.into(), &mut u, factor, progress)?;
+            let (step, _) = self.newton(&stage, label.into(), &mut u, progress)?;
             let converged = step.converged;
             self.steps.push(step);
             if !converged {
@@ -105,29 +123,26 @@ impl<'a> Path<'a> {
         if (goal - friction).abs() < 1e-12 { friction } else { goal }
     }
 
-    /// One step towards `goal`, halved until Newton takes it. Gives the friction reached.
+    /// One step towards `goal`, halved until Newton takes it. Gives the friction reached and the state there.
     fn rise(
         &mut self,
         reached: f64,
-        goal: f64,
-        trial: &mut Vector,
-        factor: &mut Factor,
+        mut goal: f64,
         progress: &mut dyn FnMut(&str, usize, &Iteration),
-    ) -> Result<(f64, Vec<Response>)> {
-        let mut goal = goal;
+    ) -> Result<(f64, Vector, Vec<Response>)> {
         loop {
+            let mut trial = self.predict(goal)?;
             let stage = self.contacts.interface().stage(goal);
-            let (step, responses) = self.newton(&stage, format!("friction {goal:.4}"), trial, factor, progress)?;
+            let (step, responses) = self.newton(&stage, format!("friction {goal:.4}"), &mut trial, progress)?;
             let converged = step.converged;
             self.steps.push(step);
             if converged {
-                return Ok((goal, responses));
+                return Ok((goal, trial, responses));
             }
             if (goal - reached).abs() <= SMALLEST_RISE {
                 return Err(self.failure(goal));
             }
             goal = 0.5 * (goal + reached);
-            trial.copy_from(self.last().expect("a path under way has a state"))?;
         }
     }
 
@@ -136,12 +151,16 @@ impl<'a> Path<'a> {
         stage: &Stage,
         label: String,
         u: &mut Vector,
-        factor: &mut Factor,
         progress: &mut dyn FnMut(&str, usize, &Iteration),
     ) -> Result<(Step, Vec<Response>)> {
         let name = label.clone();
         let workspace =
-            Workspace { system: self.system, contacts: &mut self.contacts, factor, tangent: &mut self.tangent };
+            Workspace {
+                system: self.system,
+                contacts: &mut self.contacts,
+                factor: &mut self.factor,
+                tangent: &mut self.tangent,
+            };
         newton::solve(workspace, u, stage, label, &mut |i, it| progress(&name, i, it))
     }
 

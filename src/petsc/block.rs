@@ -158,6 +158,11 @@ impl Block {
         Block::zeros(&self.comm, self.n_local, n_columns)
     }
 
+    /// `self *= a`. Not collective.
+    pub fn scale(&mut self, a: f64) {
+        self.values.iter_mut().for_each(|x| *x *= a);
+    }
+
     /// `self += a other`. Not collective.
     pub fn axpy(&mut self, a: f64, other: &Block) {
         self.values.iter_mut().zip(&other.values).for_each(|(x, y)| *x += a * y);

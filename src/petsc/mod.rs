@@ -14,6 +14,7 @@ pub mod dense;
 pub mod eigen;
 pub mod error;
 mod factor;
+pub mod linear;
 mod matrix;
 mod memory;
 mod metis;

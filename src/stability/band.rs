@@ -25,9 +25,9 @@ pub struct Solver {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
     /// Blocked solves on one growing subspace.
-    #[default]
     Subspace,
     /// SLEPc's TOAR, one vector at a time: the reference.
+    #[default]
     Toar,
 }
 
@@ -66,7 +66,7 @@ pub struct Band {
 }
 
 /// Eigenvalue tolerance handed to SLEPc: near double roots an error e in the residual is sqrt(e) in the eigenvalue.
-const TOLERANCE: f64 = 1e-14;
+const TOLERANCE: f64 = 1e-12;
 /// How often the search is widened before the band is given up.
 const TRIES: usize = 4;
 

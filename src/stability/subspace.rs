@@ -24,6 +24,8 @@ use crate::{Error, Result};
 const BLOCK: usize = 16;
 /// Columns of the Krylov space for each mode expected.
 const KRYLOV: usize = 4;
+/// Krylov blocks between two looks at the residuals.
+const GROWTH: usize = 2;
 /// Eigenvalues closer than this are one, followed from round to round.
 const SAME: f64 = 1e-9;
 /// Error of a mode's vector, `|t| / |x|`, at which it counts as found.
@@ -63,9 +65,12 @@ pub fn solve(
     n_expected: usize,
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Found> {
-    let mut space = Subspace::krylov(problem, KRYLOV * n_expected + 2 * BLOCK)?;
+    let mut space = Subspace::new(problem);
+    let mut krylov = Krylov::start(&mut space, radius)?;
+    let mut n_columns = KRYLOV * n_expected + 2 * BLOCK;
     let mut known: Vec<Complex64> = Vec::new();
     for round in 0..MAX_ROUNDS {
+        krylov.grow(&mut space, n_columns)?;
         let within = |r: &Ritz| (r.lambda - problem.shift).norm() <= radius;
         let wanted: Vec<Ritz> = space.ritz()?.into_iter().filter(within).collect();
         let is_known = |r: &Ritz| known.iter().any(|z| (z - r.lambda).norm() <= SAME * z.norm());
@@ -93,32 +98,23 @@ pub fn solve(
         if n_late == 0 {
             return space.found(&wanted, round);
         }
-        space.extend(corrections)?;
+        space.extend(&corrections)?;
+        n_columns = space.v.n_columns() + GROWTH * BLOCK;
     }
     Err(Error::NotConverged(format!("the eigensolver's corrections did not converge in {MAX_ROUNDS} rounds")))
 }
 
 impl<'a> Subspace<'a> {
-    fn krylov(problem: &'a Quadratic<'a>, n_columns: usize) -> Result<Subspace<'a>> {
-        let (comm, n_local) = (problem.k.comm(), problem.k.n_local());
-        let empty = || Block::zeros(comm, n_local, 0);
+    fn new(problem: &'a Quadratic<'a>) -> Subspace<'a> {
+        let empty = || Block::zeros(problem.k.comm(), problem.k.n_local(), 0);
         let none = || DMatrix::zeros(0, 0);
-        let mut space =
-            Subspace { problem, v: empty(), sv: empty(), m: none(), c: none(), k: none(), n_solves: 0 };
-        let n_total = comm.sum(n_local as f64) as usize;
-        let mut last = random(comm, n_local, BLOCK.min(n_total));
-        while space.v.n_columns() < n_columns.min(n_total) && last.n_columns() > 0 {
-            let w = last.multiplied_by(problem.m)?.solved_by(problem.factor)?;
-            space.n_solves += last.n_columns();
-            let first = space.v.n_columns();
-            space.extend(w)?;
-            last = space.v.columns(first..space.v.n_columns());
-        }
-        Ok(space)
+        Subspace { problem, v: empty(), sv: empty(), m: none(), c: none(), k: none(), n_solves: 0 }
     }
 
-    /// Appends the directions of `w` that V lacks, orthonormal, and their projections.
-    fn extend(&mut self, mut w: Block) -> Result<()> {
+    /// Appends the directions of `w` that V lacks, orthonormal, and their projections. Gives `V^T w` for the new V.
+    fn extend(&mut self, w: &Block) -> Result<DMatrix<f64>> {
+        let original = w;
+        let mut w = w.clone();
         for _ in 0..2 {
             let overlap = self.v.gram(&w);
             w.axpy(-1.0, &self.v.combined(&overlap, w.n_columns()));
@@ -139,7 +135,7 @@ impl<'a> Subspace<'a> {
         self.k = general_growth(&self.k, [&self.v, &w], [&self.sv, &sw]);
         self.v.append(&w);
         self.sv.append(&sw);
-        Ok(())
+        Ok(DMatrix::from_vec(self.v.n_columns(), original.n_columns(), self.v.gram(original)))
     }
 
     /// `nu^2 M + nu (C + 2 sigma M) + P(sigma)` on V, by its inverse: `theta = s / nu`, `[theta y; y]` an eigenvector of
@@ -210,6 +206,95 @@ impl<'a> Subspace<'a> {
     }
 }
 
+/// The block Krylov space of the linearised, inverted problem, kept as coefficients on V (two-level orthogonal Arnoldi).
+///
+/// With `theta = s / (lambda - sigma)`, `(u, w) -> (-S (s C' u + s^2 M w), u)`: both halves of every block are `V T` and `V B`.
+struct Krylov {
+    top: DMatrix<f64>,
+    bottom: DMatrix<f64>,
+    /// Columns of the newest block.
+    newest: usize,
+    scale: f64,
+}
+
+impl Krylov {
+    /// Random starting blocks for both halves.
+    fn start(space: &mut Subspace, scale: f64) -> Result<Krylov> {
+        let (comm, n_local) = (space.problem.k.comm(), space.problem.k.n_local());
+        let n_total = comm.sum(n_local as f64) as usize;
+        let block = BLOCK.min(n_total);
+        let start = random(comm, n_local, (2 * block).min(n_total));
+        let smooth = start.solved_by(space.problem.factor)?;
+        space.n_solves += smooth.n_columns();
+        space.extend(&smooth)?;
+        let n = space.v.n_columns();
+        let unit = |first: usize| DMatrix::from_fn(n, block, |i, j| f64::from(u8::from(i == (first + j) % n)));
+        let mut krylov = Krylov { top: DMatrix::zeros(n, 0), bottom: DMatrix::zeros(n, 0), newest: 0, scale };
+        krylov.append(unit(0), unit(n - block));
+        Ok(krylov)
+    }
+
+    /// Adds blocks until V has so many columns, or nothing is left to add.
+    fn grow(&mut self, space: &mut Subspace, n_columns: usize) -> Result<()> {
+        let n_total = space.problem.k.comm().sum(space.problem.k.n_local() as f64) as usize;
+        while space.v.n_columns() < n_columns.min(n_total) && self.newest > 0 {
+            self.step(space)?;
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, space: &mut Subspace) -> Result<()> {
+        let first = self.top.ncols() - self.newest;
+        let half = |t: &DMatrix<f64>| {
+            let newest = t.columns(first, self.newest).clone_owned();
+            newest.resize_vertically(space.v.n_columns(), 0.0)
+        };
+        let (top, bottom) = (half(&self.top), half(&self.bottom));
+        let u = space.v.combined(top.as_slice(), self.newest);
+        let w = space.v.combined(bottom.as_slice(), self.newest);
+        let (s, sigma, problem) = (self.scale, space.problem.shift, space.problem);
+        let mut rhs = w.multiplied_by(problem.m)?;
+        rhs.scale(-s * s);
+        rhs.axpy(-s, &u.multiplied_by(problem.c)?);
+        if sigma != 0.0 {
+            rhs.axpy(-2.0 * s * sigma, &u.multiplied_by(problem.m)?);
+        }
+        let image = rhs.solved_by(problem.factor)?;
+        space.n_solves += image.n_columns();
+        let coordinates = space.extend(&image)?;
+        let n = space.v.n_columns();
+        self.append(coordinates, top.resize_vertically(n, 0.0));
+        Ok(())
+    }
+
+    /// Orthonormalises a block of both halves against all before, and appends it.
+    fn append(&mut self, top: DMatrix<f64>, bottom: DMatrix<f64>) {
+        let n = top.nrows();
+        let stack = |t: DMatrix<f64>, b: DMatrix<f64>| {
+            let mut both = DMatrix::zeros(2 * n, t.ncols());
+            both.rows_mut(0, n).copy_from(&t);
+            both.rows_mut(n, n).copy_from(&b);
+            both
+        };
+        let pad = |m: &DMatrix<f64>| m.clone().resize_vertically(n, 0.0);
+        let basis = stack(pad(&self.top), pad(&self.bottom));
+        let mut block = stack(top, bottom);
+        for _ in 0..2 {
+            block -= &basis * basis.tr_mul(&block);
+            block = &block * whitening(&block.tr_mul(&block));
+        }
+        self.newest = block.ncols();
+        let join = |old: DMatrix<f64>, new: DMatrix<f64>| {
+            let (first, more) = (old.ncols(), new.ncols());
+            let mut all = old.resize_horizontally(first + more, 0.0);
+            all.columns_mut(first, more).copy_from(&new);
+            all
+        };
+        self.top = join(pad(&self.top), block.rows(0, n).clone_owned());
+        self.bottom = join(pad(&self.bottom), block.rows(n, n).clone_owned());
+    }
+}
+
 /// `r_i += factor image_i` for the complex column i kept as two real ones.
 fn add_complex_multiple(r: &mut Block, image: &Block, i: usize, factor: Complex64) {
     let (re, im) = (image.column(2 * i), image.column(2 * i + 1));
@@ -220,20 +305,24 @@ fn add_complex_multiple(r: &mut Block, image: &Block, i: usize, factor: Complex6
     add(r.column_mut(2 * i + 1), factor.im, factor.re);
 }
 
-/// An orthonormal basis of the span of the columns, scaled to length 1 first; negligible directions are dropped.
+/// An orthonormal basis of the span of the columns; negligible directions are dropped.
 fn orthonormal(w: &Block) -> Block {
     let n = w.n_columns();
-    let gram = DMatrix::from_vec(n, n, w.gram(w));
+    let whitening = whitening(&DMatrix::from_vec(n, n, w.gram(w)));
+    w.combined(whitening.as_slice(), whitening.ncols())
+}
+
+/// T with `T^T G T = I` for the Gram matrix G of some columns, scaled to length 1 first; directions that are negligible then are
+/// left out (Stathopoulos and Wu, SIAM J. Sci. Comput. 23 (2002), SVQB).
+fn whitening(gram: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = gram.ncols();
     let scale: Vec<f64> = (0..n).map(|j| 1.0 / gram[(j, j)].sqrt().max(f64::MIN_POSITIVE)).collect();
-    let scaled = DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]);
-    let eigen = SymmetricEigen::new(scaled);
-    let largest = eigen.eigenvalues.max();
+    let eigen = SymmetricEigen::new(DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]));
+    let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, &x| m.max(x));
     let kept: Vec<usize> = (0..n).filter(|&j| eigen.eigenvalues[j] > NEGLIGIBLE * NEGLIGIBLE * largest).collect();
-    let column = |&j: &usize| {
-        let length = eigen.eigenvalues[j].sqrt();
-        (0..n).map(|i| scale[i] * eigen.eigenvectors[(i, j)] / length).collect::<Vec<_>>()
-    };
-    w.combined(&kept.iter().flat_map(column).collect::<Vec<_>>(), kept.len())
+    DMatrix::from_fn(n, kept.len(), |i, j| {
+        scale[i] * eigen.eigenvectors[(i, kept[j])] / eigen.eigenvalues[kept[j]].sqrt()
+    })
 }
 
 /// `[V W]^T A [V W]` from `V^T A V` and `A W`, A symmetric.

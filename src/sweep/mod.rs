@@ -7,6 +7,8 @@ mod brake;
 
 pub use brake::{Brake, Families};
 
+use std::time::Instant;
+
 use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
@@ -20,6 +22,8 @@ pub struct Sweep<'a> {
     path: Path<'a>,
     solver: Solver,
     linearised: Option<Linearised>,
+    /// Spent on equilibria and on modes.
+    seconds: [f64; 2],
 }
 
 /// What a sweep is busy with.
@@ -36,7 +40,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// PETSc's.
     pub fn new(system: &'a System, interface: &'a Interface) -> Result<Sweep<'a>> {
-        Ok(Sweep { system, path: Path::new(system, interface)?, solver: Solver::default(), linearised: None })
+        Ok(Sweep { system, path: Path::new(system, interface)?, solver: Solver::default(), linearised: None, seconds: [0.0; 2] })
     }
 
     /// The equilibrium at a friction of the swept pairs, from the last one. Collective.
@@ -44,7 +48,10 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// See [`Path::advance`].
     pub fn equilibrium(&mut self, friction: f64, hear: &mut dyn FnMut(Event)) -> Result<Equilibrium> {
-        self.path.advance(friction, &mut self.solver.lu, &mut |label, i, it| hear(Event::Newton(label, i, it)))
+        let start = Instant::now();
+        let outcome = self.path.advance(friction, &mut |label, i, it| hear(Event::Newton(label, i, it)));
+        self.seconds[0] += start.elapsed().as_secs_f64();
+        outcome
     }
 
     /// All modes of a band (Hz) about an equilibrium. Collective.
@@ -52,15 +59,18 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// See [`stability::solve`].
     pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], hear: &mut dyn FnMut(Event)) -> Result<Band> {
+        let start = Instant::now();
         if self.linearised.is_none() {
             self.linearised = Some(Linearised::new(self.system)?);
         }
         let linearised = self.linearised.as_mut().expect("made above");
         linearised.update(self.system, self.path.contacts(), equilibrium)?;
         let pencil = linearised.pencil(self.system);
-        stability::solve(&pencil, &mut self.solver, band, &mut |converged, wanted, solves| {
+        let outcome = stability::solve(&pencil, &mut self.solver, band, &mut |converged, wanted, solves| {
             hear(Event::Modes(converged, wanted, solves));
-        })
+        });
+        self.seconds[1] += start.elapsed().as_secs_f64();
+        outcome
     }
 
     /// The last state tried, for output after a failure.
@@ -68,8 +78,18 @@ impl<'a> Sweep<'a> {
         &self.path
     }
 
-    /// Costs of the unsymmetric and the symmetric factor.
-    pub fn costs(&self) -> [FactorStats; 2] {
-        [self.solver.lu.stats(), self.solver.ldl.stats()]
+    /// Seconds spent on equilibria and on modes.
+    pub fn seconds(&self) -> [f64; 2] {
+        self.seconds
+    }
+
+    /// Costs of the factors: of the equilibrium's tangent, of the modes' stiffness, of the symmetric one that counts.
+    pub fn costs(&self) -> [FactorStats; 3] {
+        [self.path.costs().0, self.solver.lu.stats(), self.solver.ldl.stats()]
+    }
+
+    /// Iterations of the equilibria's linear systems with factors of neighbouring tangents.
+    pub fn n_iterations(&self) -> usize {
+        self.path.costs().1
     }
 }
