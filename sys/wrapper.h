@@ -1,5 +1,4 @@
 #include <petscsnes.h>
 #include <slepcpep.h>
-#include <petscblaslapack.h>
 #include <metis.h>
 #include "shim.h"

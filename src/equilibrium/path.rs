@@ -69,11 +69,7 @@ impl<'a> Path<'a> {
     ///
     /// # Errors
     /// PETSc's and MUMPS's; [`Error::NotConverged`] where even the smallest step fails.
-    pub fn advance(
-        &mut self,
-        friction: f64,
-        progress: &mut dyn FnMut(&str, usize, &Iteration),
-    ) -> Result<Equilibrium> {
+    pub fn advance(&mut self, friction: f64, progress: &mut dyn FnMut(&str, usize, &Iteration)) -> Result<Equilibrium> {
         if self.state.is_none() {
             self.settle(progress)?;
         }
@@ -154,13 +150,12 @@ impl<'a> Path<'a> {
         progress: &mut dyn FnMut(&str, usize, &Iteration),
     ) -> Result<(Step, Vec<Response>)> {
         let name = label.clone();
-        let workspace =
-            Workspace {
-                system: self.system,
-                contacts: &mut self.contacts,
-                factor: &mut self.factor,
-                tangent: &mut self.tangent,
-            };
+        let workspace = Workspace {
+            system: self.system,
+            contacts: &mut self.contacts,
+            factor: &mut self.factor,
+            tangent: &mut self.tangent,
+        };
         newton::solve(workspace, u, stage, label, &mut |i, it| progress(&name, i, it))
     }
 

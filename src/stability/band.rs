@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use super::mode::Residual;
-use super::subspace;
 use super::{Mode, Pencil};
 use crate::petsc::eigen::{self, Options, Quadratic};
 use crate::petsc::{Factor, FactorKind};
@@ -17,23 +16,11 @@ pub struct Solver {
     pub ldl: Factor,
     /// Real shift of the inverted problem, 1/s: 0, unless the structure has rigid motions.
     pub shift: f64,
-    /// How eigenpairs are found.
-    pub method: Method,
-}
-
-/// How eigenpairs are found; both give the same modes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
-    /// Blocked solves on one growing subspace.
-    Subspace,
-    /// SLEPc's TOAR, one vector at a time: the reference.
-    #[default]
-    Toar,
 }
 
 impl Default for Solver {
     fn default() -> Self {
-        Solver { lu: Factor::new(FactorKind::Unsymmetric), ldl: Factor::new(FactorKind::Symmetric), shift: 0.0, method: Method::default() }
+        Solver { lu: Factor::new(FactorKind::Unsymmetric), ldl: Factor::new(FactorKind::Symmetric), shift: 0.0 }
     }
 }
 
@@ -84,75 +71,69 @@ pub fn solve(
     let expected = solver.n_below(pencil, band[1])?;
     solver.factorise_shifted(pencil)?;
     let mut margin = 4 + expected / 20;
-    let mut n_solves = 0;
+    let (mut n_solves, mut last) = (0, None);
     for _ in 0..TRIES {
-        let found = nearest(pencil, solver, band[1], expected, margin, progress)?;
+        let found = nearest(pencil, solver, expected + margin, progress)?;
         n_solves += found.n_solves;
-        if let Some(count) = complete(pencil, solver, &found, band, expected)? {
-            return finish(pencil, found, band, count, n_solves);
+        if let Some(count) = count(pencil, solver, &found, band[1], expected)? {
+            if count.agrees() {
+                return finish(pencil, found, band, count, n_solves);
+            }
+            last = Some((found, count));
         }
         margin *= 3;
     }
-    Err(Error::NotConverged(format!(
-        "the eigensolver did not complete the band {}-{} Hz with {expected} modes expected. \
-         Try a narrower band ([stability] band)",
-        band[0], band[1]
-    )))
+    match last {
+        Some((found, count)) => finish(pencil, found, band, count, n_solves),
+        None => Err(Error::NotConverged(format!(
+            "the eigensolver did not reach the end of the band {}-{} Hz, with {expected} modes expected. Try a narrower band \
+             ([stability] band)",
+            band[0], band[1]
+        ))),
+    }
 }
 
 fn n_equations(pencil: &Pencil) -> usize {
     pencil.k.comm().sum(pencil.k.n_local() as f64) as usize
 }
 
-/// Eigenpairs nearest to the shift, some beyond the band's end. TOAR is asked for a number, the subspace for a radius.
+/// The eigenpairs nearest to the shift: the expected modes and some beyond the band's end.
 fn nearest(
     pencil: &Pencil,
     solver: &Solver,
-    end: f64,
-    expected: usize,
-    margin: usize,
+    n_modes: usize,
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<eigen::Found> {
     let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: solver.shift, factor: &solver.lu };
-    match solver.method {
-        Method::Subspace => {
-            let radius = TAU * end * (1.0 + margin as f64 / (2 * expected + 2) as f64) + solver.shift.abs();
-            subspace::solve(&problem, radius, expected + margin, progress)
-        }
-        Method::Toar => {
-            let n_wanted = (2 * (expected + margin)).min(2 * n_equations(pencil));
-            let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
-            eigen::solve(&problem, &options, &mut |converged, solves| progress(converged, n_wanted, solves))
-        }
-    }
+    let n_wanted = (2 * n_modes).min(2 * n_equations(pencil));
+    let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
+    eigen::solve(&problem, &options, &mut |converged, solves| progress(converged, n_wanted, solves))
 }
 
-/// The count at which found and expected numbers agree; none where the search must be widened.
+/// How many modes were found below the band's end, and how many there should be; none where the search did not get there.
 ///
 /// Friction may carry a mode across the band's end, where the two problems then differ by one: the count is taken again
 /// in the widest gap between modes above it.
-fn complete(
+fn count(
     pencil: &Pencil,
     solver: &mut Solver,
     found: &eigen::Found,
-    band: [f64; 2],
+    end: f64,
     expected: usize,
 ) -> Result<Option<Count>> {
     let mut moduli: Vec<f64> = found.pairs.iter().map(|pair| pair.lambda.norm() / TAU).collect();
     moduli.sort_by(f64::total_cmp);
     let all = found.n_converged >= 2 * n_equations(pencil);
     let reach = if all { f64::INFINITY } else { moduli.last().copied().unwrap_or(0.0) };
-    if reach <= band[1] {
+    if reach <= end {
         return Ok(None);
     }
     let below = |f: f64| found.pairs.iter().map(|pair| weight(pair, f)).sum::<f64>().round() as usize;
-    let count = Count { below: band[1], expected, found: below(band[1]) };
-    if count.agrees() {
-        return Ok(Some(count));
+    let count = Count { below: end, expected, found: below(end) };
+    match widest_gap(&moduli, end).filter(|_| !count.agrees()) {
+        Some(gap) => Ok(Some(Count { below: gap, expected: solver.n_below(pencil, gap)?, found: below(gap) })),
+        None => Ok(Some(count)),
     }
-    let Some(gap) = widest_gap(&moduli, band[1]) else { return Ok(None) };
-    let count = Count { below: gap, expected: solver.n_below(pencil, gap)?, found: below(gap) };
-    Ok(count.agrees().then_some(count))
 }
 
 /// A pair of the upper half plane stands for one mode, a real eigenvalue for half of one.

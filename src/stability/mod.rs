@@ -7,8 +7,7 @@
 mod band;
 mod linearise;
 mod mode;
-mod subspace;
 
-pub use band::{Band, Count, Method, Solver, solve};
+pub use band::{Band, Count, Solver, solve};
 pub use linearise::Linearised;
 pub use mode::{Mode, Pencil, UNSTABLE_RATIO};

@@ -40,7 +40,13 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// PETSc's.
     pub fn new(system: &'a System, interface: &'a Interface) -> Result<Sweep<'a>> {
-        Ok(Sweep { system, path: Path::new(system, interface)?, solver: Solver::default(), linearised: None, seconds: [0.0; 2] })
+        Ok(Sweep {
+            system,
+            path: Path::new(system, interface)?,
+            solver: Solver::default(),
+            linearised: None,
+            seconds: [0.0; 2],
+        })
     }
 
     /// The equilibrium at a friction of the swept pairs, from the last one. Collective.
