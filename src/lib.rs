@@ -1,4 +1,73 @@
-//! squeal
+//! Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake, on PETSc, SLEPc and MUMPS.
+//!
+//! A brake squeals when friction couples two modes. The model: parts of 10-node tetrahedra, pads pressed against a turning
+//! disc by penalty contact with Coulomb friction; its static equilibrium; the linearised, damped quadratic eigenproblem about
+//! it; and a sweep of the friction coefficient. Source of the formulation: Fazio, Nacivet and Sinou, *A finite element
+//! model reduction based on super-elements for brake squeal study*, ISMA 2014.
+//!
+//! # The house
+//!
+//! ```text
+//!  model file -> model --> mesh --> assembly: elements (tetrahedra, connectors) -> System { M, C, K, load }
+//!                  \        \                                                          |
+//!                   `--------`--> contact: search -> trace B, laws -> Interface        |
+//!                                                        \                             |
+//!                                    System + Interface --equilibrium (SNES)--> Equilibrium
+//!                                                                                |
+//!                         Modes <--stability (PEP)-- Pencil { M, C, K } <--linearise
+//!                           |
+//!                         sweep over friction --> cli --> report: tables, CSV, VTU
+//! ```
+//!
+//! Every stage is one room with one main function from typed input to typed output:
+//!
+//! | room | what it does | main entry |
+//! |---|---|---|
+//! | [`model`] | the user's file, checked, in SI units | [`model::read`] |
+//! | [`mesh`] | Gmsh meshes of 10-node tetrahedra, checked | [`mesh::read`] |
+//! | [`element`] | tetrahedron, facet, quadrature, couplings: pure functions | [`element::tet10`] |
+//! | [`contact`] | search, trace `g = B u`, contact and friction laws | [`contact::Interface::build`] |
+//! | [`assembly`] | equations, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
+//! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
+//! | [`stability`] | linearisation, modes of a band, none missed | [`stability::solve`] |
+//! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
+//! | [`report`] | tables, CSV, VTU | |
+//! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
+//! | [`petsc`] | the only `unsafe`: PETSc, SLEPc, MUMPS, METIS | |
+//!
+//! Imports run one way, from the bottom of this table to its top (`tests/architecture.rs` holds the exact order). To change a
+//! friction law, change `contact/law/`; nothing else knows it.
+//!
+//! # The one idea
+//!
+//! Whatever adds to M, C or K is an *element* with a list of nodes; one assembly layer scatters them all. Contact sees a body
+//! only through its *trace* `g = B u`; so contact, equilibrium and stability know nothing of the mesh, and a reduced
+//! model is another B and another u.
+//!
+//! # Ranks
+//!
+//! Rows of the matrices and entries of vectors are distributed (METIS on the graph of coupled nodes). The mesh, the contact points
+//! and their state are on every rank: a million equations have 16 MB of mesh and some thousand points, while the factor
+//! takes gigabytes. So each rank computes the elements that touch its rows without any communication, and every sum is the
+//! same on any number of ranks.
+//!
+//! # Notation
+//!
+//! | symbol | name in signatures | meaning, unit |
+//! |---|---|---|
+//! | M, C, K | `m`, `c`, `k` | mass kg, damping N s/m, stiffness N/m |
+//! | u | `u` | displacements of the equations, m |
+//! | B, g | `trace`, `gap` | relative displacement at the contact points `g = B u`, m |
+//! | n, t | `normal`, `direction` | master's outward normal; direction of sliding |
+//! | d | `penetration` | `-(gap0 + n.g)`, m |
+//! | p | `normal_force` | normal force of a point, N |
+//! | mu | `friction` | coefficient of friction |
+//! | w | `weight` | area of a contact point, m2 |
+//! | k_n, k_t | `stiffness`, `stick` | penalty of contact and of sticking, N/m3 |
+//! | D | `tangent` | `-df/dg` of a contact point, N/m |
+//! | lambda = a + i omega | `lambda`, `growth_rate`, `frequency` | eigenvalue 1/s; a > 0 squeals |
+//! | alpha, beta | `rayleigh` | `C = alpha M + beta K` of a part |
+
 mod algebra;
 pub mod assembly;
 pub mod cli;

@@ -24,6 +24,7 @@ const ROOMS: [(&str, &[&str]); 13] = [
         "cli",
         &[
             "error",
+            "algebra",
             "model",
             "mesh",
             "element",

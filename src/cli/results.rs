@@ -50,7 +50,9 @@ impl State {
         let [force, moment] = self.balance.residual();
         let clamp = self.balance.pairs.iter().map(|pair| pair.normal.abs()).fold(0.0, f64::max);
         let mut text = format!(
-            "loads and supports balance to {force:.1e} N and {moment:.1e} N m (largest contact force {clamp:.1} N)\n"
+            "loads and supports balance to {force:.1e} N and {moment:.1e} N m (largest contact force {clamp:.1} N)\n\
+             moment of contact forces across initial gaps: {:.1e} N m\n",
+            crate::algebra::norm(self.balance.across_gaps.moment)
         );
         for rotation in &brake.model.rotations {
             let nodes = part_nodes(brake, &rotation.part);

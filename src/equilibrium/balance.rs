@@ -61,6 +61,9 @@ pub struct Balance {
     pub applied: Wrench,
     /// All supports.
     pub support: Wrench,
+    /// What contact forces add: the force on the slave and its opposite on the master cancel, but they act on either side of the
+    /// initial gap, so that their moments cancel only where the surfaces touch at the start.
+    pub across_gaps: Wrench,
     /// Support of each body of nodes asked for.
     pub reactions: Vec<(u32, [f64; 3])>,
     /// The pairs, in the interface's order.
@@ -89,8 +92,12 @@ impl Balance {
             applied.add(points[node as usize], force);
             subtract(node, force);
         }
+        let mut across_gaps = Wrench::default();
         for (a, response) in responses.iter().enumerate() {
-            interface.trace.spread(a, response.force, &mut subtract);
+            interface.trace.spread(a, response.force, |node, force| {
+                across_gaps.add(points[node as usize], force);
+                subtract(node, force);
+            });
         }
         let mut support = Wrench::default();
         let held = |node: u32, f: [f64; 3]| {
@@ -100,7 +107,7 @@ impl Balance {
         let reactions: Vec<_> = internal.into_iter().map(|(node, f)| (node, held(node, f))).collect();
         reactions.iter().for_each(|&(node, f)| support.add(points[node as usize], f));
         let pairs = interface.pairs.iter().map(|pair| PairForces::new(interface, pair, responses)).collect();
-        Balance { applied, support, reactions, pairs }
+        Balance { applied, support, across_gaps, reactions, pairs }
     }
 
     /// Moment of some nodes' supports about an axis, N m.
@@ -117,10 +124,11 @@ impl Balance {
         wrench.about(through, axis)
     }
 
-    /// What is left of the forces (N) and moments (N m).
+    /// What is left of all forces (N) and moments (N m): round-off.
     pub fn residual(&self) -> [f64; 2] {
-        let left = |a: [f64; 3], b: [f64; 3]| norm([0, 1, 2].map(|i| a[i] + b[i]));
-        [left(self.applied.force, self.support.force), left(self.applied.moment, self.support.moment)]
+        let [a, b, c] = [self.applied, self.support, self.across_gaps];
+        let left = |of: fn(&Wrench) -> [f64; 3]| norm([0, 1, 2].map(|i| of(&a)[i] + of(&b)[i] + of(&c)[i]));
+        [left(|w| w.force), left(|w| w.moment)]
     }
 }
 

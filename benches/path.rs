@@ -1,0 +1,82 @@
+//! Seconds, entries and memory of the stages on the demo brake: `cargo bench`, or `cargo bench -- meshes/brake-full.toml`.
+//!
+//! Not a timed test: it prints figures and judges nothing. Under mpirun run the executable that `cargo bench --no-run` names.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use squeal::petsc::{Factor, FactorKind, ORDERING, Session};
+use squeal::sweep::{Brake, Sweep};
+
+fn main() -> squeal::Result<()> {
+    let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
+    let path = PathBuf::from(asked.unwrap_or_else(|| "meshes/brake-medium.toml".into()));
+    let comm = Session::start(&[])?;
+    let tell = |text: String| {
+        if comm.is_root() {
+            println!("{text}");
+        }
+    };
+    let start = Instant::now();
+    let brake = Brake::read(&comm, &path)?;
+    let (nodes, tets) = (brake.mesh.nodes.len(), brake.mesh.tets.len());
+    tell(format!("{}: {nodes} nodes, {tets} tetrahedra, {} ranks", path.display(), comm.size()));
+    tell(format!("read, checked, contact found    {:8.2} s", start.elapsed().as_secs_f64()));
+
+    let start = Instant::now();
+    let families = brake.families()?;
+    let system = brake.assemble(&comm, &families)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let (n, entries) = (system.dofs.n_global(), system.k.n_entries()?);
+    let rate = tets as f64 / seconds / comm.size() as f64;
+    tell(format!(
+        "assembly of M, C, K             {seconds:8.2} s  {n} equations, {:.1} M entries each, {rate:.0} tets/s and rank",
+        1e-6 * entries
+    ));
+
+    for kind in [FactorKind::Unsymmetric, FactorKind::Symmetric] {
+        let mut matrix = system.k.duplicate()?;
+        // Held by its mass where only contact would hold a part.
+        matrix.axpy(1e8, &system.m)?;
+        if kind == FactorKind::Symmetric {
+            matrix.declare_symmetric()?;
+        }
+        let mut factor = Factor::new(kind);
+        factor.factorise(&matrix)?;
+        let cost = factor.stats();
+        tell(format!(
+            "{:<31} {:8.2} s  analysis {:.2} s, {:.1} M entries, {:.1} GFlop, {:.0} MB, ordering {}",
+            format!("factorisation, {kind:?}"),
+            cost.factorisation_seconds,
+            cost.analysis_seconds,
+            1e-6 * cost.entries,
+            1e-9 * cost.flops,
+            cost.used_mb,
+            ORDERING.get(cost.ordering as usize).unwrap_or(&"?")
+        ));
+        let (b, mut x) = (system.load.duplicate()?, system.zeros()?);
+        let start = Instant::now();
+        factor.solve(&b, &mut x)?;
+        tell(format!("  one solve                     {:8.3} s", start.elapsed().as_secs_f64()));
+    }
+
+    let mut sweep = Sweep::new(&system, &brake.interface)?;
+    let mut ignore = |_: squeal::sweep::Event| ();
+    let equilibrium = sweep.equilibrium(0.5, &mut ignore)?;
+    let next = sweep.equilibrium(0.6, &mut ignore)?;
+    let band = sweep.modes(&next, brake.model.band, &mut ignore)?;
+    let [statics, modes] = sweep.seconds();
+    let iterations = |steps: &[squeal::equilibrium::Step]| steps.iter().map(|s| s.iterations.len() - 1).sum::<usize>();
+    tell(format!(
+        "equilibria at 0.5 and 0.6       {statics:8.2} s  {} and {} Newton steps, {} factorisations",
+        iterations(&equilibrium.steps),
+        iterations(&next.steps),
+        sweep.costs()[0].n_factorisations
+    ));
+    tell(format!(
+        "modes of the band               {modes:8.2} s  {} modes, {} solves",
+        band.modes.len(),
+        band.n_solves
+    ));
+    Ok(())
+}
