@@ -24,7 +24,7 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::{Block, assert_close, brake};
+use common::{Block, assert_close, brake, graded};
 use squeal::mesh::Mesh;
 use squeal::petsc::Session;
 use squeal::sweep::{Brake, Sweep};
@@ -79,22 +79,6 @@ search = 1e-5
 band = [0, 1]
 "#;
 
-/// Places 0 to [`SIZE`] of n cells: `n_fine` even ones up to `fine`, then each longer than the last by one factor.
-fn graded(n: usize, n_fine: usize, fine: f64) -> impl Fn(f64) -> f64 {
-    let (step, m) = (fine / n_fine as f64, (n - n_fine) as f64);
-    let length = move |q: f64, cells: f64| step * q * (q.powf(cells) - 1.0) / (q - 1.0);
-    let (mut low, mut high) = (1.001, 10.0);
-    for _ in 0..60 {
-        let q = 0.5 * (low + high);
-        if length(q, m) < SIZE - fine { low = q } else { high = q }
-    }
-    move |s| {
-        let cells = s * n as f64;
-        let beyond = cells - n_fine as f64;
-        if beyond <= 0.0 { step * cells } else { fine + length(low, beyond) }
-    }
-}
-
 /// How far the ball's surface is above its lowest point.
 fn sag(x: f64, y: f64) -> f64 {
     RADIUS - (RADIUS * RADIUS - x * x - y * y).sqrt()
@@ -103,10 +87,10 @@ fn sag(x: f64, y: f64) -> f64 {
 fn mesh() -> Mesh {
     let mut mesh = Mesh::default();
     let fine = 1.2 * CONTACT_RADIUS;
-    let (across, down) = (graded(9, 5, fine), graded(7, 2, fine));
+    let (across, down) = (graded(9, 5, fine, SIZE), graded(7, 2, fine, SIZE));
     let block = |x: [f64; 3]| [across(x[0]), across(x[1]), -down(1.0 - x[2])];
     Block { part: "block", cells: [9, 9, 7], wraps: false, map: &block }.add_to(&mut mesh);
-    let (across, up) = (graded(10, 6, fine), graded(8, 2, fine));
+    let (across, up) = (graded(10, 6, fine, SIZE), graded(8, 2, fine, SIZE));
     let ball = |x: [f64; 3]| {
         let (x, y, z) = (across(x[0]), across(x[1]), up(x[2]));
         [x, y, z + sag(x, y) * (1.0 - z / SIZE) - OVERLAP]

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use squeal::assembly;
 use squeal::contact::Interface;
-use squeal::element::tet10;
-use squeal::mesh::{Mesh, Surface};
+use squeal::mesh::{Mesh, Surface, jacobian};
 use squeal::model;
 use squeal::sweep::Brake;
 
@@ -79,8 +78,8 @@ impl Block<'_> {
             let index = mesh.tets.len() as u32;
             mesh.tets.push(tet);
             mesh.tet_part.push(part);
-            let (least, _) = tet10::min_max_jacobian(&mesh.tet_nodes(index as usize));
-            assert!(least > 0.0, "{}: the map turns the block inside out", self.part);
+            let inverted = jacobian::is_inverted(&mesh.tet_nodes(index as usize));
+            assert!(!inverted, "{}: the map turns the block inside out", self.part);
             for face in FACES {
                 if let Some(side) = self.side(face.map(|a| lattice[a])) {
                     let surface = sides.entry(format!("{}_{side}", self.part)).or_default();
@@ -134,4 +133,20 @@ fn tet_of(cell: [usize; 3], path: [usize; 3]) -> [[usize; 3]; 10] {
 /// Nodes that satisfy a condition on their coordinates.
 pub fn nodes_where(mesh: &Mesh, condition: impl Fn([f64; 3]) -> bool) -> Vec<u32> {
     (0..mesh.nodes.len() as u32).filter(|&n| condition(mesh.nodes[n as usize])).collect()
+}
+
+/// Places 0 to `size` of n cells: `n_fine` even ones up to `fine`, then each longer than the last by one factor.
+pub fn graded(n: usize, n_fine: usize, fine: f64, size: f64) -> impl Fn(f64) -> f64 {
+    let (step, m) = (fine / n_fine as f64, (n - n_fine) as f64);
+    let length = move |q: f64, cells: f64| step * q * (q.powf(cells) - 1.0) / (q - 1.0);
+    let (mut low, mut high) = (1.001, 20.0);
+    for _ in 0..60 {
+        let q = 0.5 * (low + high);
+        if length(q, m) < size - fine { low = q } else { high = q }
+    }
+    move |s| {
+        let cells = s * n as f64;
+        let beyond = cells - n_fine as f64;
+        if beyond <= 0.0 { step * cells } else { fine + length(low, beyond) }
+    }
 }
