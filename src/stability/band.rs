@@ -73,7 +73,10 @@ pub fn solve(
     let mut margin = 4 + expected / 20;
     let (mut n_solves, mut last) = (0, None);
     for _ in 0..TRIES {
-        let found = nearest(pencil, solver, expected + margin, progress)?;
+        let Some(found) = nearest(pencil, solver, expected + margin, progress)? else {
+            margin *= 3;
+            continue;
+        };
         n_solves += found.n_solves;
         if let Some(count) = count(pencil, solver, &found, band[1], expected)? {
             if count.agrees() {
@@ -97,17 +100,22 @@ fn n_equations(pencil: &Pencil) -> usize {
     pencil.k.comm().sum(pencil.k.n_local() as f64) as usize
 }
 
-/// The eigenpairs nearest to the shift: the expected modes and some beyond the band's end.
+/// The eigenpairs nearest to the shift, the expected modes and some beyond the band's end; none where LAPACK could not
+/// reorder the projected problem (xTREXC, info 1: blocks too close to swap, as the defective zeros of several rigid motions are).
+/// Another search space does not meet the same blocks.
 fn nearest(
     pencil: &Pencil,
     solver: &Solver,
     n_modes: usize,
     progress: &mut dyn FnMut(usize, usize, usize),
-) -> Result<eigen::Found> {
+) -> Result<Option<eigen::Found>> {
     let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: solver.shift, factor: &solver.lu };
     let n_wanted = (2 * n_modes).min(2 * n_equations(pencil));
     let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
-    eigen::solve(&problem, &options, &mut |converged, solves| progress(converged, n_wanted, solves))
+    match eigen::solve(&problem, &options, &mut |converged, solves| progress(converged, n_wanted, solves)) {
+        Err(Error::Library(text)) if text.contains("LAPACK subroutine trexc: info=1") => Ok(None),
+        found => found.map(Some),
+    }
 }
 
 /// How many modes were found below the band's end, and how many there should be; none where the search did not get there.

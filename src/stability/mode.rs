@@ -8,6 +8,9 @@ use crate::petsc::{Matrix, Vector};
 /// A mode is called unstable where its growth rate exceeds this fraction of its angular frequency: below is noise.
 pub const UNSTABLE_RATIO: f64 = 1e-6;
 
+/// A real eigenvalue above this, 1/s, is an instability.
+const DIVERGENCE: f64 = 1.0;
+
 /// The matrices of `lambda^2 M + lambda C + K`, K with the contact tangent.
 pub struct Pencil<'a> {
     /// Mass.
@@ -48,9 +51,11 @@ impl Mode {
         -self.lambda.re / self.lambda.norm()
     }
 
-    /// Whether the mode grows, beyond noise.
+    /// Whether the mode grows, beyond noise. A rigid motion's double zero may come out as a real pair of some 1e-2/s:
+    /// divergence, a real eigenvalue, counts from 1/s on.
     pub fn is_unstable(&self) -> bool {
-        self.lambda.re > UNSTABLE_RATIO * self.lambda.im
+        let noise = if self.lambda.im == 0.0 { DIVERGENCE } else { UNSTABLE_RATIO * self.lambda.im };
+        self.lambda.re > noise
     }
 
     /// Turns and scales the vector so that its largest entry (in modulus) is 1, real.

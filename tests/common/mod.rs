@@ -1,0 +1,152 @@
+//! What the validation tests share: block meshes of tetrahedra, brakes made of text and mesh, comparisons that say what they saw.
+#![allow(dead_code, reason = "every test file takes its own part of this one")]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use squeal::assembly;
+use squeal::contact::Interface;
+use squeal::mesh::{Mesh, Surface, jacobian};
+use squeal::model;
+use squeal::sweep::Brake;
+
+/// A file of tests/data.
+pub fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+/// Requires `|found - expected| <= tolerance |expected|`, and prints what it saw.
+#[track_caller]
+pub fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
+    let error = (found / expected - 1.0).abs();
+    println!("{what}: {found:.10e} against {expected:.10e}, off by {error:.1e}, allowed {tolerance:.0e}");
+    assert!(error <= tolerance, "{what}: {found} is not {expected} to {tolerance}");
+}
+
+/// A brake of a model's text and a mesh that needs no file.
+pub fn brake(text: &str, mesh: Mesh) -> Brake {
+    let text = format!("[mesh]\nfile = \"none.msh\"\nunit = \"m\"\n{text}");
+    let model = model::parse(&text, Path::new("test.toml")).unwrap();
+    model.check_against(&mesh).unwrap();
+    let interface = Interface::build(&model, &mesh).unwrap();
+    let loads = assembly::loads(&model, &mesh).unwrap();
+    let held = assembly::held(&model, &mesh).unwrap();
+    let links = assembly::links(&model, &mesh).unwrap();
+    Brake { model, mesh, interface, loads, held, links }
+}
+
+/// A block of `cells` cells of six tetrahedra each (Kuhn's), the unit cube mapped by `map`.
+///
+/// ```text
+///      z1   y1           all six tetrahedra of a cell share its diagonal 000-111, and neighbours agree on their face;
+///       |  /             midside nodes are mapped as well, so edges follow curved maps;
+///       | /              `wraps` closes the block along y: the nodes of y1 are those of y0.
+///       |/____ x1
+/// ```
+pub struct Block<'a> {
+    pub part: &'a str,
+    pub cells: [usize; 3],
+    pub wraps: bool,
+    pub map: &'a dyn Fn([f64; 3]) -> [f64; 3],
+}
+
+/// The faces of a tetrahedron, outward: corners, then midsides of (0,1) (1,2) (2,0).
+const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
+
+impl Block<'_> {
+    /// Adds the block as a part, and its sides as surfaces `<part>_x0`, `<part>_x1`, `<part>_y0`, ...
+    pub fn add_to(&self, mesh: &mut Mesh) {
+        let first = mesh.nodes.len() as u32;
+        let part = mesh.parts.len() as u32;
+        mesh.parts.push(self.part.into());
+        let n = self.n_points();
+        for k in 0..n[2] {
+            for j in 0..n[1] {
+                for i in 0..n[0] {
+                    let at = [i, j, k];
+                    mesh.nodes.push((self.map)([0, 1, 2].map(|a| at[a] as f64 / (2 * self.cells[a]) as f64)));
+                }
+            }
+        }
+        let node = |at: [usize; 3]| {
+            let [i, j, k] = [0, 1, 2].map(|a| at[a] % n[a]);
+            first + (i + n[0] * (j + n[1] * k)) as u32
+        };
+        let mut sides: BTreeMap<String, Surface> = BTreeMap::new();
+        for lattice in self.tets() {
+            let tet = lattice.map(node);
+            let index = mesh.tets.len() as u32;
+            mesh.tets.push(tet);
+            mesh.tet_part.push(part);
+            let inverted = jacobian::is_inverted(&mesh.tet_nodes(index as usize));
+            assert!(!inverted, "{}: the map turns the block inside out", self.part);
+            for face in FACES {
+                if let Some(side) = self.side(face.map(|a| lattice[a])) {
+                    let surface = sides.entry(format!("{}_{side}", self.part)).or_default();
+                    surface.facets.push(face.map(|a| tet[a]));
+                    surface.tets.push(index);
+                }
+            }
+        }
+        mesh.surfaces.append(&mut sides);
+    }
+
+    /// Points of the lattice of corners and midsides along each axis.
+    fn n_points(&self) -> [usize; 3] {
+        let [x, y, z] = self.cells.map(|n| 2 * n + 1);
+        [x, if self.wraps { y - 1 } else { y }, z]
+    }
+
+    /// Each tetrahedron's ten places on the lattice.
+    fn tets(&self) -> impl Iterator<Item = [[usize; 3]; 10]> {
+        let [nx, ny, nz] = self.cells;
+        let cells = (0..nx * ny * nz).map(move |c| [c % nx, c / nx % ny, c / (nx * ny)]);
+        cells.flat_map(|cell| PATHS.map(|path| tet_of(cell, path)))
+    }
+
+    /// The side on which all six places lie.
+    fn side(&self, face: [[usize; 3]; 6]) -> Option<String> {
+        let all = |axis: usize, value: usize| face.iter().all(|at| at[axis] == value);
+        let axes = (0..3).filter(|&axis| !(self.wraps && axis == 1));
+        axes.flat_map(|axis| [(axis, 0, 0), (axis, 1, 2 * self.cells[axis])])
+            .find(|&(axis, _, value)| all(axis, value))
+            .map(|(axis, end, _)| format!("{}{end}", ["x", "y", "z"][axis]))
+    }
+}
+
+/// Orders in which a path from 000 to 111 takes the axes; the even ones first.
+const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+
+fn tet_of(cell: [usize; 3], path: [usize; 3]) -> [[usize; 3]; 10] {
+    let mut corners = [cell.map(|c| 2 * c); 4];
+    for (step, &axis) in path.iter().enumerate() {
+        corners[step + 1..].iter_mut().for_each(|corner| corner[axis] += 2);
+    }
+    if PATHS[3..].contains(&path) {
+        corners.swap(1, 2);
+    }
+    let [a, b, c, d] = corners;
+    let middle = |p: [usize; 3], q: [usize; 3]| [0, 1, 2].map(|i| (p[i] + q[i]) / 2);
+    [a, b, c, d, middle(a, b), middle(b, c), middle(c, a), middle(a, d), middle(b, d), middle(c, d)]
+}
+
+/// Nodes that satisfy a condition on their coordinates.
+pub fn nodes_where(mesh: &Mesh, condition: impl Fn([f64; 3]) -> bool) -> Vec<u32> {
+    (0..mesh.nodes.len() as u32).filter(|&n| condition(mesh.nodes[n as usize])).collect()
+}
+
+/// Places 0 to `size` of n cells: `n_fine` even ones up to `fine`, then each longer than the last by one factor.
+pub fn graded(n: usize, n_fine: usize, fine: f64, size: f64) -> impl Fn(f64) -> f64 {
+    let (step, m) = (fine / n_fine as f64, (n - n_fine) as f64);
+    let length = move |q: f64, cells: f64| step * q * (q.powf(cells) - 1.0) / (q - 1.0);
+    let (mut low, mut high) = (1.001, 20.0);
+    for _ in 0..60 {
+        let q = 0.5 * (low + high);
+        if length(q, m) < size - fine { low = q } else { high = q }
+    }
+    move |s| {
+        let cells = s * n as f64;
+        let beyond = cells - n_fine as f64;
+        if beyond <= 0.0 { step * cells } else { fine + length(low, beyond) }
+    }
+}
