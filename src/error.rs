@@ -22,9 +22,14 @@ pub enum Error {
     /// PETSc, SLEPc, MUMPS or METIS reported an error. Exit code 1.
     #[error("{0}")]
     Library(String),
-    /// Another rank failed with this exit code and says why itself.
-    #[error("another rank failed")]
-    Elsewhere(i32),
+    /// What all ranks know to have gone wrong on one of them, with that error's exit code.
+    #[error("{text}")]
+    Agreed {
+        /// The exit code.
+        code: i32,
+        /// What the rank said.
+        text: String,
+    },
 }
 
 /// Result of everything in this crate that can fail.
@@ -37,7 +42,7 @@ impl Error {
             Error::Input(_) => 2,
             Error::NotConverged(_) => 3,
             Error::Io { .. } | Error::Library(_) => 1,
-            Error::Elsewhere(code) => *code,
+            Error::Agreed { code, .. } => *code,
         }
     }
 

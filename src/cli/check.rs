@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::Result;
 use crate::element::tet10::{MassProperties, mass_properties};
 use crate::mesh::quality;
+use crate::model::LoadKind;
 use crate::petsc::{Comm, Factor, FactorKind};
 
 use crate::sweep::Brake;
@@ -16,9 +17,7 @@ pub fn run(comm: &Comm, path: &Path) -> Result<()> {
     parts(&mut text, &brake);
     pairs(&mut text, &brake);
     supports(&mut text, &brake);
-    if comm.is_root() {
-        print!("{text}");
-    }
+    tell(comm, &text)?;
     brake.require_held()?;
     memory(comm, &brake)
 }
@@ -26,7 +25,12 @@ pub fn run(comm: &Comm, path: &Path) -> Result<()> {
 /// Parts with nodes, mass, centre and principal moments of inertia, and mesh quality.
 fn parts(text: &mut String, brake: &Brake) {
     let mesh = &brake.mesh;
-    let _ = writeln!(text, "mesh: {} nodes, {} tetrahedra", mesh.nodes.len(), mesh.tets.len());
+    let size = [0, 1, 2].map(|i| {
+        let x = || mesh.nodes.iter().map(|node| node[i]);
+        fixed(1e3 * (x().fold(f64::MIN, f64::max) - x().fold(f64::MAX, f64::min)), 1)
+    });
+    let (nodes, tets) = (mesh.nodes.len(), mesh.tets.len());
+    let _ = writeln!(text, "mesh: {nodes} nodes, {tets} tetrahedra, {} mm", size.join(" x "));
     let width = mesh.parts.iter().map(String::len).max().unwrap_or(4).max(4);
     let _ = writeln!(
         text,
@@ -43,8 +47,8 @@ fn parts(text: &mut String, brake: &Brake) {
         }
         let centre = properties.centre();
         let inertia = properties.inertia_about(centre);
-        let millimetres = centre.map(|x| format!("{:.2}", 1e3 * x)).join(" ");
-        let moments = [0, 1, 2].map(|k| format!("{:.2}", 1e6 * inertia[k][k])).join(" ");
+        let millimetres = centre.map(|x| fixed(1e3 * x, 2)).join(" ");
+        let moments = [0, 1, 2].map(|k| fixed(1e6 * inertia[k][k], 2)).join(" ");
         let _ = writeln!(
             text,
             "{name:width$}  {:>8}  {:>9.4}  {millimetres:>26}  {moments:>32}  {:>8.3} {:>8.3}",
@@ -89,9 +93,15 @@ fn supports(text: &mut String, brake: &Brake) {
     let total = brake.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i]));
     let _ = writeln!(text, "{} held displacements, {} connectors", held, brake.links.len());
     for load in &brake.model.loads {
-        let _ = writeln!(text, "load {:?} on {}: {:?}", load.name, load.on, load.kind);
+        let force = |f: [f64; 3]| f.map(|f| f.to_string()).join(" ");
+        let what = match load.kind {
+            LoadKind::ForceByNode(f) => format!("{} N, the same on each node", force(f)),
+            LoadKind::ForceByArea(f) => format!("{} N, spread over the area", force(f)),
+            LoadKind::Pressure(p) => format!("a pressure of {p} Pa"),
+        };
+        let _ = writeln!(text, "load {:?} on {}: {what}", load.name, load.on);
     }
-    let _ = writeln!(text, "sum of the loads: {:.3} {:.3} {:.3} N\n", total[0], total[1], total[2]);
+    let _ = writeln!(text, "sum of the loads: {} N\n", total.map(|f| fixed(f, 3)).join(" "));
 }
 
 /// Analyses the matrix without factorising it.
@@ -102,13 +112,21 @@ fn memory(comm: &Comm, brake: &Brake) -> Result<()> {
     factor.analyse(&system.k)?;
     let stats = factor.stats();
     let entries = system.k.n_entries()?;
-    if comm.is_root() {
-        println!(
-            "{} equations, {:.1} M entries in K; the LU factor will take about {:.1} GB",
-            system.dofs.n_global(),
-            1e-6 * entries,
-            stats.estimated_mb / 1024.0
-        );
-    }
-    Ok(())
+    let text = format!(
+        "{} equations, {:.1} M entries in K; the LU factor will take about {:.1} GB\n",
+        system.dofs.n_global(),
+        1e-6 * entries,
+        stats.estimated_mb / 1024.0
+    );
+    tell(comm, &text)
+}
+
+fn tell(comm: &Comm, text: &str) -> Result<()> {
+    if comm.is_root() { super::tell(text) } else { Ok(()) }
+}
+
+/// A number of so many decimals, where rounding leaves no `-0.00`.
+fn fixed(x: f64, decimals: i32) -> String {
+    let rounded = (x * 10_f64.powi(decimals)).round() + 0.0;
+    format!("{:.*}", decimals as usize, rounded / 10_f64.powi(decimals))
 }

@@ -7,11 +7,13 @@ mod results;
 mod stability;
 mod statics;
 
+use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 use crate::petsc::{Comm, Session};
 use crate::{Error, Result};
@@ -49,7 +51,7 @@ enum Command {
         #[command(flatten)]
         run: Run,
         /// Frequency band in Hz, instead of the model file's
-        #[arg(long, value_name = "FROM:TO", value_parser = friction::band)]
+        #[arg(long, value_name = "FROM:TO", value_parser = friction::band, allow_hyphen_values = true)]
         band: Option<[f64; 2]>,
     },
 }
@@ -60,7 +62,7 @@ struct Run {
     /// The model file
     model: PathBuf,
     /// Friction of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the model file's)
-    #[arg(long, value_name = "MU", value_parser = friction::parse)]
+    #[arg(long, value_name = "MU", value_parser = friction::parse, allow_hyphen_values = true)]
     friction: Option<Frictions>,
     /// Folder of the results (default: the model file's name with the command's)
     #[arg(short, long, value_name = "FOLDER")]
@@ -79,20 +81,41 @@ impl Run {
 
 /// Runs the program and gives its exit code.
 pub fn main() -> i32 {
-    let arguments = Arguments::parse();
-    let comm = match options(&arguments.petsc).and_then(|options| Session::start(&options)) {
-        Ok(comm) => comm,
-        Err(error) => {
-            eprintln!("error: {error}");
-            return error.exit_code();
-        }
+    let (arguments, options) = match arguments() {
+        Ok(parsed) => parsed,
+        Err(usage) => return tell_usage(&usage),
     };
-    match catch_unwind(AssertUnwindSafe(|| run(&arguments.command, &comm))) {
-        Ok(Ok(())) => 0,
-        Ok(Err(error)) => end(&comm, &error),
-        Err(_) if comm.size() > 1 => comm.abort(101),
-        Err(_) => 101,
+    match Session::start(&options) {
+        Ok(comm) => guard(&comm, || run(&arguments.command, &comm)),
+        Err(error) => {
+            tell_error("error", &error);
+            error.exit_code()
+        }
     }
+}
+
+/// Options of PETSc, names with their dash.
+type PetscOptions = Vec<(String, String)>;
+
+fn arguments() -> std::result::Result<(Arguments, PetscOptions), clap::Error> {
+    let arguments = Arguments::try_parse()?;
+    match petsc_options(&arguments.petsc) {
+        Ok(options) => Ok((arguments, options)),
+        Err(message) => Err(Arguments::command().error(ErrorKind::InvalidValue, message)),
+    }
+}
+
+/// Tells what is wrong with the arguments, or the help asked for. Once, also where a launcher has started several processes: which
+/// of them is the first only MPI knows, and ending it keeps a launcher from killing that one before it has spoken.
+fn tell_usage(usage: &clap::Error) -> i32 {
+    const LAUNCHED: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"];
+    let launched = LAUNCHED.iter().any(|name| std::env::var_os(name).is_some());
+    let comm = if launched { Session::start(&[]).ok() } else { None };
+    if comm.as_ref().is_none_or(Comm::is_root) {
+        // Nobody is left to be told that nobody reads.
+        let _ = usage.print();
+    }
+    usage.exit_code()
 }
 
 fn run(command: &Command, comm: &Comm) -> Result<()> {
@@ -103,16 +126,28 @@ fn run(command: &Command, comm: &Comm) -> Result<()> {
     }
 }
 
+/// Runs what all ranks do together and gives the exit code. An error is told once; whatever befalls one rank alone, be it a
+/// panic, ends all of them, so that none waits for ever.
+pub fn guard(comm: &Comm, work: impl FnOnce() -> Result<()>) -> i32 {
+    const PANICKED: i32 = 101;
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(Ok(())) => 0,
+        Ok(Err(error)) => end(comm, &error),
+        Err(_) if comm.size() > 1 => comm.abort(PANICKED),
+        Err(_) => PANICKED,
+    }
+}
+
 /// Tells the error once and ends all ranks. Input and convergence are judged alike everywhere, so that ranks end in order;
 /// anything else may have happened on this rank alone, so that the others are ended.
 fn end(comm: &Comm, error: &Error) -> i32 {
-    let together = matches!(error, Error::Input(_) | Error::NotConverged(_) | Error::Elsewhere(_));
-    if comm.is_root() && !matches!(error, Error::Elsewhere(_)) {
-        eprintln!("error: {error}");
+    let together = matches!(error, Error::Input(_) | Error::NotConverged(_) | Error::Agreed { .. });
+    if comm.is_root() {
+        tell_error("error", error);
     } else if !together {
         // The root may be about to say the same.
         std::thread::sleep(Duration::from_millis(500));
-        eprintln!("error on rank {}: {error}", comm.rank());
+        tell_error(&format!("error on rank {}", comm.rank()), error);
     }
     if comm.size() > 1 && !together {
         comm.abort(error.exit_code());
@@ -120,14 +155,28 @@ fn end(comm: &Comm, error: &Error) -> i32 {
     error.exit_code()
 }
 
+/// Writes to standard error, as far as anyone listens.
+fn tell_error(what: &str, error: &Error) {
+    let _ = writeln!(io::stderr(), "{what}: {error}");
+}
+
+/// Writes to standard output. That a reader has seen enough (`squeal check model.toml | head`) is no error.
+fn tell(text: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::io("standard output".as_ref())(error)),
+        _ => Ok(()),
+    }
+}
+
 /// `-name value` pairs for PETSc's option database.
-fn options(texts: &[String]) -> Result<Vec<(String, String)>> {
-    let mut pairs: Vec<(String, String)> = Vec::new();
+fn petsc_options(texts: &[String]) -> std::result::Result<PetscOptions, String> {
+    let mut pairs = PetscOptions::new();
     for word in texts.iter().flat_map(|text| text.split_whitespace()) {
         match (word.starts_with('-') && word.parse::<f64>().is_err(), pairs.last_mut()) {
             (true, _) => pairs.push((word.into(), String::new())),
             (false, Some((_, value))) if value.is_empty() => *value = word.into(),
-            _ => return Err(Error::input(format!("--petsc takes options like -name value; {word:?} has no -name"))),
+            _ => return Err(format!("--petsc takes options like \"-name value\"; {word:?} has no -name before it")),
         }
     }
     Ok(pairs)

@@ -160,17 +160,40 @@ impl Comm {
         unsafe { sys::MPI_Barrier(self.raw) };
     }
 
-    /// All ranks go on only if each of them may: an error on any rank becomes an error on every rank, so that none is left waiting.
+    /// All ranks go on only if each of them may: the error of the first rank that has one becomes everyone's, so that none is left
+    /// waiting and any of them can tell it.
     ///
     /// # Errors
-    /// The rank's own, or a note that another rank failed (with that rank's exit code kind).
+    /// [`Error::Agreed`]; on one rank its own error.
     pub fn agree<T>(&self, result: Result<T>) -> Result<T> {
-        let own = result.as_ref().err().map_or(0, Error::exit_code);
-        let worst = self.max(f64::from(own));
-        match result {
-            Ok(_) if worst > 0.0 => Err(Error::Elsewhere(worst as i32)),
-            other => other,
+        let own = result.as_ref().err();
+        let speaker = -self.max(own.map_or(f64::NEG_INFINITY, |_| -(self.rank as f64)));
+        if self.size == 1 || speaker.is_infinite() {
+            return result;
         }
+        let code = own.map_or(0, Error::exit_code);
+        let text = own.map_or_else(String::new, ToString::to_string);
+        let speaker = speaker as usize;
+        let code = self.max(if self.rank == speaker { f64::from(code) } else { 0.0 }) as i32;
+        let text = self.broadcast(speaker, text.into_bytes());
+        Err(Error::Agreed { code, text: String::from_utf8_lossy(&text).into_owned() })
+    }
+
+    /// The bytes of one rank, on every rank.
+    fn broadcast(&self, from: usize, mut bytes: Vec<u8>) -> Vec<u8> {
+        let length = if self.rank == from { bytes.len() as f64 } else { 0.0 };
+        bytes.resize(self.max(length) as usize, 0);
+        // SAFETY: the array has the same length on all ranks.
+        unsafe {
+            sys::MPI_Bcast(
+                bytes.as_mut_ptr().cast(),
+                bytes.len() as i32,
+                sys::squeal_type_byte(),
+                from as i32,
+                self.raw,
+            );
+        }
+        bytes
     }
 
     /// Ends all ranks at once with this exit code.
