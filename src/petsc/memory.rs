@@ -1,26 +1,125 @@
-//! What the machine has, against what a factor will take.
+//! What this process may still take, against what a factor will need.
+//!
+//! Three limits hold at once: what the machine has free, what the control group (a container, a batch job) may have, and the
+//! address space of a process (`ulimit -v`). The kernel tells all three under `/proc` and `/sys`; one that it does not tell is
+//! no limit.
+
+use std::fs;
+use std::path::Path;
 
 use super::Comm;
 use crate::{Error, Result};
 
-/// Memory that the kernel could give now, MB; none where it does not say.
-pub fn available_mb() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
-    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
-}
+const MB: f64 = 1024.0 * 1024.0;
 
-/// Refuses a factor that the machine cannot hold. Collective; ranks are taken to share one machine.
+/// Refuses a factor that the ranks together cannot hold. Collective; ranks are taken to share one machine and control group.
 pub(super) fn require(comm: &Comm, needed_mb: f64) -> Result<()> {
-    let available = -comm.max(-available_mb().unwrap_or(f64::INFINITY));
+    let own = machine_mb().unwrap_or(f64::INFINITY).min(group_mb().unwrap_or(f64::INFINITY));
+    let shared = -comm.max(-own);
+    let each = -comm.max(-address_space_mb().unwrap_or(f64::INFINITY));
+    let available = shared.min(each * comm.size() as f64);
     if needed_mb <= available {
         return Ok(());
     }
+    let gigabytes = |mb: f64| format!("{:.2} GB", mb / 1024.0);
+    let whose = if shared <= available { "the machine or its container" } else { "ulimit -v" };
     Err(Error::input(format!(
-        "the factor needs {:.1} GB and {:.1} GB are free: {:.1} GB are missing. A coarser mesh, other programs closed, or a \
+        "too little memory: the factor needs {} and {whose} leaves {}. A coarser mesh, other programs closed, a higher limit or a \
          machine with more memory help",
-        needed_mb / 1024.0,
-        available / 1024.0,
-        (needed_mb - available) / 1024.0
+        gigabytes(needed_mb),
+        gigabytes(available)
     )))
+}
+
+/// Memory that the kernel could give now, MB.
+fn machine_mb() -> Option<f64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    Some(kilobytes(&text, "MemAvailable:")? / 1024.0)
+}
+
+/// Address space that this process may still take, MB.
+fn address_space_mb() -> Option<f64> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: f64 = line.split_whitespace().next()?.parse().ok()?;
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    Some((limit / MB - kilobytes(&status, "VmSize:")? / 1024.0).max(0.0))
+}
+
+/// Memory that this process's control group may still take, MB: the least of its own and its parents' room.
+fn group_mb() -> Option<f64> {
+    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let rooms = groups.lines().filter_map(|line| {
+        let mut fields = line.splitn(3, ':').skip(1);
+        let (controllers, path) = (fields.next()?, fields.next()?);
+        let version = VERSIONS.iter().find(|version| controllers.split(',').any(|name| name == version.controller))?;
+        let parents = Path::new(path.trim_start_matches('/')).ancestors();
+        parents.filter_map(|group| room_mb(&Path::new(version.root).join(group), version)).reduce(f64::min)
+    });
+    rooms.reduce(f64::min)
+}
+
+/// How a version of control groups calls things.
+struct Version {
+    controller: &'static str,
+    root: &'static str,
+    limit: &'static str,
+    used: &'static str,
+    reclaimable: &'static str,
+}
+
+const VERSIONS: [Version; 2] = [
+    Version {
+        controller: "",
+        root: "/sys/fs/cgroup",
+        limit: "memory.max",
+        used: "memory.current",
+        reclaimable: "inactive_file ",
+    },
+    Version {
+        controller: "memory",
+        root: "/sys/fs/cgroup/memory",
+        limit: "memory.limit_in_bytes",
+        used: "memory.usage_in_bytes",
+        reclaimable: "total_inactive_file ",
+    },
+];
+
+/// What a control group may still take, MB. Files that it holds in memory without need do not count as taken.
+fn room_mb(group: &Path, version: &Version) -> Option<f64> {
+    let number = |name| fs::read_to_string(group.join(name)).ok()?.trim().parse::<f64>().ok();
+    let (limit, used) = (number(version.limit)?, number(version.used)?);
+    let statistics = fs::read_to_string(group.join("memory.stat")).unwrap_or_default();
+    let reclaimable = statistics.lines().find_map(|line| line.strip_prefix(version.reclaimable)?.parse::<f64>().ok());
+    Some(((limit - used + reclaimable.unwrap_or(0.0)) / MB).max(0.0))
+}
+
+/// The number of kB after a key.
+fn kilobytes(text: &str, key: &str) -> Option<f64> {
+    let rest = text.lines().find_map(|line| line.strip_prefix(key))?;
+    rest.split_whitespace().next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_groups_room_is_its_limit_less_what_it_needs() {
+        let group = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| fs::write(group.path().join(name), text).unwrap();
+        write("memory.max", "1073741824\n");
+        write("memory.current", "805306368\n");
+        assert_eq!(room_mb(group.path(), &VERSIONS[0]), Some(256.0));
+        write("memory.stat", "anon 1\ninactive_file 268435456\nslab 7\n");
+        assert_eq!(room_mb(group.path(), &VERSIONS[0]), Some(512.0));
+        write("memory.max", "max\n");
+        assert_eq!(room_mb(group.path(), &VERSIONS[0]), None);
+    }
+
+    #[test]
+    fn the_kernel_is_understood() {
+        assert_eq!(kilobytes("MemTotal: 3 kB\nMemAvailable:    2048 kB\n", "MemAvailable:"), Some(2048.0));
+        assert!(machine_mb().is_some_and(|mb| mb > 1.0));
+    }
 }
