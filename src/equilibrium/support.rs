@@ -2,7 +2,8 @@
 //!
 //! Every body of parts that share nodes has six rigid motions `q` about its centroid, rotations scaled by its size. Each
 //! support, connector and closed contact point is a linear functional of them, `s = R q`; motions with `R q = 0` are free.
-//! They are the null space of the Gram matrix `R^T R`.
+//! They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a body along an axis, a contact pair, a connector)
+//! has the same say whatever its number of points and the model's unit of length.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -15,16 +16,23 @@ use crate::mesh::Mesh;
 /// A motion that nothing resists.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeMotion {
-    /// Parts of the body that moves most.
+    /// Parts of the body that the motion is told by.
     pub parts: Vec<String>,
-    /// Translation of its centroid, relative to the largest motion.
+    /// Translation of its centroid, relative to its largest motion.
     pub translation: [f64; 3],
-    /// Rotation times the body's size, relative to the largest motion.
+    /// Rotation times the body's size, relative to its largest motion.
     pub rotation: [f64; 3],
+    /// Parts of the other bodies that it takes along.
+    pub others: Vec<Vec<String>>,
 }
 
-/// Eigenvalues of the Gram matrix below this fraction of the largest count as zero.
-const FREE: f64 = 1e-10;
+/// Eigenvalues of the Gram matrix below this fraction of the largest count as zero: a support that gives way by three
+/// thousandths of the motion. A piston that spins in its bore is resisted by the facets of a coarse mesh with 1e-10 to 1e-6, where
+/// supports give 1e-2 and more.
+const FREE: f64 = 1e-5;
+
+/// A component of a motion that people are told of, relative to the largest.
+const NOTICEABLE: f64 = 0.1;
 
 /// Bodies: parts that share nodes move together.
 struct Bodies {
@@ -105,30 +113,39 @@ pub fn free_motions(mesh: &Mesh, interface: &Interface, held: &[[bool; 3]], link
     let width = 6 * bodies.parts.len();
     let mut gram = DMatrix::<f64>::zeros(width, width);
     let mut row = vec![0.0; width];
-    let mut resist = |fill: &mut dyn FnMut(&mut [f64])| {
+    let mut resist = |weight: f64, fill: &mut dyn FnMut(&mut [f64])| {
         row.fill(0.0);
         fill(&mut row);
         for (i, a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
             for (j, b) in row.iter().enumerate() {
-                gram[(i, j)] += a * b;
+                gram[(i, j)] += weight * a * b;
             }
         }
     };
+    let mut n_held = vec![[0.0; 3]; bodies.parts.len()];
+    for (held, &body) in held.iter().zip(&bodies.of_node) {
+        (0..3).filter(|&i| held[i]).for_each(|i| n_held[body][i] += 1.0);
+    }
     for (node, held) in held.iter().enumerate() {
         for i in (0..3).filter(|&i| held[i]) {
-            resist(&mut |row| bodies.accumulate(row, mesh, node as u32, unit(i)));
+            let weight = 1.0 / n_held[bodies.of_node[node]][i];
+            resist(weight, &mut |row| bodies.accumulate(row, mesh, node as u32, unit(i)));
         }
     }
-    for a in 0..interface.points.len() {
-        for direction in resisted_directions(interface, a) {
-            resist(&mut |row| {
-                interface.trace.spread(a, direction, |node, v| bodies.accumulate(row, mesh, node, v));
-            });
+    for pair in &interface.pairs {
+        for a in pair.points.clone() {
+            for direction in resisted_directions(interface, a) {
+                resist(1.0 / pair.points.len() as f64, &mut |row| {
+                    interface.trace.spread(a, direction, |node, v| bodies.accumulate(row, mesh, node, v));
+                });
+            }
         }
     }
     for link in links {
         for (values, _) in link.motion.rows.iter().zip(link.stiffness).filter(|(_, k)| *k > 0.0) {
-            resist(&mut |row| {
+            // A rotation has the unit 1/m: taken times the size of the node set, it is a displacement as all others are.
+            let size = values.iter().map(|v| v.abs()).sum::<f64>();
+            resist(size.powi(-2), &mut |row| {
                 for (&node, v) in link.nodes.iter().zip(values.chunks_exact(3)) {
                     bodies.accumulate(row, mesh, node, [v[0], v[1], v[2]]);
                 }
@@ -158,26 +175,58 @@ fn null_space(gram: DMatrix<f64>, bodies: &Bodies) -> Vec<FreeMotion> {
     let eigen = SymmetricEigen::new(gram);
     let largest = eigen.eigenvalues.max();
     let free = (0..eigen.eigenvalues.len()).filter(|&i| eigen.eigenvalues[i] <= FREE * largest);
-    free.map(|i| describe(eigen.eigenvectors.column(i).as_slice(), bodies)).collect()
+    let mut basis: Vec<Vec<f64>> = free.map(|i| eigen.eigenvectors.column(i).as_slice().to_vec()).collect();
+    let mut motions: Vec<(usize, &Vec<f64>)> = separate(&mut basis).into_iter().zip(&basis).collect();
+    motions.sort_by_key(|(own, _)| *own);
+    motions.iter().map(|(own, q)| describe(q, own / 6, bodies)).collect()
 }
 
-fn describe(q: &[f64], bodies: &Bodies) -> FreeMotion {
-    let norm = |body: usize| q[6 * body..6 * body + 6].iter().map(|x| x * x).sum::<f64>();
-    let body = (0..bodies.parts.len()).max_by(|&a, &b| norm(a).total_cmp(&norm(b))).expect("a mesh has a part");
+/// Combines the vectors of a basis so that each has a component of its own, which is 1 in it and 0 in all others: "along x" and
+/// "along y" instead of two mixtures. Returns these components. Gauss-Jordan elimination, rotations first, so that a body that turns
+/// about a point is said to turn.
+fn separate(basis: &mut [Vec<f64>]) -> Vec<usize> {
+    let width = basis.first().map_or(0, Vec::len);
+    let rotations_first = (0..width).filter(|i| i % 6 >= 3).chain((0..width).filter(|i| i % 6 < 3));
+    let order: Vec<usize> = rotations_first.collect();
+    let mut own = Vec::new();
+    for done in 0..basis.len() {
+        let largest = |i: usize, basis: &[Vec<f64>]| {
+            let rest = (done..basis.len()).map(|v| (basis[v][i].abs(), v));
+            rest.max_by(|a, b| a.0.total_cmp(&b.0)).expect("a vector is left")
+        };
+        let scale = order.iter().map(|&i| largest(i, basis).0).fold(0.0, f64::max);
+        let is_clear = |i: &&usize| largest(**i, basis).0 > NOTICEABLE * scale;
+        let pivot = *order.iter().find(is_clear).expect("the largest component is clear");
+        basis.swap(done, largest(pivot, basis).1);
+        let factor = basis[done][pivot].recip();
+        basis[done].iter_mut().for_each(|q| *q *= factor);
+        let row = basis[done].clone();
+        for other in (0..basis.len()).filter(|&v| v != done) {
+            let factor = basis[other][pivot];
+            basis[other].iter_mut().zip(&row).for_each(|(q, r)| *q -= factor * r);
+        }
+        own.push(pivot);
+    }
+    own
+}
+
+/// Tells a motion by one body.
+fn describe(q: &[f64], body: usize, bodies: &Bodies) -> FreeMotion {
+    let size = |body: usize| q[6 * body..6 * body + 6].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let own = &q[6 * body..6 * body + 6];
-    let largest = own.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let scaled = |i: usize| own[i] / largest;
+    let scaled = |i: usize| own[i] / size(body);
+    let moved = (0..bodies.parts.len()).filter(|&other| other != body && size(other) > NOTICEABLE * size(body));
     FreeMotion {
         parts: bodies.parts[body].clone(),
         translation: [scaled(0), scaled(1), scaled(2)],
         rotation: [scaled(3), scaled(4), scaled(5)],
+        others: moved.map(|other| bodies.parts[other].clone()).collect(),
     }
 }
 
 impl std::fmt::Display for FreeMotion {
-    /// `backplate_inner + lining_inner moves along x, turns about z`
+    /// `backplate_inner + lining_inner moves along x and turns about z`
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        const NOTICEABLE: f64 = 0.1;
         let axes = |v: [f64; 3]| -> Vec<&str> {
             ["x", "y", "z"].into_iter().zip(v).filter(|(_, c)| c.abs() > NOTICEABLE).map(|(name, _)| name).collect()
         };
@@ -189,6 +238,14 @@ impl std::fmt::Display for FreeMotion {
         if !turns.is_empty() {
             words.push(format!("turns about {}", turns.join(", ")));
         }
-        write!(f, "{} {}", self.parts.join(" + "), words.join(" and "))
+        write!(f, "{} {}", self.parts.join(" + "), words.join(" and "))?;
+        match self.others[..] {
+            [] => Ok(()),
+            _ => write!(
+                f,
+                ", together with {}",
+                self.others.iter().map(|parts| parts.join(" + ")).collect::<Vec<_>>().join(", ")
+            ),
+        }
     }
 }

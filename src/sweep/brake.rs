@@ -1,12 +1,13 @@
 //! From a model file to what is analysed.
 
+use std::fs::File;
 use std::path::Path;
 
 use crate::assembly::{self, Connectivity, Elements, Link, System, Tets};
 use crate::contact::Interface;
 use crate::equilibrium::free_motions;
 use crate::mesh::{self, Mesh};
-use crate::model::{self, Model};
+use crate::model::{self, Model, located};
 use crate::petsc::Comm;
 use crate::{Error, Result};
 
@@ -60,8 +61,17 @@ impl Brake {
             return Ok(());
         }
         let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
+        let open = self.interface.pairs.iter().filter(|pair| pair.separation && pair.statistics.touching == 0);
+        let open: Vec<&str> = open.map(|pair| pair.name.as_str()).collect();
+        let gaps = match open[..] {
+            [] => String::new(),
+            _ => format!(
+                ", or close the gap of {}: a contact that may open holds only where it touches",
+                open.join(", ")
+            ),
+        };
         Err(Error::input(format!(
-            "{}: held by nothing:\n{}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions",
+            "{}: held by nothing:\n{}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
             self.model.file.display(),
             list.join("\n")
         )))
@@ -69,6 +79,11 @@ impl Brake {
 
     fn read_alone(path: &Path) -> Result<Brake> {
         let model = model::read(path)?;
+        if let Err(reason) = File::open(&model.mesh_file) {
+            let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
+            let advice = "Give its path in [mesh] file, relative to the model file";
+            return Err(Error::Input(located(&model.file, model.mesh_line, format!("{what}. {advice}"))));
+        }
         let mesh = mesh::read(&model.mesh_file, model.mesh_unit)?;
         model.check_against(&mesh)?;
         let interface = Interface::build(&model, &mesh)?;
@@ -111,7 +126,7 @@ impl Brake {
         let mut own = self.interface.pairs.iter().filter(|pair| pair.swept).map(|pair| pair.friction);
         own.next().map(|mu| vec![mu]).ok_or_else(|| {
             Error::input(format!(
-                "{}: no contact pair slides, so there is no friction to sweep",
+                "{}: no contact pair slides, so there is no friction to sweep. Add the [[rotation]] of the disc, or give --friction 0",
                 self.model.file.display()
             ))
         })
