@@ -1,5 +1,6 @@
-//! The folder of a run: it appears as a whole or not at all.
+//! The folder of a run: it appears as a whole or not at all, and is replaced only where all in it is ours.
 
+use std::cell::RefCell;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -10,17 +11,20 @@ use crate::{Error, Result};
 pub struct Folder {
     target: PathBuf,
     draft: PathBuf,
+    /// Files written so far.
+    files: RefCell<Vec<String>>,
     done: bool,
 }
 
-/// Marks a folder as one of ours, which `--force` may replace.
-const MARK: &str = "summary.txt";
+/// Marks a folder as one of ours and lists its files, a line each: `--force` removes nothing else.
+const MARK: &str = ".squeal";
 
 impl Folder {
     /// Starts a folder; nothing is created at `target` yet.
     ///
     /// # Errors
-    /// [`Error::Input`] where `target` holds something already, unless it is an earlier run's and `force` is set.
+    /// [`Error::Input`] where `target` holds something already, unless it is an earlier run's, holds nothing else,
+    /// and `force` is set.
     pub fn create(target: &Path, force: bool) -> Result<Folder> {
         Self::may_write(target, force)?;
         let name = target
@@ -28,8 +32,13 @@ impl Folder {
             .and_then(|name| name.to_str())
             .ok_or_else(|| Error::input(format!("{} cannot be an output folder: give it a name", target.display())))?;
         let draft = target.with_file_name(format!(".{name}.partial-{}", std::process::id()));
-        fs::create_dir_all(&draft).map_err(Error::io(&draft))?;
-        Ok(Folder { target: target.to_owned(), draft, done: false })
+        fs::create_dir_all(&draft).map_err(|reason| {
+            Error::input(format!(
+                "cannot create the output folder {}: {reason}. Choose another with --output",
+                target.display()
+            ))
+        })?;
+        Ok(Folder { target: target.to_owned(), draft, files: RefCell::default(), done: false })
     }
 
     /// Whether a run may write to `target`; asked before a long computation.
@@ -42,15 +51,30 @@ impl Folder {
             return Ok(());
         }
         let place = target.display();
-        match (target.join(MARK).exists(), force) {
-            (true, true) => Ok(()),
-            (true, false) => Err(Error::input(format!(
+        if !target.is_dir() {
+            return Err(Error::input(format!("{place} is a file. Choose another output folder with --output")));
+        }
+        let Ok(ours) = fs::read_to_string(target.join(MARK)) else {
+            let what = format!("{place} exists and is not a results folder of squeal");
+            return Err(Error::input(format!("{what}. Choose another with --output")));
+        };
+        if !force {
+            return Err(Error::input(format!(
                 "{place} holds the results of another run. Use --force to replace them, or --output for another folder"
-            ))),
-            (false, _) => Err(Error::input(format!(
-                "{place} exists and is not a results folder of squeal. Choose another with --output"
+            )));
+        }
+        match stranger(target, &ours).map_err(Error::io(target))? {
+            None => Ok(()),
+            Some(name) => Err(Error::input(format!(
+                "{place} holds {name}, which is not of the run before and would be lost. Move it, or choose another folder \
+                 with --output"
             ))),
         }
+    }
+
+    /// The name that the folder will have.
+    pub fn target(&self) -> &Path {
+        &self.target
     }
 
     /// Writes one file of the folder.
@@ -58,6 +82,7 @@ impl Folder {
     /// # Errors
     /// The system's, with the file's path.
     pub fn write(&self, name: &str, body: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
+        self.files.borrow_mut().push(name.to_owned());
         let path = self.draft.join(name);
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(Error::io(parent))?;
@@ -71,6 +96,9 @@ impl Folder {
     /// # Errors
     /// The system's, with the folder's path.
     pub fn finish(mut self) -> Result<()> {
+        let mark = self.draft.join(MARK);
+        let files = self.files.borrow().iter().map(|name| format!("{name}\n")).collect::<String>();
+        fs::write(&mark, files).map_err(Error::io(&mark))?;
         if self.target.exists() {
             fs::remove_dir_all(&self.target).map_err(Error::io(&self.target))?;
         }
@@ -78,6 +106,21 @@ impl Folder {
         self.done = true;
         Ok(())
     }
+}
+
+/// The first entry of a folder that its list of our files does not have.
+fn stranger(folder: &Path, ours: &str) -> std::io::Result<Option<String>> {
+    let is_ours = |name: &str| {
+        let mut files = ours.lines();
+        name == MARK || files.any(|file| file == name || file.split_once('/').is_some_and(|(first, _)| first == name))
+    };
+    for entry in fs::read_dir(folder)? {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        if !is_ours(&name) {
+            return Ok(Some(name));
+        }
+    }
+    Ok(None)
 }
 
 impl Drop for Folder {
@@ -93,20 +136,22 @@ impl Drop for Folder {
 mod tests {
     use super::*;
 
+    const FILE: &str = "summary.txt";
+
     #[test]
     fn a_folder_appears_at_the_end_and_is_replaced_only_by_force() {
         let place = tempfile::tempdir().unwrap();
         let target = place.path().join("run");
         let folder = Folder::create(&target, false).unwrap();
-        folder.write(MARK, |out| writeln!(out, "first")).unwrap();
+        folder.write(FILE, |out| writeln!(out, "first")).unwrap();
         assert!(!target.exists());
         folder.finish().unwrap();
         let message = Folder::create(&target, false).err().unwrap().to_string();
         assert!(message.contains("--force"), "{message}");
         let folder = Folder::create(&target, true).unwrap();
-        folder.write(MARK, |out| writeln!(out, "second")).unwrap();
+        folder.write(FILE, |out| writeln!(out, "second")).unwrap();
         folder.finish().unwrap();
-        assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "second\n");
+        assert_eq!(fs::read_to_string(target.join(FILE)).unwrap(), "second\n");
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
     }
 
@@ -114,7 +159,7 @@ mod tests {
     fn a_failed_run_leaves_nothing() {
         let place = tempfile::tempdir().unwrap();
         let folder = Folder::create(&place.path().join("run"), false).unwrap();
-        folder.write(MARK, |out| writeln!(out, "half")).unwrap();
+        folder.write(FILE, |out| writeln!(out, "half")).unwrap();
         drop(folder);
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
     }
@@ -124,5 +169,10 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         fs::write(place.path().join("thesis.tex"), "").unwrap();
         assert!(Folder::create(place.path(), true).is_err());
+        let target = place.path().join("run");
+        Folder::create(&target, false).unwrap().finish().unwrap();
+        fs::write(target.join("notes.txt"), "").unwrap();
+        let message = Folder::create(&target, true).err().unwrap().to_string();
+        assert!(message.contains("holds notes.txt"), "{message}");
     }
 }
