@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
-use crate::Result;
 use crate::equilibrium::{Balance, Equilibrium};
 use crate::petsc::Vector;
 use crate::report::folder::Folder;
 use crate::report::tables::PairRow;
 use crate::report::vtu::{Cells, Grid, Values};
 use crate::stability::Mode;
+use crate::{Error, Result};
 
 use crate::assembly::System;
 use crate::contact::law::{Response, Status};
@@ -76,7 +76,7 @@ impl State {
     /// Writes volume and contact surface as VTU.
     pub fn write(&self, folder: &Folder, brake: &Brake, responses: &[Response]) -> Result<()> {
         let contact = ContactFields::new(brake, responses);
-        let name = format!("equilibrium_mu{:.3}.vtu", self.friction);
+        let at = friction_name(self.friction);
         let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
         let grid = Grid {
             points: &brake.mesh.nodes,
@@ -84,7 +84,7 @@ impl State {
             point_data: contact.arrays(vec![("displacement", Values::Vectors(&self.u))]),
             cell_data: vec![("part", Values::Integers(&parts))],
         };
-        folder.write(&name, |mut out| grid.write(&mut out))?;
+        folder.write(&format!("equilibrium_mu{at}.vtu"), |mut out| grid.write(&mut out))?;
         let (facets, pairs) = contact_facets(brake);
         let grid = Grid {
             points: &brake.mesh.nodes,
@@ -92,7 +92,7 @@ impl State {
             point_data: contact.arrays(vec![("displacement", Values::Vectors(&self.u))]),
             cell_data: vec![("pair", Values::Integers(&pairs))],
         };
-        folder.write(&format!("contact_mu{:.3}.vtu", self.friction), |mut out| grid.write(&mut out))
+        folder.write(&format!("contact_mu{at}.vtu"), |mut out| grid.write(&mut out))
     }
 }
 
@@ -172,8 +172,20 @@ impl ContactFields {
     }
 }
 
-/// Writes a mode's shape, real and imaginary part. Collective; the root writes.
-pub fn write_mode(folder: Option<&Folder>, brake: &Brake, system: &System, friction: f64, mode: &Mode) -> Result<()> {
+/// A friction as file names have it: three digits, more where those would make two values one.
+fn friction_name(friction: f64) -> String {
+    let short = format!("{friction:.3}");
+    if short.parse() == Ok(friction) { short } else { friction.to_string() }
+}
+
+/// Writes the shape of a mode, real and imaginary part, under its number (from 1). Collective; the root writes.
+pub fn write_mode(
+    folder: Option<&Folder>,
+    brake: &Brake,
+    system: &System,
+    friction: f64,
+    (number, mode): (usize, &Mode),
+) -> Result<()> {
     let shape = system.nodal(&[&mode.re, &mode.im])?;
     let Some(folder) = folder else { return Ok(()) };
     let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
@@ -183,8 +195,13 @@ pub fn write_mode(folder: Option<&Folder>, brake: &Brake, system: &System, frict
         point_data: vec![("real", Values::Vectors(&shape[0])), ("imaginary", Values::Vectors(&shape[1]))],
         cell_data: vec![("part", Values::Integers(&parts))],
     };
-    folder.write(&format!("mode_mu{friction:.3}_{:.0}Hz.vtu", mode.frequency()), |mut out| grid.write(&mut out))
+    // The number keeps modes apart whose frequencies are nearly the same.
+    let name = format!("mode_mu{}_{number:03}_{:.0}Hz.vtu", friction_name(friction), mode.frequency());
+    folder.write(&name, |mut out| grid.write(&mut out))
 }
+
+/// File of the displacement at which a solve gave up.
+pub const LAST_STATE: &str = "last_state.vtu";
 
 /// Writes the displacement at which a solve gave up. Collective; the root writes.
 pub fn write_last(folder: Option<&Folder>, brake: &Brake, system: &System, u: &Vector) -> Result<()> {
@@ -196,7 +213,13 @@ pub fn write_last(folder: Option<&Folder>, brake: &Brake, system: &System, u: &V
         point_data: vec![("displacement", Values::Vectors(&u))],
         cell_data: vec![],
     };
-    folder.write("last_state.vtu", |mut out| grid.write(&mut out))
+    folder.write(LAST_STATE, |mut out| grid.write(&mut out))
+}
+
+/// Writes the summary, which ends with what went wrong; the screen has that as the program's last word.
+pub fn write_summary(folder: &Folder, summary: &str, failure: Option<&Error>) -> Result<()> {
+    let failure = failure.map_or_else(String::new, |error| format!("\nnot converged: {error}\n"));
+    folder.write("summary.txt", |out| out.write_all((summary.to_owned() + &failure).as_bytes()))
 }
 
 /// Turns a CSV error into one of ours.

@@ -26,16 +26,21 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     let system = brake.assemble(comm, &families)?;
     let mut sweep = Sweep::new(&system, &brake.interface)?;
     let (mut modes, mut counts, mut record) = (Vec::new(), Vec::new(), Record::default());
+    let mut failure = None;
     for &friction in &frictions {
         let outcome = sweep.equilibrium(friction, &mut |event| say(&progress, &event));
         let mut equilibrium = match outcome {
             Ok(equilibrium) => equilibrium,
-            Err(error) => return Err(save_last(error, comm, &brake, &system, &sweep, folder)),
+            Err(error) => {
+                record.add_steps(friction, sweep.path().steps());
+                failure = Some(save_last(error, comm, &brake, &system, &sweep, folder.as_ref())?);
+                break;
+            }
         };
         record.add(&brake, &families, &system, &mut equilibrium, folder.as_ref())?;
         let found = sweep.modes(&equilibrium, band, &mut |event| say(&progress, &event))?;
-        for mode in found.modes.iter().filter(|mode| mode.is_unstable()) {
-            results::write_mode(folder.as_ref(), &brake, &system, friction, mode)?;
+        for (i, mode) in found.modes.iter().enumerate().filter(|(_, mode)| mode.is_unstable()) {
+            results::write_mode(folder.as_ref(), &brake, &system, friction, (i + 1, mode))?;
         }
         let rows: Vec<ModeRow> =
             found.modes.iter().enumerate().map(|(i, mode)| ModeRow::new(friction, i, mode)).collect();
@@ -48,18 +53,21 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     if let Some(folder) = folder {
         let place = run.folder("stability");
         let mut summary = format!("{}: complex modes {}-{} Hz\n\n", brake.model.title, band[0], band[1]);
-        summary += &tables::sweep(&modes, &counts);
-        summary += &format!("\n{}\n", tables::verdict(&modes));
+        if !counts.is_empty() {
+            summary += &tables::sweep(&modes, &counts);
+            summary += &format!("\n{}\n", tables::verdict(&modes));
+        }
         summary += &costs_text(&sweep, start.elapsed().as_secs_f64(), comm.size());
-        summary += &files_text(&place.display().to_string());
+        let any_unstable = modes.iter().any(|row| row.unstable);
+        summary += &files_text(&place.display().to_string(), !counts.is_empty(), any_unstable);
         folder.write("modes.csv", |out| tables::modes(out, &modes))?;
         record.write(&folder)?;
         folder.write("details.txt", |out| out.write_all(record.text.as_bytes()))?;
-        folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
+        results::write_summary(&folder, &summary, failure.as_ref())?;
         folder.finish()?;
-        print!("{summary}");
+        super::tell(&summary)?;
     }
-    Ok(())
+    failure.map_or(Ok(()), Err)
 }
 
 /// The modes of one friction value, for people.
@@ -109,9 +117,17 @@ fn costs_text(sweep: &Sweep, seconds: f64, ranks: usize) -> String {
     text
 }
 
-fn files_text(place: &str) -> String {
-    format!(
-        "\nresults:\n  {place}/modes.csv        all modes\n  {place}/contact.csv      contact pairs\n  \
-         {place}/details.txt      equilibria and modes in words\n  {place}/equilibrium_*.vtu, contact_*.vtu, mode_*.vtu for ParaView\n"
-    )
+fn files_text(place: &str, any_equilibrium: bool, any_unstable: bool) -> String {
+    const TABLES: [(&str, &str); 5] = [
+        ("summary.txt", "this text"),
+        ("modes.csv", "all modes"),
+        ("contact.csv", "contact pairs"),
+        ("convergence.csv", "Newton iterations"),
+        ("details.txt", "equilibria and modes in words"),
+    ];
+    let states = [("equilibrium_*.vtu, contact_*.vtu", "displacements and contact, for ParaView")];
+    let shapes = [("mode_*.vtu", "shapes of the unstable modes, for ParaView")];
+    let pictures = states.iter().filter(|_| any_equilibrium).chain(shapes.iter().filter(|_| any_unstable));
+    let lines = TABLES.iter().chain(pictures).map(|(name, what)| format!("  {name:34}{what}\n"));
+    format!("\nresults in {place}:\n{}", lines.collect::<String>())
 }

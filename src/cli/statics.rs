@@ -23,11 +23,16 @@ pub fn run(comm: &Comm, run: &Run) -> Result<()> {
     let system = brake.assemble(comm, &families)?;
     let mut sweep = Sweep::new(&system, &brake.interface)?;
     let mut record = Record { text: format!("{}\n", brake.model.title), ..Record::default() };
+    let mut failure = None;
     for &friction in &frictions {
         let outcome = sweep.equilibrium(friction, &mut |event| say(&progress, &event));
         let mut equilibrium = match outcome {
             Ok(equilibrium) => equilibrium,
-            Err(error) => return Err(save_last(error, comm, &brake, &system, &sweep, folder)),
+            Err(error) => {
+                record.add_steps(friction, sweep.path().steps());
+                failure = Some(save_last(error, comm, &brake, &system, &sweep, folder.as_ref())?);
+                break;
+            }
         };
         record.add(&brake, &families, &system, &mut equilibrium, folder.as_ref())?;
         progress.advance();
@@ -36,11 +41,11 @@ pub fn run(comm: &Comm, run: &Run) -> Result<()> {
     if let Some(folder) = folder {
         record.write(&folder)?;
         let summary = format!("{}results in {}\n", record.text, run.folder("static").display());
-        folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
+        results::write_summary(&folder, &summary, failure.as_ref())?;
         folder.finish()?;
-        print!("{summary}");
+        super::tell(&summary)?;
     }
-    Ok(())
+    failure.map_or(Ok(()), Err)
 }
 
 /// What the equilibria of a run leave behind: the report in words, and rows of the tables.
@@ -66,6 +71,11 @@ impl Record {
         self.rows.extend(state.pair_rows(brake));
         self.steps.extend(equilibrium.steps.drain(..).map(|step| (state.friction, step)));
         folder.map_or(Ok(()), |folder| state.write(folder, brake, &equilibrium.responses))
+    }
+
+    /// Keeps the steps towards an equilibrium that was not reached.
+    pub fn add_steps(&mut self, friction: f64, steps: &[Step]) {
+        self.steps.extend(steps.iter().map(|step| (friction, step.clone())));
     }
 
     /// Writes the tables.
@@ -128,25 +138,21 @@ fn equilibrium_text(brake: &Brake, state: &State, steps: &[Step]) -> String {
     text + &checks.concat()
 }
 
-/// Keeps the state in which a solve gave up, and says where.
+/// Keeps the state in which a solve gave up, and says where. Collective.
+///
+/// # Errors
+/// Any other error as it came, and what went wrong in writing.
 pub fn save_last(
     error: Error,
     comm: &Comm,
     brake: &Brake,
     system: &System,
     sweep: &Sweep,
-    folder: Option<Folder>,
-) -> Error {
-    let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return error };
-    let saved = results::write_last(folder.as_ref(), brake, system, u).and_then(|()| match folder {
-        Some(folder) => {
-            folder.write("summary.txt", |out| writeln!(out, "not converged: {reason}"))?;
-            folder.finish()
-        }
-        None => Ok(()),
-    });
-    match comm.agree(saved) {
-        Ok(()) => Error::NotConverged(format!("{reason}. The last state is in last_state.vtu of the output folder")),
-        Err(_) => error,
-    }
+    folder: Option<&Folder>,
+) -> Result<Error> {
+    let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return Err(error) };
+    comm.agree(results::write_last(folder, brake, system, u))?;
+    let place =
+        folder.map_or_else(String::new, |folder| folder.target().join(results::LAST_STATE).display().to_string());
+    Ok(Error::NotConverged(format!("{reason}. The last state is in {place}")))
 }

@@ -3,7 +3,7 @@
 use super::contacts::Contacts;
 use super::newton::{self, Iteration, Step, Workspace};
 use crate::assembly::System;
-use crate::contact::interface::Interface;
+use crate::contact::interface::{Interface, Pair};
 use crate::contact::{Response, Stage};
 use crate::petsc::{FactorStats, Matrix, Vector};
 
@@ -37,6 +37,8 @@ pub struct Path<'a> {
     /// The equilibrium before `state`, for extrapolation.
     before: Option<(f64, Vector)>,
     steps: Vec<Step>,
+    /// Pairs that may open and are pulled apart where all that touches holds, with the force, N.
+    pulled: Vec<(String, f64)>,
 }
 
 impl<'a> Path<'a> {
@@ -47,7 +49,8 @@ impl<'a> Path<'a> {
     pub fn new(system: &'a System, interface: &'a Interface) -> Result<Path<'a>> {
         let contacts = Contacts::new(interface, system)?;
         let (tangent, factor) = (system.k.duplicate()?, StepFactor::new());
-        Ok(Path { system, contacts, tangent, factor, state: None, before: None, steps: Vec::new() })
+        let (steps, pulled) = (Vec::new(), Vec::new());
+        Ok(Path { system, contacts, tangent, factor, state: None, before: None, steps, pulled })
     }
 
     /// The evaluator of the contact points.
@@ -63,6 +66,11 @@ impl<'a> Path<'a> {
     /// The last converged or attempted displacement, for output after a failure.
     pub fn last(&self) -> Option<&Vector> {
         self.state.as_ref().map(|(_, u)| u)
+    }
+
+    /// The solves since the last equilibrium: those of a step that failed.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
     }
 
     /// The equilibrium at a friction of the swept pairs. `progress` hears of (label, iteration, iterate). Collective.
@@ -101,7 +109,10 @@ impl<'a> Path<'a> {
         for (stage, label) in
             [(Stage::Settle, "settle"), (self.contacts.interface().stage(0.0), "contact without friction at the disc")]
         {
-            let (step, _) = self.newton(&stage, label.into(), &mut u, progress)?;
+            let (step, responses) = self.newton(&stage, label.into(), &mut u, progress)?;
+            if stage == Stage::Settle && step.converged {
+                self.pulled = pulled_apart(self.contacts.interface(), &responses);
+            }
             let converged = step.converged;
             self.steps.push(step);
             if !converged {
@@ -167,14 +178,46 @@ impl<'a> Path<'a> {
     fn failure(&self, friction: f64) -> Error {
         let step = self.steps.last().expect("a failure follows a step");
         let names: Vec<String> = self.contacts.interface().pairs.iter().map(|pair| pair.name.clone()).collect();
-        let history: Vec<String> = step.iterations.iter().map(|it| format!("{:.1e}", it.residual)).collect();
         let flicker = step.flickering(&names).map_or(String::new(), |pair| format!(" Flickering pair: {pair}."));
+        let reached = match &self.state {
+            Some((reached, _)) if *reached != friction => format!(", the last one is at {reached:.3}"),
+            _ => String::new(),
+        };
+        let pulled = self.pulled.iter().map(|(pair, force)| format!(" The loads pull {pair} apart with {force:.1} N."));
+        let advice = if self.pulled.is_empty() {
+            "A finer mesh at the edge of contact, a softer contact law or more stick stiffness may help; `squeal check` shows gaps \
+             and free parts"
+        } else {
+            "Look at the directions of the loads; what is to be pulled needs separation = false"
+        };
         Error::NotConverged(format!(
-            "no equilibrium at friction {friction:.3} (step `{}`). Relative residuals: {}.{flicker} \
-             A finer mesh at the edge of contact, a softer contact law or more stick stiffness may help; `squeal check` shows gaps \
-             and free parts",
+            "no equilibrium at friction {friction:.3} (step `{}`){reached}. Relative residuals: {}.{flicker}{} {advice}",
             step.label,
-            history.join(" ")
+            history(&step.iterations),
+            pulled.collect::<String>()
         ))
     }
+}
+
+/// Residuals of the first and the last iterates, for people.
+fn history(iterations: &[Iteration]) -> String {
+    const SHOWN: usize = 6;
+    let text = |part: &[Iteration]| part.iter().map(|it| format!("{:.1e}", it.residual)).collect::<Vec<_>>().join(" ");
+    if iterations.len() <= 2 * SHOWN {
+        return text(iterations);
+    }
+    let (first, last) = (&iterations[..SHOWN], &iterations[iterations.len() - SHOWN..]);
+    format!("{} ... {} ({} iterations)", text(first), text(last), iterations.len() - 1)
+}
+
+/// The pairs whose settled forces add up to a pull, with that pull, N.
+fn pulled_apart(interface: &Interface, responses: &[Response]) -> Vec<(String, f64)> {
+    let sums = |pair: &Pair| {
+        let forces = responses.get(pair.points.clone()).unwrap_or_default().iter().map(|r| r.normal_force);
+        (forces.clone().sum::<f64>(), forces.map(f64::abs).sum::<f64>())
+    };
+    let pairs = interface.pairs.iter().filter(|pair| pair.separation).map(|pair| (pair, sums(pair)));
+    // A part without load is pulled by rounding alone.
+    let pulled = pairs.filter(|(_, (push, all))| -push > 1e-6 * all);
+    pulled.map(|(pair, (push, _))| (pair.name.clone(), -push)).collect()
 }
