@@ -171,8 +171,18 @@ fn finish(pencil: &Pencil, found: eigen::Found, band: [f64; 2], count: Count, n_
             modes.push(mode);
         }
     }
-    modes.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im).then(a.lambda.re.total_cmp(&b.lambda.re)));
+    sort(&mut modes);
     Ok(Band { modes, count, n_solves })
+}
+
+/// Sorts by frequency; modes of one frequency, such as the growing and the decaying one of a pair, by growth. What counts as one
+/// frequency stands above rounding, so that modes have the same numbers on any number of ranks.
+fn sort(modes: &mut [Mode]) {
+    const SAME: f64 = 1e-9;
+    modes.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im));
+    for same in modes.chunk_by_mut(|a, b| b.lambda.im - a.lambda.im <= SAME * b.lambda.im) {
+        same.sort_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re));
+    }
 }
 
 impl Solver {
