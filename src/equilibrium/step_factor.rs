@@ -56,7 +56,9 @@ impl StepFactor {
 
     fn is_near(&self, budget: usize) -> bool {
         let changed = |old: &Vec<Status>| old.iter().zip(&self.current).filter(|(a, b)| a != b).count();
-        self.made_for.as_ref().is_some_and(|old| ITERATIONS_A_POINT * changed(old) as f64 <= budget as f64)
+        // Of a small matrix a factor costs less than the first iteration.
+        let is_near = |old| ITERATIONS_A_POINT * changed(old) as f64 <= budget as f64;
+        budget > 0 && self.made_for.as_ref().is_some_and(is_near)
     }
 
     pub(super) fn costs(&self) -> (FactorStats, usize) {
