@@ -11,11 +11,14 @@ pub fn parse(text: &str) -> Result<Frictions, String> {
     let values = match text.split(':').collect::<Vec<_>>()[..] {
         [list] => list.split(',').map(number).collect::<Result<Vec<_>, _>>()?,
         [from, to, step] => spaced(number(from)?, number(to)?, number(step)?)
-            .ok_or_else(|| format!("the range {text} is empty or endless"))?,
+            .ok_or_else(|| format!("the range {text} has no value, or too many: give FROM:TO:STEP"))?,
         _ => return Err("expected one value, a list 0.2,0.5 or a range FROM:TO:STEP".into()),
     };
-    match values.iter().find(|mu| !(0.0..=LARGEST_FRICTION).contains(*mu)) {
-        Some(mu) => Err(format!("friction {mu} is out of range: 0 to {LARGEST_FRICTION}")),
+    if let Some(mu) = values.iter().find(|mu| !(0.0..=LARGEST_FRICTION).contains(*mu)) {
+        return Err(format!("friction {mu} is out of range: 0 to {LARGEST_FRICTION}"));
+    }
+    match values.iter().enumerate().find(|(i, mu)| values[..*i].contains(mu)) {
+        Some((_, mu)) => Err(format!("friction {mu} is given twice")),
         None => Ok(Frictions(values)),
     }
 }
@@ -49,7 +52,7 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused_with_a_reason() {
-        for text in ["", "a", "0.1:0.9", "0.1:0.9:-0.1", "0.1:0.9:0", "-0.1", "3", "nan"] {
+        for text in ["", "a", "0.1:0.9", "0.1:0.9:-0.1", "0.1:0.9:0", "-0.1", "3", "nan", "0.4,0.4"] {
             assert!(parse(text).is_err(), "{text}");
         }
         assert!(band("6000:0").is_err() && band("0:0").is_err() && band("5").is_err());

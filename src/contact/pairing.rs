@@ -66,7 +66,7 @@ struct Site<'a> {
 impl Site<'_> {
     /// An input error with the contact's file, line and name.
     fn refuse(&self, reason: &str) -> Error {
-        let message = format!("contact \"{}\": {reason}.", self.contact.name);
+        let message = format!("contact \"{}\": {reason}", self.contact.name);
         Error::Input(located(&self.model.file, self.contact.line, message))
     }
 
@@ -102,14 +102,17 @@ impl Site<'_> {
                  Check that these are the surfaces that meet"
             ));
         }
+        // In the mesh's unit, to a few digits without the noise of the conversion.
+        let length = |x: f64| format!("{:.6e}", x / self.model.mesh_unit).parse::<f64>().unwrap_or(x);
         let limit = self.contact.search_distance.map_or_else(
             || "half an edge of the slave's facets".to_owned(),
-            |distance| format!("the search distance of {distance:.3e} m"),
+            |distance| format!("the search distance {}", length(distance)),
         );
         self.refuse(&format!(
-            "none of the {} points of \"{slave}\" lies within {limit} of \"{master}\"; the closest is {closest:.3e} m \
-             away. Set `search` above that if the surfaces are to touch, else check the mesh's unit and the names",
-            found.dropped.len()
+            "none of the {} points of \"{slave}\" lies within {limit} of \"{master}\"; the closest is {} away, in the mesh's \
+             unit. Set search above that if the surfaces are to touch, else look at the names and the mesh",
+            found.dropped.len(),
+            length(closest)
         ))
     }
 

@@ -62,7 +62,19 @@ fn swept(item: &Item, wanted: Option<&[Text]>, contacts: &[Contact]) -> Result<V
 fn values(item: &Item, raw: &FrictionSweep) -> Result<Vec<f64>> {
     match (&raw.values, &raw.from, &raw.to, &raw.step) {
         (Some(values), None, None, None) if !values.is_empty() => {
-            values.iter().map(|value| friction(item, value)).collect()
+            let mut seen: Vec<f64> = Vec::new();
+            for value in values {
+                let mu = friction(item, value)?;
+                if seen.contains(&mu) {
+                    return Err(item.error(
+                        &value.span(),
+                        format_args!("friction {mu} is given twice"),
+                        "Keep one of them",
+                    ));
+                }
+                seen.push(mu);
+            }
+            Ok(seen)
         }
         (None, Some(from), Some(to), Some(step)) => range(item, from, to, step),
         _ => Err(item.error_here("the values of the friction are not given, or given twice", RANGE)),

@@ -91,7 +91,8 @@ fn known_part(item: &Item, name: &str, span: &Span, parts: &[Part]) -> Result<()
         return Ok(());
     }
     let advice = names::advice(name, parts.iter().map(|part| part.name.as_str()));
-    Err(item.error(span, format_args!("unknown part {name:?}"), advice))
+    let what = format_args!("there is no [part.{name}]");
+    Err(item.error(span, what, format_args!("{advice}; or add it")))
 }
 
 fn rotation(item: &Item, raw: &keys::Rotation, unit: f64) -> Result<Rotation> {
@@ -100,12 +101,14 @@ fn rotation(item: &Item, raw: &keys::Rotation, unit: f64) -> Result<Rotation> {
         None => [0.0; 3],
     };
     let advice = "Give rad/s, such as 5.0; its sign is the sense of rotation";
-    let turning = *raw.speed.get_ref() != 0.0;
+    if *raw.speed.get_ref() == 0.0 {
+        return Err(item.error(&raw.speed.span(), "speed is 0, so that nothing turns", advice));
+    }
     Ok(Rotation {
         part: raw.part.get_ref().clone(),
         axis: item.direction(&raw.axis, "axis")?,
         through: through.map(|x| x * unit),
-        speed: item.check(&raw.speed, turning, "speed", "must not be 0", advice)?,
+        speed: item.check(&raw.speed, true, "speed", "must be finite", advice)?,
         line: item.line(),
     })
 }

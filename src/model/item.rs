@@ -61,7 +61,7 @@ impl<'a> Item<'a> {
         if number.is_finite() && holds {
             return Ok(number);
         }
-        Err(self.error(&value.span(), format_args!("{key} {must}, not {number}"), advice))
+        Err(self.error(&value.span(), format_args!("{key} {must}, not {}", self.source.text_at(&value.span())), advice))
     }
 
     /// Numbers that are finite.

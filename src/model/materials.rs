@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
     }
 
     fn isotropic(&self) -> Result<Matrix6<f64>> {
-        let young = self.item.positive(&self.one(&self.raw.young, "young")?, "young", YOUNG)?;
+        let young = self.item.positive(&self.one(&self.raw.young, "young", YOUNG)?, "young", YOUNG)?;
         let poisson = self.poisson()?;
         self.invert(&elasticity::isotropic_compliance(young, poisson))
     }
@@ -111,7 +111,7 @@ impl<'a> Reader<'a> {
         let ratio = item.required(&raw.poisson_axial, "poisson_axial", advice)?;
         let shear = item.required(&raw.shear_axial, "shear_axial", SHEAR)?;
         let constants = Transverse {
-            young: item.positive(&self.one(&raw.young, "young")?, "young", YOUNG)?,
+            young: item.positive(&self.one(&raw.young, "young", YOUNG)?, "young", YOUNG)?,
             young_axial: item.positive(axial, "young_axial", YOUNG)?,
             poisson: self.in_plane_poisson()?,
             poisson_axial: item.check(ratio, true, "poisson_axial", "must be finite", advice)?,
@@ -136,14 +136,23 @@ impl<'a> Reader<'a> {
         let advice = "Give six rows of six numbers in Pa, in the order xx yy zz xy yz zx";
         let rows = self.item.required(&self.raw.elasticity, "elasticity", advice)?;
         let C = Matrix6::from_fn(|i, j| rows.get_ref()[i][j]);
-        let is_finite = C.iter().all(|c| c.is_finite());
-        if !is_finite || (C - C.transpose()).amax() > 1e-6 * C.amax() {
-            let what = "elasticity is not symmetric, or not finite";
+        if !C.iter().all(|c| c.is_finite()) {
+            return Err(self.item.error(&rows.span(), "elasticity is not finite", advice));
+        }
+        let differs = |&(i, j): &(usize, usize)| (C[(i, j)] - C[(j, i)]).abs() > 1e-6 * C.amax();
+        if let Some((i, j)) = (0..6).flat_map(|i| (0..i).map(move |j| (j, i))).find(differs) {
+            let (row, column) = (i + 1, j + 1);
+            let what = format!(
+                "elasticity is not symmetric: {:e} in row {row}, column {column}, {:e} in row {column}, column {row}",
+                C[(i, j)],
+                C[(j, i)]
+            );
             return Err(self.item.error(&rows.span(), what, advice));
         }
         let C = elasticity::symmetric(&C);
         if !elasticity::is_positive_definite(&C) {
             let what = "elasticity is not positive definite: some strain would have no or negative energy";
+            let advice = "Look at signs, powers of ten and the order xx yy zz xy yz zx";
             return Err(self.item.error(&rows.span(), what, advice));
         }
         Ok(elasticity::rotate(&C, &self.axes()?))
@@ -160,23 +169,23 @@ impl<'a> Reader<'a> {
     }
 
     fn poisson(&self) -> Result<f64> {
-        let poisson = self.one(&self.raw.poisson, "poisson")?;
-        let nu = *poisson.get_ref();
         let advice = "Give Poisson's ratio, such as 0.3";
+        let poisson = self.one(&self.raw.poisson, "poisson", advice)?;
+        let nu = *poisson.get_ref();
         self.item.check(&poisson, -1.0 < nu && nu < 0.5, "poisson", "must be above -1 and below 0.5", advice)
     }
 
     /// Within a plane the ratio may come up to 1.
     fn in_plane_poisson(&self) -> Result<f64> {
-        let poisson = self.one(&self.raw.poisson, "poisson")?;
-        let nu = *poisson.get_ref();
         let advice = "Give Poisson's ratio within the plane, such as 0.3";
+        let poisson = self.one(&self.raw.poisson, "poisson", advice)?;
+        let nu = *poisson.get_ref();
         self.item.check(&poisson, -1.0 < nu && nu < 1.0, "poisson", "must be above -1 and below 1", advice)
     }
 
     /// The single number that this kind of material has under a key.
-    fn one(&self, value: &Option<Spanned<OneOrThree>>, key: &str) -> Result<Number> {
-        let value = self.item.required(value, key, "Give a number")?;
+    fn one(&self, value: &Option<Spanned<OneOrThree>>, key: &str, advice: &str) -> Result<Number> {
+        let value = self.item.required(value, key, advice)?;
         match *value.get_ref() {
             OneOrThree::One(number) => Ok(Spanned::new(value.span(), number)),
             OneOrThree::Three(_) => {

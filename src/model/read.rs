@@ -1,7 +1,7 @@
 //! From the file to the model: one step a table, in an order in which names are known before they are used.
 
 use super::item::Item;
-use super::source::Source;
+use super::source::{Source, located};
 use super::{Model, analysis, bodies, contacts, keys, loads, materials, names};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -16,9 +16,20 @@ const UNITS: [(&str, f64); 6] = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 
 /// # Errors
 /// [`Error::Input`], `file:line: what (item). what to do`, for the first thing that is wrong.
 pub fn read(path: &Path) -> Result<Model> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|reason| Error::input(format!("{}: cannot read the model file: {reason}", path.display())))?;
-    parse(&text, path)
+    let place = path.display();
+    let bytes = std::fs::read(path).map_err(|reason| {
+        let advice =
+            if path.is_dir() { "Name the model file in it" } else { "Name the model file, such as brake.toml" };
+        Error::input(format!("{place}: cannot read the model file: {reason}. {advice}"))
+    })?;
+    if bytes.starts_with(b"$MeshFormat") {
+        return Err(Error::input(format!("{place} is a mesh. Name the model file that has it as [mesh] file")));
+    }
+    let text = std::str::from_utf8(&bytes).map_err(|reason| {
+        let line = 1 + bytes[..reason.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
+        Error::input(located(path, line, "here is a byte that is not UTF-8. Save the model file as UTF-8 text"))
+    })?;
+    parse(text, path)
 }
 
 /// Checks the text of a model file; `file` is what messages call it, and its folder is where the mesh is looked for.

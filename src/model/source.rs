@@ -31,6 +31,11 @@ impl Source<'_> {
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
     }
 
+    /// What stands at a place, as the user wrote it.
+    pub fn text_at(&self, span: &Span) -> &str {
+        self.text.get(span.clone()).unwrap_or_default()
+    }
+
     /// An error at a place of the file.
     pub fn error(&self, span: &Span, message: impl Display) -> Error {
         Error::Input(located(self.file, self.line(span.start), message))

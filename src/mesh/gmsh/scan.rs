@@ -10,6 +10,8 @@ pub struct Scan<'a> {
     file: &'a Path,
     bytes: &'a [u8],
     at: usize,
+    /// Where the last thing read began, which errors are about.
+    last: usize,
     /// Whether numbers are bytes.
     pub binary: bool,
     section: &'a str,
@@ -18,20 +20,21 @@ pub struct Scan<'a> {
 impl<'a> Scan<'a> {
     /// At the beginning of a file's bytes, reading text.
     pub fn new(file: &'a Path, bytes: &'a [u8]) -> Self {
-        Scan { file, bytes, at: 0, binary: false, section: "" }
+        Scan { file, bytes, at: 0, last: 0, binary: false, section: "" }
     }
 
-    /// An error here: `file:line: message`, or with the byte's offset in a binary file.
+    /// An error at what was read last: `file:line: message`, or with the byte's offset in a binary file.
     pub fn error(&self, message: impl Display) -> Error {
         let file = self.file.display();
         if self.binary {
-            return Error::Input(format!("{file}: byte {}: {message}", self.at));
+            return Error::Input(format!("{file}: byte {}: {message}", self.last));
         }
-        let line = 1 + self.bytes[..self.at].iter().filter(|&&byte| byte == b'\n').count();
+        let line = 1 + self.bytes[..self.last].iter().filter(|&&byte| byte == b'\n').count();
         Error::Input(format!("{file}:{line}: {message}"))
     }
 
-    fn truncated(&self) -> Error {
+    fn truncated(&mut self) -> Error {
+        self.last = self.at;
         let section = self.section;
         self.error(format_args!("the file ends inside ${section}. It is truncated: write the mesh again"))
     }
@@ -39,6 +42,7 @@ impl<'a> Scan<'a> {
     /// Goes into the next section and says its name; none at the end of the file.
     pub fn open_section(&mut self) -> Result<Option<&'a str>> {
         self.skip_space();
+        self.last = self.at;
         if self.at == self.bytes.len() {
             return Ok(None);
         }
@@ -61,6 +65,7 @@ impl<'a> Scan<'a> {
         if self.at == self.bytes.len() {
             return Err(self.truncated());
         }
+        self.last = self.at;
         let (section, rest) = (self.section, &self.bytes[self.at..]);
         let end = rest.strip_prefix(b"$End").and_then(|rest| rest.strip_prefix(section.as_bytes()));
         if end.is_none() {
@@ -85,6 +90,7 @@ impl<'a> Scan<'a> {
 
     /// The rest of the line as text.
     pub fn line(&mut self) -> Result<&'a str> {
+        self.last = self.at;
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
         let line = std::str::from_utf8(&rest[..end]);
@@ -118,6 +124,7 @@ impl<'a> Scan<'a> {
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
+        self.last = self.at;
         match self.bytes[self.at..].first_chunk() {
             Some(chunk) => {
                 self.at += N;
@@ -129,6 +136,7 @@ impl<'a> Scan<'a> {
 
     fn word<T: FromStr>(&mut self, expected: &str) -> Result<T> {
         self.skip_space();
+        self.last = self.at;
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         if end == 0 {

@@ -155,7 +155,7 @@ fn other_files_and_versions_are_named() {
     let error = super::read(Path::new("no/such.msh"), 1.0).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().starts_with("no/such.msh: cannot read the mesh: No such file"));
-    assert!(said(b"*HEADING\n").contains("bad.msh:2: expected a section such as $Nodes, found \"*HEADING\""));
+    assert!(said(b"*HEADING\n").contains("bad.msh:1: expected a section such as $Nodes, found \"*HEADING\""));
     assert!(said(b"").contains("does not begin with $MeshFormat"));
     complains("4.1 0 8", "2.2 0 8", "Gmsh's format 2.2, not 4.1. Save it as 4.1");
     complains("$Nodes", "$PartitionedEntities", "the mesh is partitioned. Save the mesh unpartitioned");

@@ -54,7 +54,7 @@ fn missing_keys_say_what_to_add() {
         "[material.iron]\nyoung = 110e9",
         "[material.iron]",
         0,
-        "young is missing (material \"iron\"). Give a number",
+        "young is missing (material \"iron\"). Give Pa, such as 110e9",
     );
 }
 
@@ -87,7 +87,8 @@ fn the_unit_must_be_known() {
 fn names_within_the_file_must_exist() {
     let said = "unknown material \"irn\" (part \"disc\"). Did you mean \"iron\"? There is: iron, lining";
     complains("material = \"iron\"", "material = \"irn\"", 0, said);
-    let said = "unknown part \"disk\" (rotation of \"disk\"). Did you mean \"disc\"? There is: disc, a_pad";
+    let said =
+        "there is no [part.disk] (rotation of \"disk\"). Did you mean \"disc\"? There is: disc, a_pad; or add it";
     complains("part = \"disc\"", "part = \"disk\"", 0, said);
     let said = parsed(&GOOD.replace("contacts = [\"pair\"]", "contacts = [\"par\"]")).unwrap_err();
     assert!(said.ends_with(":48: unknown contact \"par\" (sweep). Did you mean \"pair\"? There is: pair"), "{said}");

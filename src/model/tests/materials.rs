@@ -8,7 +8,7 @@ fn impossible_constants_are_refused() {
         "young = 110e9",
         "young = -110e9",
         0,
-        "young must be above 0, not -110000000000 (material \"iron\"). Give Pa, such as 110e9",
+        "young must be above 0, not -110e9 (material \"iron\"). Give Pa, such as 110e9",
     );
     complains(
         "poisson = 0.27",
@@ -26,7 +26,7 @@ fn impossible_constants_are_refused() {
         "density = 2600",
         "density = nan",
         0,
-        "density must be above 0, not NaN (material \"lining\"). Give kg/m3, such as 7850",
+        "density must be above 0, not nan (material \"lining\"). Give kg/m3, such as 7850",
     );
     complains(
         "axis = [0, 0, 2]",
@@ -72,7 +72,7 @@ fn full_matrices_must_be_symmetric_and_positive_definite() {
     let said = with("[1,0.1,0,0,0,0]", "").unwrap_err();
     assert!(said.contains(":7: elasticity is not symmetric"), "{said}");
     let said = with("[nan,0,0,0,0,0]", "").unwrap_err();
-    assert!(said.contains(":7: elasticity is not symmetric, or not finite"), "{said}");
+    assert!(said.contains(":7: elasticity is not finite"), "{said}");
     let said = with("[-1,0,0,0,0,0]", "").unwrap_err();
     assert!(said.contains(":7: elasticity is not positive definite"), "{said}");
     let said = with("[1,0,0,0,0,0]", "x_axis = [1,0,0]").unwrap_err();

@@ -13,8 +13,7 @@ fn fixes_and_rotations_are_checked() {
     }
     let said = "axis has no direction: it is zero (rotation of \"disc\"). Give a vector such as [0, 0, 1]";
     complains("axis = [0, 3, 4]", "axis = [0, 0, 0]", 0, said);
-    let said =
-        "speed must not be 0, not 0 (rotation of \"disc\"). Give rad/s, such as 5.0; its sign is the sense of rotation";
+    let said = "speed is 0, so that nothing turns (rotation of \"disc\"). Give rad/s, such as 5.0; its sign is the sense of rotation";
     complains("speed = -5", "speed = 0", 0, said);
 }
 
