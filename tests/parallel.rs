@@ -1,0 +1,109 @@
+//! Several ranks: the same answers as one, and no rank left waiting when another fails.
+
+mod program;
+
+use std::time::{Duration, Instant};
+
+use program::{Place, Said, mpirun};
+use squeal::petsc::Session;
+
+/// Rows of a CSV file as numbers; texts are left out.
+fn numbers(table: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split(',').filter_map(|field| field.parse().ok()).collect();
+    table.lines().skip(1).map(row).collect()
+}
+
+/// Frequency (Hz) and growth rate (1/s) of all modes, and the contact table, on some ranks.
+fn stability(ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let place = Place::pads();
+    let arguments = ["stability", "brake.toml", "--band", "0:3000", "-o", "run"];
+    let Said { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
+    assert_eq!(code, 0, "{err}");
+    let modes = numbers(&place.read("run/modes.csv")).iter().map(|row| [row[2], row[3]]).collect();
+    (modes, numbers(&place.read("run/contact.csv")).concat())
+}
+
+#[test]
+fn two_and_three_ranks_find_what_one_finds() {
+    let (modes, contact) = stability(1);
+    assert!(modes.iter().any(|[_, growth]| *growth > 1.0), "a pair flutters: {modes:?}");
+    for ranks in [2, 3] {
+        let (others, other_contact) = stability(ranks);
+        assert_eq!(others.len(), modes.len());
+        for ([f, s], [g, t]) in modes.iter().zip(&others) {
+            let omega = std::f64::consts::TAU * f;
+            let difference = (std::f64::consts::TAU * (f - g)).hypot(s - t);
+            assert!(difference <= 1e-9 * omega, "{f} Hz {s} /s on one rank, {g} Hz {t} /s on {ranks}");
+        }
+        assert_eq!(other_contact.len(), contact.len());
+        for (a, b) in contact.iter().zip(&other_contact) {
+            assert!((a - b).abs() <= 1e-9 * a.abs(), "{a} on one rank, {b} on {ranks}");
+        }
+    }
+}
+
+/// Runs one of the tests below, which are told apart from tests by `ignore`, on two ranks.
+fn on_two_ranks(name: &str) -> Said {
+    let start = Instant::now();
+    let mut command = mpirun(2, &std::env::current_exe().unwrap());
+    let said = command.args(["--exact", name, "--ignored", "--nocapture", "--test-threads=1"]).output().unwrap().into();
+    assert!(start.elapsed() < Duration::from_secs(60), "{name} hung");
+    said
+}
+
+#[test]
+fn a_panic_on_one_rank_ends_all() {
+    let said = on_two_ranks("rank_one_panics");
+    assert_eq!(said.code, 101, "{}", said.err);
+    assert!(said.err.contains("rank 1 has a bug"), "{}", said.err);
+}
+
+#[test]
+fn an_error_of_the_library_on_one_rank_ends_all() {
+    let said = on_two_ranks("rank_one_fails");
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert!(said.err.contains("error on rank 1: MUMPS has a bug"), "{}", said.err);
+}
+
+#[test]
+fn an_input_error_on_one_rank_is_told_once_by_the_first() {
+    let said = on_two_ranks("rank_one_misses_a_file");
+    assert_eq!(said.code, 2, "{}", said.err);
+    assert_eq!(said.err.matches("error: rank 1 has no such file").count(), 1, "{}", said.err);
+}
+
+/// Runs `work` as the program runs a command, while the other rank waits for this one.
+fn as_the_program(work: fn() -> squeal::Result<()>) -> ! {
+    let comm = Session::start(&[]).unwrap();
+    let code = squeal::cli::guard(&comm, || {
+        if comm.rank() == 1 {
+            work()?;
+        }
+        comm.barrier();
+        Ok(())
+    });
+    drop(comm);
+    std::process::exit(code)
+}
+
+#[test]
+#[ignore = "one of the ranks of a_panic_on_one_rank_ends_all"]
+fn rank_one_panics() {
+    as_the_program(|| panic!("rank 1 has a bug"))
+}
+
+#[test]
+#[ignore = "one of the ranks of an_error_of_the_library_on_one_rank_ends_all"]
+fn rank_one_fails() {
+    as_the_program(|| Err(squeal::Error::Library("MUMPS has a bug".into())))
+}
+
+#[test]
+#[ignore = "one of the ranks of an_input_error_on_one_rank_is_told_once_by_the_first"]
+fn rank_one_misses_a_file() {
+    let comm = Session::start(&[]).unwrap();
+    let own = if comm.rank() == 1 { Err(squeal::Error::input("rank 1 has no such file")) } else { Ok(()) };
+    let code = squeal::cli::guard(&comm, || comm.agree(own));
+    drop(comm);
+    std::process::exit(code)
+}
