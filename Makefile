@@ -27,7 +27,7 @@ test: setup meshes/build/brake-small.msh ## all tests
 	cargo nextest run --workspace --release
 
 full: setup build meshes/build/brake-full.msh ## the paper's size: 177 thousand nodes on $(RANKS) ranks
-	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force
+	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force --verbose
 
 bench: setup meshes/build/brake-medium.msh ## seconds, entries and memory of assembly, factorisation and eigensolution
 	cargo bench --bench path
@@ -56,4 +56,4 @@ meshes/build/brake-%.msh: meshes/brake.geo | setup
 	gmsh -3 $< -setnumber size $(size_$*) -o $@ > $@.log
 
 results/demo/summary.txt: $(BINARY) meshes/brake-medium.toml meshes/build/brake-medium.msh
-	$(BINARY) stability meshes/brake-medium.toml --friction 0.1:0.9:0.1 --output results/demo --force
+	$(MPIRUN) $(BINARY) stability meshes/brake-medium.toml --friction 0.1:0.9:0.1 --output results/demo --force --verbose > /dev/null

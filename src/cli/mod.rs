@@ -70,6 +70,9 @@ struct Run {
     /// Replace the results of an earlier run
     #[arg(long)]
     force: bool,
+    /// Tell of each finished friction on a line of standard error, with the time left (a terminal shows a bar anyway)
+    #[arg(short, long)]
+    verbose: bool,
 }
 
 impl Run {

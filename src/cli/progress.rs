@@ -1,6 +1,6 @@
-//! What a person at a terminal sees of long work; nothing where standard error is not a terminal.
+//! What a person sees of long work: a bar where standard error is a terminal, else lines if they were asked for, else nothing.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -9,16 +9,19 @@ use crate::petsc::Comm;
 /// A line that tells stage, detail and elapsed time, with a bar over the values of a sweep.
 pub struct Progress {
     bar: ProgressBar,
+    start: Instant,
+    /// Whether finished values are told on lines of their own.
+    lines: bool,
 }
 
 impl Progress {
     /// Shows `n` values to come; on the first rank only.
-    pub fn new(comm: &Comm, n: usize) -> Progress {
+    pub fn new(comm: &Comm, n: usize, verbose: bool) -> Progress {
         let bar = if comm.is_root() { ProgressBar::new(n as u64) } else { ProgressBar::hidden() };
         let template = "{spinner} [{elapsed}] {wide_bar} {pos}/{len} {msg} {eta} left";
         bar.set_style(ProgressStyle::with_template(template).expect("a valid template"));
         bar.enable_steady_tick(Duration::from_millis(200));
-        Progress { bar }
+        Progress { bar, start: Instant::now(), lines: verbose && comm.is_root() }
     }
 
     /// Says what is being done.
@@ -26,9 +29,15 @@ impl Progress {
         self.bar.set_message(message.into());
     }
 
-    /// One more value is done.
-    pub fn advance(&self) {
+    /// One more value is done, which the text describes.
+    pub fn advance(&self, done: &str) {
         self.bar.inc(1);
+        let (position, length) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let elapsed = self.start.elapsed().as_secs_f64();
+        let left = elapsed / position as f64 * length.saturating_sub(position) as f64;
+        if self.lines {
+            self.bar.suspend(|| eprintln!("[{elapsed:.0} s] {position}/{length} {done}; about {left:.0} s left"));
+        }
     }
 
     /// Removes the bar.

@@ -20,7 +20,7 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
     let band = band.unwrap_or(brake.model.band);
     let folder = results::folder(comm, run, "stability")?;
-    let progress = Progress::new(comm, frictions.len());
+    let progress = Progress::new(comm, frictions.len(), run.verbose);
     progress.say("assembling");
     let families = brake.families()?;
     let system = brake.assemble(comm, &families)?;
@@ -45,9 +45,10 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
         let rows: Vec<ModeRow> =
             found.modes.iter().enumerate().map(|(i, mode)| ModeRow::new(friction, i, mode)).collect();
         record.text += &modes_text(&rows, &found.count, found.n_solves);
+        let n_unstable = rows.iter().filter(|row| row.unstable).count();
         modes.extend(rows);
         counts.push((friction, found.count));
-        progress.advance();
+        progress.advance(&format!("friction {friction:.3}: {} modes, {n_unstable} unstable", found.modes.len()));
     }
     progress.finish();
     if let Some(folder) = folder {

@@ -17,7 +17,7 @@ pub fn run(comm: &Comm, run: &Run) -> Result<()> {
     brake.require_held()?;
     let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
     let folder = results::folder(comm, run, "static")?;
-    let progress = Progress::new(comm, frictions.len());
+    let progress = Progress::new(comm, frictions.len(), run.verbose);
     progress.say("assembling");
     let families = brake.families()?;
     let system = brake.assemble(comm, &families)?;
@@ -35,7 +35,7 @@ pub fn run(comm: &Comm, run: &Run) -> Result<()> {
             }
         };
         record.add(&brake, &families, &system, &mut equilibrium, folder.as_ref())?;
-        progress.advance();
+        progress.advance(&format!("friction {friction:.3}: equilibrium"));
     }
     progress.finish();
     if let Some(folder) = folder {
