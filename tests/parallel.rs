@@ -16,7 +16,7 @@ fn numbers(table: &str) -> Vec<Vec<f64>> {
 /// Frequency (Hz) and growth rate (1/s) of all modes, and the contact table, on some ranks.
 fn stability(ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let place = Place::pads();
-    let arguments = ["stability", "brake.toml", "--band", "0:3000", "-o", "run"];
+    let arguments = ["stability", "brake.toml", "--band", "0:1500", "-o", "run"];
     let Said { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
     assert_eq!(code, 0, "{err}");
     let modes = numbers(&place.read("run/modes.csv")).iter().map(|row| [row[2], row[3]]).collect();

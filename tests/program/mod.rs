@@ -28,11 +28,12 @@ pub fn mpirun(ranks: usize, program: &Path) -> Command {
     command
 }
 
-/// One thread a rank, no backtraces, and no way of copying between processes that containers forbid.
+/// One thread a rank, which leaves its core to others while it waits; no backtraces, and no way of copying between processes that
+/// containers forbid.
 fn quiet(command: &mut Command) {
     command.timeout(Duration::from_secs(PATIENCE));
     command.env("OPENBLAS_NUM_THREADS", "1").env("RUST_BACKTRACE", "0");
-    command.env("OMPI_MCA_btl_vader_single_copy_mechanism", "none");
+    command.env("OMPI_MCA_btl_vader_single_copy_mechanism", "none").env("OMPI_MCA_mpi_yield_when_idle", "1");
 }
 
 /// What a run said.
