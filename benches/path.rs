@@ -65,16 +65,18 @@ fn main() -> squeal::Result<()> {
     let equilibrium = sweep.equilibrium(0.5, &mut ignore)?;
     let next = sweep.equilibrium(0.6, &mut ignore)?;
     let band = sweep.modes(&next, brake.model.band, &mut ignore)?;
-    let [statics, modes] = sweep.seconds();
+    let costs = sweep.costs();
     let iterations = |steps: &[squeal::equilibrium::Step]| steps.iter().map(|s| s.iterations.len() - 1).sum::<usize>();
     tell(format!(
-        "equilibria at 0.5 and 0.6       {statics:8.2} s  {} and {} Newton steps, {} factorisations",
+        "equilibria at 0.5 and 0.6       {:8.2} s  {} and {} Newton steps, {} factorisations",
+        costs.equilibria_seconds,
         iterations(&equilibrium.steps),
         iterations(&next.steps),
-        sweep.costs()[0].n_factorisations
+        costs.tangent.n_factorisations
     ));
     tell(format!(
-        "modes of the band               {modes:8.2} s  {} modes, {} solves",
+        "modes of the band               {:8.2} s  {} modes, {} solves",
+        costs.modes_seconds,
         band.modes.len(),
         band.n_solves
     ));

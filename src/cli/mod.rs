@@ -6,6 +6,7 @@ mod progress;
 mod results;
 mod stability;
 mod statics;
+mod study;
 
 use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};

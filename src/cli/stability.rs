@@ -6,69 +6,44 @@ use crate::Result;
 use crate::petsc::{Comm, ORDERING};
 use crate::report::tables::{self, ModeRow};
 use crate::stability::Count;
-use crate::sweep::{Brake, Sweep};
+use crate::sweep::Costs;
 
 use super::Run;
-use super::progress::Progress;
 use super::results;
-use super::statics::{Record, save_last, say};
+use super::study::Study;
 
 pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     let start = Instant::now();
-    let brake = Brake::read(comm, &run.model)?;
-    brake.require_held()?;
-    let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
-    let band = band.unwrap_or(brake.model.band);
-    let folder = results::folder(comm, run, "stability")?;
-    let progress = Progress::new(comm, frictions.len(), run.verbose);
-    progress.say("assembling");
-    let families = brake.families()?;
-    let system = brake.assemble(comm, &families)?;
-    let mut sweep = Sweep::new(&system, &brake.interface)?;
-    let (mut modes, mut counts, mut record) = (Vec::new(), Vec::new(), Record::default());
-    let mut failure = None;
-    for &friction in &frictions {
-        let outcome = sweep.equilibrium(friction, &mut |event| say(&progress, &event));
-        let mut equilibrium = match outcome {
-            Ok(equilibrium) => equilibrium,
-            Err(error) => {
-                record.add_steps(friction, sweep.path().steps());
-                failure = Some(save_last(error, comm, &brake, &system, &sweep, folder.as_ref())?);
-                break;
+    let study = Study::new(comm, run, "stability")?;
+    let band = band.unwrap_or(study.brake.model.band);
+    let (mut modes, mut counts) = (Vec::new(), Vec::new());
+    let outcome = study.run(comm, |visit| {
+        let (friction, n_before) = (visit.equilibrium.friction, modes.len());
+        let found = visit.sweep.modes(visit.equilibrium, band, &mut |event| visit.study.say(&event))?;
+        for (i, mode) in found.modes.iter().enumerate() {
+            modes.push(ModeRow::new(friction, i, mode));
+            if mode.is_unstable() {
+                let (folder, brake) = (visit.study.folder.as_ref(), &visit.study.brake);
+                results::write_mode(folder, brake, visit.system, friction, (i + 1, mode))?;
             }
-        };
-        record.add(&brake, &families, &system, &mut equilibrium, folder.as_ref())?;
-        let found = sweep.modes(&equilibrium, band, &mut |event| say(&progress, &event))?;
-        for (i, mode) in found.modes.iter().enumerate().filter(|(_, mode)| mode.is_unstable()) {
-            results::write_mode(folder.as_ref(), &brake, &system, friction, (i + 1, mode))?;
         }
-        let rows: Vec<ModeRow> =
-            found.modes.iter().enumerate().map(|(i, mode)| ModeRow::new(friction, i, mode)).collect();
-        record.text += &modes_text(&rows, &found.count, found.n_solves);
-        let n_unstable = rows.iter().filter(|row| row.unstable).count();
-        modes.extend(rows);
+        let rows = &modes[n_before..];
+        *visit.text += &modes_text(rows, &found.count, found.n_solves);
         counts.push((friction, found.count));
-        progress.advance(&format!("friction {friction:.3}: {} modes, {n_unstable} unstable", found.modes.len()));
+        Ok(format!("{} modes, {} unstable", rows.len(), rows.iter().filter(|row| row.unstable).count()))
+    })?;
+    let mut summary = format!("{}: complex modes {}-{} Hz\n\n", study.brake.model.title, band[0], band[1]);
+    if !counts.is_empty() {
+        summary += &format!("{}\n{}\n", tables::sweep(&modes, &counts), tables::verdict(&modes));
     }
-    progress.finish();
-    if let Some(folder) = folder {
-        let place = run.folder("stability");
-        let mut summary = format!("{}: complex modes {}-{} Hz\n\n", brake.model.title, band[0], band[1]);
-        if !counts.is_empty() {
-            summary += &tables::sweep(&modes, &counts);
-            summary += &format!("\n{}\n", tables::verdict(&modes));
-        }
-        summary += &costs_text(&sweep, start.elapsed().as_secs_f64(), comm.size());
-        let any_unstable = modes.iter().any(|row| row.unstable);
-        summary += &files_text(&place.display().to_string(), !counts.is_empty(), any_unstable);
+    summary += &costs_text(&outcome.costs, start.elapsed().as_secs_f64(), comm.size());
+    let any_unstable = modes.iter().any(|row| row.unstable);
+    summary += &files_text(&study.place.display().to_string(), !counts.is_empty(), any_unstable);
+    if let Some(folder) = &study.folder {
         folder.write("modes.csv", |out| tables::modes(out, &modes))?;
-        record.write(&folder)?;
-        folder.write("details.txt", |out| out.write_all(record.text.as_bytes()))?;
-        results::write_summary(&folder, &summary, failure.as_ref())?;
-        folder.finish()?;
-        super::tell(&summary)?;
+        folder.write("details.txt", |out| out.write_all(outcome.record.text.as_bytes()))?;
     }
-    failure.map_or(Ok(()), Err)
+    study.finish(outcome, &summary)
 }
 
 /// The modes of one friction value, for people.
@@ -95,15 +70,16 @@ fn modes_text(rows: &[ModeRow], count: &Count, n_solves: usize) -> String {
 }
 
 /// What the run cost: seconds of its stages, and each factor.
-fn costs_text(sweep: &Sweep, seconds: f64, ranks: usize) -> String {
-    let [equilibria, modes] = sweep.seconds();
+fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
     let mut text = format!(
-        "\n{seconds:.1} s on {ranks} rank{}: equilibria {equilibria:.1} s, modes {modes:.1} s; {} iterations with a neighbour's factor\n",
+        "\n{seconds:.1} s on {ranks} rank{}: equilibria {:.1} s, modes {:.1} s; {} iterations with a neighbour's factor\n",
         if ranks == 1 { "" } else { "s" },
-        sweep.n_iterations()
+        costs.equilibria_seconds,
+        costs.modes_seconds,
+        costs.n_iterations
     );
-    let names = ["equilibrium LU", "modes LU", "modes LDL^T"];
-    for (name, cost) in names.iter().zip(&sweep.costs()).filter(|(_, cost)| cost.n_factorisations > 0) {
+    let factors = [("equilibrium LU", costs.tangent), ("modes LU", costs.stiffness), ("modes LDL^T", costs.symmetric)];
+    for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
         text += &format!(
             "{name}: {} analysis {:.1} s, {} factorisations {:.1} s, {:.0} M entries, {:.0} MB, ordering {}\n",
             cost.n_analyses,

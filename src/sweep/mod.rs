@@ -26,6 +26,23 @@ pub struct Sweep<'a> {
     seconds: [f64; 2],
 }
 
+/// What a sweep has cost.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Costs {
+    /// Spent on equilibria, s.
+    pub equilibria_seconds: f64,
+    /// Spent on modes, s.
+    pub modes_seconds: f64,
+    /// LU of the equilibria's tangents.
+    pub tangent: FactorStats,
+    /// Iterations of the equilibria's linear systems with factors of neighbouring tangents.
+    pub n_iterations: usize,
+    /// LU of the modes' stiffness.
+    pub stiffness: FactorStats,
+    /// Symmetric factor that counts modes.
+    pub symmetric: FactorStats,
+}
+
 /// What a sweep is busy with.
 pub enum Event<'a> {
     /// A Newton iterate of the step named.
@@ -84,18 +101,16 @@ impl<'a> Sweep<'a> {
         &self.path
     }
 
-    /// Seconds spent on equilibria and on modes.
-    pub fn seconds(&self) -> [f64; 2] {
-        self.seconds
-    }
-
-    /// Costs of the factors: of the equilibrium's tangent, of the modes' stiffness, of the symmetric one that counts.
-    pub fn costs(&self) -> [FactorStats; 3] {
-        [self.path.costs().0, self.solver.lu.stats(), self.solver.ldl.stats()]
-    }
-
-    /// Iterations of the equilibria's linear systems with factors of neighbouring tangents.
-    pub fn n_iterations(&self) -> usize {
-        self.path.costs().1
+    /// What the sweep has cost so far.
+    pub fn costs(&self) -> Costs {
+        let (tangent, n_iterations) = self.path.costs();
+        Costs {
+            equilibria_seconds: self.seconds[0],
+            modes_seconds: self.seconds[1],
+            tangent,
+            n_iterations,
+            stiffness: self.solver.lu.stats(),
+            symmetric: self.solver.ldl.stats(),
+        }
     }
 }

@@ -1,0 +1,187 @@
+//! What the computing commands share: a brake, its frictions, a results folder, and one equilibrium after the other.
+
+use std::path::PathBuf;
+
+use crate::assembly::System;
+use crate::equilibrium::{Equilibrium, Step};
+use crate::petsc::Comm;
+use crate::report::folder::Folder;
+use crate::report::tables::{self, PairRow};
+use crate::sweep::{Brake, Costs, Event, Families, Sweep};
+use crate::{Error, Result};
+
+use super::Run;
+use super::progress::Progress;
+use super::results::{self, State};
+
+/// A brake about to be analysed over friction.
+pub struct Study {
+    pub brake: Brake,
+    pub folder: Option<Folder>,
+    pub place: PathBuf,
+    frictions: Vec<f64>,
+    progress: Progress,
+}
+
+/// One friction of a study, its equilibrium found.
+pub struct Visit<'v, 's> {
+    pub study: &'v Study,
+    pub system: &'v System,
+    pub sweep: &'v mut Sweep<'s>,
+    pub equilibrium: &'v Equilibrium,
+    /// The report in words, to be added to.
+    pub text: &'v mut String,
+}
+
+/// How a study ended.
+pub struct Outcome {
+    pub record: Record,
+    pub costs: Costs,
+    /// Why it went no further, after the frictions in the record.
+    pub failure: Option<Error>,
+}
+
+impl Study {
+    /// Reads and checks everything before anything is computed. Collective.
+    pub fn new(comm: &Comm, run: &Run, command: &str) -> Result<Study> {
+        let brake = Brake::read(comm, &run.model)?;
+        brake.require_held()?;
+        let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
+        let folder = results::folder(comm, run, command)?;
+        let progress = Progress::new(comm, frictions.len(), run.verbose);
+        Ok(Study { brake, folder, place: run.folder(command), frictions, progress })
+    }
+
+    /// Finds the equilibria one after the other; `each` makes of them what the command is for, and says in a few words what
+    /// it found. Collective.
+    pub fn run(&self, comm: &Comm, mut each: impl FnMut(Visit) -> Result<String>) -> Result<Outcome> {
+        self.progress.say("assembling");
+        let families = self.brake.families()?;
+        let system = self.brake.assemble(comm, &families)?;
+        let mut sweep = Sweep::new(&system, &self.brake.interface)?;
+        let (mut record, mut failure) = (Record::default(), None);
+        for &friction in &self.frictions {
+            let mut equilibrium = match sweep.equilibrium(friction, &mut |event| self.say(&event)) {
+                Ok(equilibrium) => equilibrium,
+                Err(error) => {
+                    record.add_steps(friction, sweep.path().steps());
+                    failure = Some(self.save_last(error, comm, &system, &sweep)?);
+                    break;
+                }
+            };
+            record.add(self, &families, &system, &mut equilibrium)?;
+            let (text, equilibrium) = (&mut record.text, &equilibrium);
+            let done = each(Visit { study: self, system: &system, sweep: &mut sweep, equilibrium, text })?;
+            self.progress.advance(&format!("friction {friction:.3}: {done}"));
+        }
+        self.progress.finish();
+        Ok(Outcome { record, costs: sweep.costs(), failure })
+    }
+
+    /// Writes the tables and the summary, gives the folder its name, and tells the summary.
+    pub fn finish(self, outcome: Outcome, summary: &str) -> Result<()> {
+        if let Some(folder) = self.folder {
+            outcome.record.write(&folder)?;
+            results::write_summary(&folder, summary, outcome.failure.as_ref())?;
+            folder.finish()?;
+            super::tell(summary)?;
+        }
+        outcome.failure.map_or(Ok(()), Err)
+    }
+
+    /// What a sweep is doing, for a person who waits.
+    pub fn say(&self, event: &Event) {
+        self.progress.say(match event {
+            Event::Newton(label, i, it) => {
+                format!("{label}: iteration {i}, residual {:.1e}, {} closed", it.residual, it.counts.closed())
+            }
+            Event::Modes(converged, wanted, solves) => {
+                format!("modes: {converged} of {wanted} eigenvalues, {solves} solves")
+            }
+        });
+    }
+
+    /// Keeps the state in which a solve gave up, and says where.
+    fn save_last(&self, error: Error, comm: &Comm, system: &System, sweep: &Sweep) -> Result<Error> {
+        let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return Err(error) };
+        let folder = self.folder.as_ref();
+        comm.agree(results::write_last(folder, &self.brake, system, u))?;
+        let place =
+            folder.map_or_else(String::new, |folder| folder.target().join(results::LAST_STATE).display().to_string());
+        Ok(Error::NotConverged(format!("{reason}. The last state is in {place}")))
+    }
+}
+
+/// What the equilibria of a run leave behind: the report in words, and rows of the tables.
+#[derive(Default)]
+pub struct Record {
+    pub text: String,
+    rows: Vec<PairRow>,
+    steps: Vec<(f64, Step)>,
+}
+
+impl Record {
+    /// Reports an equilibrium, whose steps it takes, and draws it. Collective.
+    fn add(
+        &mut self,
+        study: &Study,
+        families: &Families,
+        system: &System,
+        equilibrium: &mut Equilibrium,
+    ) -> Result<()> {
+        let brake = &study.brake;
+        let state = State::new(brake, families, system, equilibrium)?;
+        self.text += &equilibrium_text(brake, &state, &equilibrium.steps);
+        self.rows.extend(state.pair_rows(brake));
+        self.steps.extend(equilibrium.steps.drain(..).map(|step| (state.friction, step)));
+        study.folder.as_ref().map_or(Ok(()), |folder| state.write(folder, brake, &equilibrium.responses))
+    }
+
+    /// Keeps the steps towards an equilibrium that was not reached.
+    fn add_steps(&mut self, friction: f64, steps: &[Step]) {
+        self.steps.extend(steps.iter().map(|step| (friction, step.clone())));
+    }
+
+    /// Writes the tables.
+    fn write(&self, folder: &Folder) -> Result<()> {
+        results::csv_table(folder, "contact.csv", |out| tables::pairs(out, &self.rows))?;
+        results::csv_table(folder, "convergence.csv", |out| tables::convergence(out, &self.steps))
+    }
+}
+
+/// The report of one equilibrium.
+fn equilibrium_text(brake: &Brake, state: &State, steps: &[Step]) -> String {
+    let mut text = format!("\nfriction {:.3}\n", state.friction);
+    for step in steps {
+        let last = step.iterations.last().expect("a step has its start");
+        text += &format!(
+            "  {}: {} iterations, residual {:.1e}, {} open, {} sticking, {} slipping\n",
+            step.label,
+            step.iterations.len() - 1,
+            last.residual,
+            last.counts.open,
+            last.counts.stick,
+            last.counts.slip
+        );
+    }
+    let width = brake.interface.pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
+    text += &format!(
+        "  {:width$}  {:>6} {:>6} {:>6}  {:>12} {:>14} {:>10}\n",
+        "pair", "open", "stick", "slip", "normal N", "tangential N", "peak MPa"
+    );
+    for (pair, forces) in brake.interface.pairs.iter().zip(&state.balance.pairs) {
+        let counts = forces.counts;
+        text += &format!(
+            "  {:width$}  {:>6} {:>6} {:>6}  {:>12.2} {:>14.2} {:>10.3}\n",
+            pair.name,
+            counts.open,
+            counts.stick,
+            counts.slip,
+            forces.normal,
+            forces.tangential,
+            1e-6 * forces.peak_pressure
+        );
+    }
+    let checks: Vec<String> = state.checks(brake).lines().map(|line| format!("  {line}\n")).collect();
+    text + &checks.concat()
+}
