@@ -4,6 +4,7 @@ use std::io::Write;
 
 use crate::equilibrium::{Balance, Equilibrium};
 use crate::petsc::Vector;
+use crate::report::contact_surface::ContactSurface;
 use crate::report::folder::Folder;
 use crate::report::tables::PairRow;
 use crate::report::vtu::{Cells, Grid, Values};
@@ -11,7 +12,7 @@ use crate::stability::Mode;
 use crate::{Error, Result};
 
 use crate::assembly::System;
-use crate::contact::law::{Response, Status};
+use crate::contact::Response;
 use crate::sweep::{Brake, Families};
 
 /// An equilibrium with its balance, ready to be written.
@@ -75,22 +76,26 @@ impl State {
 
     /// Writes volume and contact surface as VTU.
     pub fn write(&self, folder: &Folder, brake: &Brake, responses: &[Response]) -> Result<()> {
-        let contact = ContactFields::new(brake, responses);
+        let contact = ContactSurface::new(&brake.mesh, &brake.interface, responses);
+        let on_mesh = contact.on_mesh(brake.mesh.nodes.len());
         let at = friction_name(self.friction);
         let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
+        let displacement = [("displacement", Values::Vectors(&self.u))];
         let grid = Grid {
             points: &brake.mesh.nodes,
             cells: Cells::Tets(&brake.mesh.tets),
-            point_data: contact.arrays(vec![("displacement", Values::Vectors(&self.u))]),
+            point_data: displacement.into_iter().chain(on_mesh.arrays()).collect(),
             cell_data: vec![("part", Values::Integers(&parts))],
         };
         folder.write(&format!("equilibrium_mu{at}.vtu"), |mut out| grid.write(&mut out))?;
-        let (facets, pairs) = contact_facets(brake);
+        let of = |values: &[[f64; 3]]| contact.nodes.iter().map(|&n| values[n as usize]).collect::<Vec<_>>();
+        let (points, u) = (of(&brake.mesh.nodes), of(&self.u));
+        let displacement = [("displacement", Values::Vectors(&u))];
         let grid = Grid {
-            points: &brake.mesh.nodes,
-            cells: Cells::Triangles(&facets),
-            point_data: contact.arrays(vec![("displacement", Values::Vectors(&self.u))]),
-            cell_data: vec![("pair", Values::Integers(&pairs))],
+            points: &points,
+            cells: Cells::Triangles(&contact.facets),
+            point_data: displacement.into_iter().chain(contact.fields.arrays()).collect(),
+            cell_data: vec![("pair", Values::Integers(&contact.pairs))],
         };
         folder.write(&format!("contact_mu{at}.vtu"), |mut out| grid.write(&mut out))
     }
@@ -110,66 +115,6 @@ fn part_nodes(brake: &Brake, part: &str) -> Vec<bool> {
         }
     }
     inside
-}
-
-/// Slave facets of all pairs, and the pair of each.
-fn contact_facets(brake: &Brake) -> (Vec<[u32; 6]>, Vec<i32>) {
-    let slaves = brake.interface.pairs.iter().enumerate();
-    slaves
-        .flat_map(|(i, pair)| brake.mesh.surfaces[&pair.slave].facets.iter().map(move |facet| (*facet, i as i32)))
-        .unzip()
-}
-
-/// Contact results at nodes: exact at the contact points (midside nodes), the mean of the neighbours at corners.
-struct ContactFields {
-    pressure: Vec<f64>,
-    traction: Vec<[f64; 3]>,
-    status: Vec<i32>,
-}
-
-impl ContactFields {
-    fn new(brake: &Brake, responses: &[Response]) -> ContactFields {
-        let n = brake.mesh.nodes.len();
-        let mut fields = ContactFields { pressure: vec![0.0; n], traction: vec![[0.0; 3]; n], status: vec![-1; n] };
-        for (point, response) in brake.interface.points.iter().zip(responses) {
-            let node = point.node as usize;
-            fields.pressure[node] = response.normal_force / point.law.weight;
-            fields.traction[node] = response.force.map(|f| f / point.law.weight);
-            fields.status[node] = match response.status {
-                Status::Open => 0,
-                Status::Slip => 1,
-                Status::Stick => 2,
-            };
-        }
-        fields.fill_corners(brake);
-        fields
-    }
-
-    fn fill_corners(&mut self, brake: &Brake) {
-        let mut count = vec![0.0; self.pressure.len()];
-        for facet in contact_facets(brake).0 {
-            for (corner, sides) in [(0, [3, 5]), (1, [3, 4]), (2, [4, 5])] {
-                let corner = facet[corner] as usize;
-                for side in sides.map(|s| facet[s] as usize) {
-                    count[corner] += 1.0;
-                    self.pressure[corner] += self.pressure[side];
-                    (0..3).for_each(|i| self.traction[corner][i] += self.traction[side][i]);
-                    self.status[corner] = self.status[corner].max(self.status[side]);
-                }
-            }
-        }
-        for (node, &n) in count.iter().enumerate().filter(|(_, n)| **n > 0.0) {
-            self.pressure[node] /= n;
-            self.traction[node] = self.traction[node].map(|t| t / n);
-        }
-    }
-
-    fn arrays<'a>(&'a self, mut first: Vec<(&'a str, Values<'a>)>) -> Vec<(&'a str, Values<'a>)> {
-        first.push(("contact_pressure", Values::Scalars(&self.pressure)));
-        first.push(("contact_traction", Values::Vectors(&self.traction)));
-        first.push(("contact_status", Values::Integers(&self.status)));
-        first
-    }
 }
 
 /// A friction as file names have it: three digits, more where those would make two values one.
