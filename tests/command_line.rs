@@ -159,8 +159,8 @@ fn pictures_hold_finite_numbers(place: &Place, files: &[String]) {
     let expected = [
         ("contact_mu0.000.vtu", format!("{cells} displacement {contact} pair")),
         ("contact_mu0.400.vtu", format!("{cells} displacement {contact} pair")),
-        ("equilibrium_mu0.000.vtu", format!("{cells} displacement {contact} part")),
-        ("equilibrium_mu0.400.vtu", format!("{cells} displacement {contact} part")),
+        ("equilibrium_mu0.000.vtu", format!("{cells} displacement {contact} part von_mises")),
+        ("equilibrium_mu0.400.vtu", format!("{cells} displacement {contact} part von_mises")),
         ("mode_mu0.400_005_1270Hz.vtu", format!("{cells} real imaginary part")),
     ];
     assert_eq!(seen, expected);

@@ -80,12 +80,13 @@ impl State {
         let on_mesh = contact.on_mesh(brake.mesh.nodes.len());
         let at = friction_name(self.friction);
         let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
+        let von_mises = brake.families()?.tets.von_mises(&self.u);
         let displacement = [("displacement", Values::Vectors(&self.u))];
         let grid = Grid {
             points: &brake.mesh.nodes,
             cells: Cells::Tets(&brake.mesh.tets),
             point_data: displacement.into_iter().chain(on_mesh.arrays()).collect(),
-            cell_data: vec![("part", Values::Integers(&parts))],
+            cell_data: vec![("part", Values::Integers(&parts)), ("von_mises", Values::Scalars(&von_mises))],
         };
         folder.write(&format!("equilibrium_mu{at}.vtu"), |mut out| grid.write(&mut out))?;
         let of = |values: &[[f64; 3]]| contact.nodes.iter().map(|&n| values[n as usize]).collect::<Vec<_>>();

@@ -31,7 +31,9 @@ impl Folder {
             .file_name()
             .and_then(|name| name.to_str())
             .ok_or_else(|| Error::input(format!("{} cannot be an output folder: give it a name", target.display())))?;
-        let draft = target.with_file_name(format!(".{name}.partial-{}", std::process::id()));
+        let prefix = format!(".{name}.partial-");
+        remove_orphans(target, &prefix);
+        let draft = target.with_file_name(format!("{prefix}{}", std::process::id()));
         fs::create_dir_all(&draft).map_err(|reason| {
             Error::input(format!(
                 "cannot create the output folder {}: {reason}. Choose another with --output",
@@ -108,6 +110,19 @@ impl Folder {
     }
 }
 
+/// Removes the drafts of runs that were killed: their processes are gone. Best effort; a draft in the way of nobody may stay.
+fn remove_orphans(target: &Path, prefix: &str) {
+    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let Ok(entries) = fs::read_dir(parent) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let Some(process) = name.strip_prefix(prefix).and_then(|id| id.parse::<u32>().ok()) else { continue };
+        if Path::new("/proc").is_dir() && !Path::new(&format!("/proc/{process}")).exists() {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
 /// The first entry of a folder that its list of our files does not have.
 fn stranger(folder: &Path, ours: &str) -> std::io::Result<Option<String>> {
     let is_ours = |name: &str| {
@@ -162,6 +177,18 @@ mod tests {
         folder.write(FILE, |out| writeln!(out, "half")).unwrap();
         drop(folder);
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn the_draft_of_a_killed_run_goes_with_the_next() {
+        let place = tempfile::tempdir().unwrap();
+        // Above the largest process number of Linux, so that no process has it.
+        let orphan = place.path().join(".run.partial-4194305");
+        let alive = place.path().join(format!(".run.partial-{}", std::os::unix::process::parent_id()));
+        fs::create_dir_all(&orphan).unwrap();
+        fs::create_dir_all(&alive).unwrap();
+        drop(Folder::create(&place.path().join("run"), false).unwrap());
+        assert!(!orphan.exists() && alive.exists());
     }
 
     #[test]
