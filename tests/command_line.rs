@@ -100,7 +100,7 @@ fn a_run_leaves_what_its_summary_says() {
     assert_eq!(err, "", "quiet where nobody watches");
     assert_eq!(place.read("run/summary.txt"), out);
     assert_eq!(place.list(""), ["brake.toml", "pads_on_disc.msh", "run"], "no draft is left");
-    assert!(out.contains("unstable from friction 0.4 on: 1270 Hz first; strongest 1270 Hz at friction 0.4"), "{out}");
+    assert!(out.contains("unstable first at friction 0.4: 1270 Hz; strongest 1270 Hz at friction 0.4"), "{out}");
     let files: Vec<String> = place.list("run").into_iter().filter(|name| !name.starts_with('.')).collect();
     let (_, listed) = out.split_once("results in run:\n").unwrap();
     let patterns: Vec<&str> = listed.lines().flat_map(|line| line[2..36].trim().split(", ")).collect();

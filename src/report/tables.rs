@@ -150,7 +150,7 @@ pub fn verdict(rows: &[ModeRow]) -> String {
                 .max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate))
                 .unwrap_or(row);
             format!(
-                "unstable from friction {} on: {:.0} Hz first; strongest {:.0} Hz at friction {} ({:+.0} /s)",
+                "unstable first at friction {}: {:.0} Hz; strongest {:.0} Hz at friction {} ({:+.0} /s)",
                 row.friction, row.frequency, worst.frequency, worst.friction, worst.growth_rate
             )
         }
