@@ -117,3 +117,26 @@ fn compare_modes(band: &Band, expected: &[Value]) {
     let last = number(&expected.last().unwrap()["frequency_hz"]);
     assert!(left.iter().all(|mode| mode.frequency() > last), "a mode that the reference does not have");
 }
+
+/// Friction that turns with the velocity only takes energy out: `C` grows by a positive semidefinite matrix that scales with 1/speed.
+#[test]
+fn friction_damping_takes_energy_out() {
+    let comm = Session::start(&[]).unwrap();
+    let mut brake = Brake::read(&comm, &data("pads_on_disc.toml")).unwrap();
+    brake.model.band = [0.0, 2000.0];
+    let families = brake.families().unwrap();
+    let system = brake.assemble(&comm, &families).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let equilibrium = sweep.equilibrium(0.4, &mut |_| ()).unwrap();
+    let mut growths = |damped: bool| {
+        sweep.friction_damping = damped;
+        let band = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
+        assert!(band.count.agrees());
+        band.modes.iter().map(|mode| mode.growth_rate()).collect::<Vec<f64>>()
+    };
+    let (free, damped) = (growths(false), growths(true));
+    assert_eq!(free.len(), damped.len());
+    // The sum of the growth rates of all modes is -tr(M^-1 C) / 2; within the band every mode that did not grow decays now.
+    assert!(damped.iter().sum::<f64>() < free.iter().sum::<f64>() - 1.0, "{free:?} {damped:?}");
+    assert!(free.iter().zip(&damped).filter(|(a, _)| a.abs() < 1e-3).all(|(_, b)| *b < 0.0), "{free:?} {damped:?}");
+}

@@ -59,6 +59,7 @@ impl Study {
         let families = self.brake.families()?;
         let system = self.brake.assemble(comm, &families)?;
         let mut sweep = Sweep::new(&system, &self.brake.interface)?;
+        sweep.friction_damping = self.brake.model.friction_damping;
         let (mut record, mut failure) = (Record::default(), None);
         for &friction in &self.frictions {
             let mut equilibrium = match sweep.equilibrium(friction, &mut |event| self.say(&event)) {

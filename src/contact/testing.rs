@@ -63,6 +63,7 @@ pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
         connectors: Vec::new(),
         loads: Vec::new(),
         band: [0.0, 1.0],
+        friction_damping: false,
         swept: Vec::new(),
         frictions: Vec::new(),
         mesh_line: 1,

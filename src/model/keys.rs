@@ -143,6 +143,8 @@ pub struct Load {
 #[serde(deny_unknown_fields)]
 pub struct Stability {
     pub band: Spanned<[f64; 2]>,
+    #[serde(default)]
+    pub friction_damping: bool,
 }
 
 #[derive(Deserialize)]

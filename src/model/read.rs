@@ -56,6 +56,7 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
         connectors: contacts::connectors(source, &raw.connector, mesh_unit)?,
         loads: loads::loads(source, &raw.load)?,
         band: stability.band(&raw.stability.get_ref().band)?,
+        friction_damping: raw.stability.get_ref().friction_damping,
         swept: sweep.contacts,
         frictions: sweep.frictions,
         sweep_line: sweep.line,

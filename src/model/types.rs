@@ -29,6 +29,8 @@ pub struct Model {
     pub loads: Vec<Load>,
     /// Frequency band of the modes wanted, Hz.
     pub band: [f64; 2],
+    /// Whether friction that turns with the velocity damps the modes.
+    pub friction_damping: bool,
     /// Names of the contacts whose friction a sweep changes (all sliding pairs where the file does not say).
     pub swept: Vec<String>,
     /// Friction values of the sweep (empty: as in the contacts).

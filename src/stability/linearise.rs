@@ -27,16 +27,30 @@ impl Linearised {
     }
 
     /// Linearises about `equilibrium`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`, all
-    /// other closed points stick. Collective.
+    /// other closed points stick. With `friction_damping`, `C += B^T [mu p / |v| (I - n n^T - t t^T)] B` of the sliding points.
+    /// Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn update(&mut self, system: &System, contacts: &mut Contacts, equilibrium: &Equilibrium) -> Result<()> {
+    pub fn update(
+        &mut self,
+        system: &System,
+        contacts: &mut Contacts,
+        equilibrium: &Equilibrium,
+        friction_damping: bool,
+    ) -> Result<()> {
         let interface = contacts.interface();
         let gaps = contacts.gaps(&equilibrium.u)?;
         let (frictions, none) = (interface.frictions_at(equilibrium.friction), vec![0.0; interface.pairs.len()]);
-        for (matrix, frictions) in [(&mut self.k, frictions), (&mut self.k_symmetric, none)] {
-            let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, &frictions);
+        if friction_damping {
+            let mut c = system.c.duplicate()?;
+            let force = |a: usize| equilibrium.responses[a].normal_force;
+            let block = |a: usize| interface.friction_damping(a, force(a), &frictions);
+            contacts.add_blocks((0..gaps.len()).map(block), &mut c)?;
+            self.c = Some(c);
+        }
+        for (matrix, frictions) in [(&mut self.k, &frictions), (&mut self.k_symmetric, &none)] {
+            let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, frictions);
             matrix.copy_from(&system.k)?;
             contacts.add_blocks((0..gaps.len()).map(block), matrix)?;
         }

@@ -22,6 +22,8 @@ pub struct Sweep<'a> {
     path: Path<'a>,
     solver: Solver,
     linearised: Option<Linearised>,
+    /// Whether friction that turns with the velocity damps the modes.
+    pub friction_damping: bool,
     /// Spent on equilibria and on modes.
     seconds: [f64; 2],
 }
@@ -62,6 +64,7 @@ impl<'a> Sweep<'a> {
             path: Path::new(system, interface)?,
             solver: Solver::default(),
             linearised: None,
+            friction_damping: false,
             seconds: [0.0; 2],
         })
     }
@@ -87,7 +90,7 @@ impl<'a> Sweep<'a> {
             self.linearised = Some(Linearised::new(self.system)?);
         }
         let linearised = self.linearised.as_mut().expect("made above");
-        linearised.update(self.system, self.path.contacts(), equilibrium)?;
+        linearised.update(self.system, self.path.contacts(), equilibrium, self.friction_damping)?;
         let pencil = linearised.pencil(self.system);
         let outcome = stability::solve(&pencil, &mut self.solver, band, &mut |converged, wanted, solves| {
             hear(Event::Modes(converged, wanted, solves));
