@@ -15,6 +15,6 @@ mod structure;
 mod system;
 
 pub use dofs::DofMap;
-pub use pattern::{BlockRows, Pattern};
+pub use pattern::{BlockRows, Csr, Pattern};
 pub use structure::{Link, Tets, held, links, loads};
 pub use system::{Connectivity, ElementMatrices, Elements, System};

@@ -79,44 +79,51 @@ fn invert(n_nodes: usize, couplings: &[&dyn Connectivity]) -> (Vec<usize>, Vec<(
     (starts, members)
 }
 
-/// Sums of 3 x 3 blocks on the rows of the nodes that this rank owns.
-pub struct BlockRows<'a> {
+/// Sums of 3 x 3 blocks on the rows of the nodes that this rank owns, for T matrices on one pattern.
+pub struct BlockRows<'a, const T: usize> {
     pattern: &'a Pattern,
     /// For each node the position of its first block (only rows of this rank have room).
     first: Vec<usize>,
-    blocks: Vec<[f64; 9]>,
+    blocks: [Vec<[f64; 9]>; T],
 }
 
-/// The three arrays of a sparse matrix: offsets, global column numbers, values.
-pub type Csr = (Vec<i32>, Vec<i32>, Vec<f64>);
+/// Sparse matrices on one pattern: offsets, global column numbers, and the values of each.
+pub struct Csr<const T: usize> {
+    /// Where each row starts.
+    pub offsets: Vec<i32>,
+    /// Global column numbers, sorted within each row.
+    pub columns: Vec<i32>,
+    /// Values of each matrix.
+    pub values: [Vec<f64>; T],
+}
 
-impl<'a> BlockRows<'a> {
+impl<'a, const T: usize> BlockRows<'a, T> {
     /// Zeros for the rows of this rank.
-    pub fn new(pattern: &'a Pattern, dofs: &DofMap) -> BlockRows<'a> {
+    pub fn new(pattern: &'a Pattern, dofs: &DofMap) -> Self {
         let mut first = vec![0; pattern.n_nodes()];
         let mut n_blocks = 0;
         for node in dofs.owned_nodes() {
             first[node as usize] = n_blocks;
             n_blocks += pattern.row(node).len();
         }
-        BlockRows { pattern, first, blocks: vec![[0.0; 9]; n_blocks] }
+        BlockRows { pattern, first, blocks: std::array::from_fn(|_| vec![[0.0; 9]; n_blocks]) }
     }
 
-    /// Adds a dense row-major `(3n)^2` matrix; rows of other ranks are skipped.
+    /// Adds dense row-major `(3n)^2` matrices; rows of other ranks are skipped.
     ///
     /// # Panics
     /// Where two of the nodes do not couple in the pattern.
-    pub fn add(&mut self, dofs: &DofMap, nodes: &[u32], matrix: &[f64]) {
+    pub fn add(&mut self, dofs: &DofMap, nodes: &[u32], matrices: [&[f64]; T]) {
         let width = 3 * nodes.len();
         for (a, &row) in nodes.iter().enumerate().filter(|&(_, &n)| dofs.owns(n)) {
             let (neighbours, first) = (self.pattern.row(row), self.first[row as usize]);
             for (b, column) in nodes.iter().enumerate() {
                 let position = neighbours.binary_search(column).expect("the pattern holds all couplings");
-                let block = &mut self.blocks[first + position];
-                for i in 0..3 {
-                    let from = (3 * a + i) * width + 3 * b;
-                    for j in 0..3 {
-                        block[3 * i + j] += matrix[from + j];
+                for (blocks, matrix) in self.blocks.iter_mut().zip(matrices) {
+                    let block = &mut blocks[first + position];
+                    for i in 0..3 {
+                        let from = &matrix[(3 * a + i) * width + 3 * b..][..3];
+                        (0..3).for_each(|j| block[3 * i + j] += from[j]);
                     }
                 }
             }
@@ -124,27 +131,28 @@ impl<'a> BlockRows<'a> {
     }
 
     /// Rows and columns of free displacements, with explicit zeros.
-    pub fn csr(&self, dofs: &DofMap) -> Csr {
-        let (mut offsets, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        columns.reserve_exact(9 * self.blocks.len());
-        values.reserve_exact(9 * self.blocks.len());
+    pub fn csr(self, dofs: &DofMap) -> Csr<T> {
+        let room = 9 * self.blocks[0].len();
+        let mut csr = Csr { offsets: vec![0], columns: Vec::with_capacity(room), values: [const { Vec::new() }; T] };
+        csr.values.iter_mut().for_each(|values| values.reserve_exact(room));
+        // Equation, block and component of each column of a node's rows.
         let mut order: Vec<(i32, usize, usize)> = Vec::new();
         for node in dofs.owned_nodes() {
-            let blocks = &self.blocks[self.first[node as usize]..];
+            let first = self.first[node as usize];
             order.clear();
             for (position, &other) in self.pattern.row(node).iter().enumerate() {
                 let equations = dofs.equations(other).into_iter().enumerate();
-                order.extend(equations.filter(|&(_, e)| e >= 0).map(|(j, e)| (e, position, j)));
+                order.extend(equations.filter(|&(_, e)| e >= 0).map(|(j, e)| (e, first + position, j)));
             }
             order.sort_unstable();
             for i in (0..3).filter(|&i| dofs.equations(node)[i] >= 0) {
-                for &(equation, position, j) in &order {
-                    columns.push(equation);
-                    values.push(blocks[position][3 * i + j]);
+                csr.columns.extend(order.iter().map(|&(equation, ..)| equation));
+                for (values, blocks) in csr.values.iter_mut().zip(&self.blocks) {
+                    values.extend(order.iter().map(|&(_, position, j)| blocks[position][3 * i + j]));
                 }
-                offsets.push(columns.len() as i32);
+                csr.offsets.push(csr.columns.len() as i32);
             }
         }
-        (offsets, columns, values)
+        csr
     }
 }

@@ -125,25 +125,20 @@ impl System {
 
 /// One pass over the elements that touch this rank's rows.
 fn sum(comm: &Comm, pattern: &Pattern, dofs: &DofMap, families: &[&dyn Elements]) -> Result<[Matrix; 3]> {
-    let mut sums: [BlockRows; 3] = std::array::from_fn(|_| BlockRows::new(pattern, dofs));
+    let mut sums = BlockRows::<3>::new(pattern, dofs);
     let mut element = ElementMatrices::default();
     for family in families {
         for e in 0..family.len() {
             let nodes = family.nodes(e);
             if nodes.iter().any(|&n| dofs.owns(n)) {
                 family.matrices(e, &mut element);
-                for (sum, matrix) in sums.iter_mut().zip([&element.k, &element.m, &element.c]) {
-                    sum.add(dofs, nodes, matrix);
-                }
+                sums.add(dofs, nodes, [&element.k, &element.m, &element.c]);
             }
         }
     }
-    let [k, m, c] = sums;
-    let matrix = |sum: BlockRows| {
-        let (offsets, columns, values) = sum.csr(dofs);
-        drop(sum);
-        Matrix::from_csr(comm, &offsets, &columns, &values)
-    };
+    let csr = sums.csr(dofs);
+    let matrix = |values: &[f64]| Matrix::from_csr(comm, &csr.offsets, &csr.columns, values);
+    let [k, m, c] = &csr.values;
     Ok([matrix(k)?, matrix(m)?, matrix(c)?])
 }
 
