@@ -1,5 +1,6 @@
 //! The full finite element structure as families of elements: tetrahedra by part, and connectors.
 
+use crate::contact::search;
 use crate::element::connector::{RelativeMotion, relative_motion};
 use crate::element::coupling::Cloud;
 use crate::element::{tet10, tri6};
@@ -155,22 +156,12 @@ fn coordinates(mesh: &Mesh, nodes: &[u32]) -> Vec<[f64; 3]> {
 /// Nodes of a named set with their weights.
 fn cloud(mesh: &Mesh, name: &str) -> Option<(Vec<u32>, Vec<f64>)> {
     match mesh.surfaces.get(name) {
-        Some(surface) => Some(midside_weights(mesh, surface)),
+        Some(surface) => Some(search::weights(surface, &mesh.nodes).into_iter().unzip()),
         None => mesh.node_set(name).map(|nodes| {
             let n = nodes.len();
             (nodes, vec![1.0; n])
         }),
     }
-}
-
-/// `w_a = sum of A_facet / 3` over the facets around each midside node.
-fn midside_weights(mesh: &Mesh, surface: &Surface) -> (Vec<u32>, Vec<f64>) {
-    let mut weights = std::collections::BTreeMap::new();
-    for facet in &surface.facets {
-        let third = tri6::area(&facet.map(|n| mesh.nodes[n as usize])) / 3.0;
-        facet[3..].iter().for_each(|&n| *weights.entry(n).or_insert(0.0) += third);
-    }
-    weights.into_iter().unzip()
 }
 
 /// Which displacements of each node the model holds at zero.

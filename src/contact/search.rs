@@ -104,6 +104,11 @@ impl Midside {
     }
 }
 
+/// The midside nodes of a surface with their contact weights `w = sum A_facet/3`, m2, by rising index.
+pub fn weights(surface: &Surface, nodes: &[[f64; 3]]) -> Vec<(u32, f64)> {
+    midside_nodes(surface, nodes).0.into_iter().map(|(node, midside)| (node, midside.weight)).collect()
+}
+
 /// All midside nodes of a surface, by rising index, and the surface's area.
 fn midside_nodes(surface: &Surface, nodes: &[[f64; 3]]) -> (BTreeMap<u32, Midside>, f64) {
     let mut found: BTreeMap<u32, Midside> = BTreeMap::new();

@@ -4,7 +4,7 @@ use super::contacts::{Contacts, Counts};
 use crate::Result;
 use crate::assembly::System;
 use crate::contact::{Response, Stage};
-use crate::petsc::nonlinear::{self, LineSearch, Problem, Verdict};
+use crate::petsc::nonlinear::{self, Problem, Verdict};
 use crate::petsc::{Matrix, Vector};
 
 use super::step_factor::StepFactor;
@@ -148,7 +148,7 @@ pub(super) fn solve(
         iterations: Vec::new(),
         progress,
     };
-    let outcome = nonlinear::solve(&mut newton, u, LineSearch::CriticalPoint, MAX_ITERATIONS)?;
+    let outcome = nonlinear::solve(&mut newton, u, MAX_ITERATIONS)?;
     let Newton { iterations, accepted, .. } = newton;
     Ok((Step { label, converged: outcome.converged, iterations }, accepted))
 }

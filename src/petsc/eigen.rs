@@ -74,8 +74,6 @@ pub struct Found {
     pub n_converged: usize,
     /// Solves with the factor.
     pub n_solves: usize,
-    /// Restarts.
-    pub n_restarts: usize,
 }
 
 /// Eigenpairs nearest to the shift by TOAR (two-level orthogonal Arnoldi) on the inverted problem. `progress` hears of
@@ -183,12 +181,9 @@ unsafe extern "C" fn monitor(
 
 /// Real eigenpairs of PETSc's real arithmetic, translated once: conjugates come as neighbours, the first is kept.
 fn collect(pep: &Pep, comm: &Comm, n_local: usize, n_solves: usize) -> Result<Found> {
-    let (mut n_converged, mut n_restarts) = (0, 0);
+    let mut n_converged = 0;
     // SAFETY: the solver is alive.
-    unsafe {
-        check(sys::PEPGetConverged(pep.0, &mut n_converged))?;
-        check(sys::PEPGetIterationNumber(pep.0, &mut n_restarts))?;
-    }
+    check(unsafe { sys::PEPGetConverged(pep.0, &mut n_converged) })?;
     let mut pairs = Vec::new();
     for i in 0..n_converged {
         let (re, im) = (Vector::zeros(comm, n_local)?, Vector::zeros(comm, n_local)?);
@@ -199,6 +194,5 @@ fn collect(pep: &Pep, comm: &Comm, n_local: usize, n_solves: usize) -> Result<Fo
             pairs.push(Pair { lambda: Complex64::new(a, omega), re, im });
         }
     }
-    let (n_converged, n_restarts) = (n_converged as usize, n_restarts as usize);
-    Ok(Found { pairs, n_converged, n_solves, n_restarts })
+    Ok(Found { pairs, n_converged: n_converged as usize, n_solves })
 }

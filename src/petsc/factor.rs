@@ -210,17 +210,10 @@ impl Factor {
         Ok(self.infog(12)? as usize)
     }
 
-    /// Number of pivots that MUMPS took for zero (symmetric factors).
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn n_null(&self) -> Result<usize> {
-        Ok(self.infog(28)? as usize)
-    }
-
     /// How many solves cost about as much as one factorisation. A factorisation is bound by arithmetic and a solve, two
-    /// operations an entry, by memory, which takes some 33 operations' time an entry (measured: 24 s against 0.48 s for 1 Tflop and 0.61
-    /// G entries). Estimated from counts and not from clocks, so that a run repeats itself. Not collective.
+    /// operations an entry, by memory, which is taken for the time of 33 operations an entry: an estimate on the low side (18 for the medium
+    /// demo brake, where `make bench` gave 2.32 s against 0.086 s, a ratio of 27). From counts and not from clocks, so that a run
+    /// repeats itself. Not collective.
     pub fn solves_per_factorisation(&self) -> f64 {
         self.stats.flops / (33.0 * self.stats.entries.max(1.0))
     }

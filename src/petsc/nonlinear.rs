@@ -48,15 +48,6 @@ pub enum Verdict {
     Diverged,
 }
 
-/// How steps are taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LineSearch {
-    /// Critical point of the residual's projection on the step: robust under contact.
-    CriticalPoint,
-    /// Full steps.
-    Full,
-}
-
 /// What a solve came to. "Not converged" is data.
 #[derive(Debug, Clone, Copy)]
 pub struct Outcome {
@@ -92,7 +83,7 @@ impl Drop for Snes {
 ///
 /// # Panics
 /// Where a callback panicked.
-pub fn solve(problem: &mut dyn Problem, u: &mut Vector, search: LineSearch, max_iterations: usize) -> Result<Outcome> {
+pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -> Result<Outcome> {
     let comm = u.comm().clone();
     let residual = Vector::zeros(&comm, u.n_local())?;
     let jacobian = problem.jacobian().raw();
@@ -109,7 +100,7 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, search: LineSearch, max_
         check(sys::SNESSetConvergenceTest(snes.0, Some(judge), pointer, None))?;
         check(sys::SNESSetTolerances(snes.0, 0.0, 0.0, 0.0, max_iterations as i32, i32::MAX))?;
         use_corrections(snes.0, pointer)?;
-        set_line_search(snes.0, search)?;
+        use_critical_points(snes.0)?;
         check(sys::SNESSetFromOptions(snes.0))?;
         let code = sys::SNESSolve(snes.0, ptr::null_mut(), u.raw());
         (*pointer.cast::<Context>()).trap.release(code)?;
@@ -131,16 +122,13 @@ unsafe fn use_corrections(snes: sys::SNES, context: *mut c_void) -> Result<()> {
     }
 }
 
-unsafe fn set_line_search(snes: sys::SNES, search: LineSearch) -> Result<()> {
+/// Line search for the critical point of the residual's projection on the step: robust under contact.
+unsafe fn use_critical_points(snes: sys::SNES) -> Result<()> {
     let mut line = ptr::null_mut();
-    let name = match search {
-        LineSearch::CriticalPoint => c"cp",
-        LineSearch::Full => c"basic",
-    };
     // SAFETY: the solver is alive; the string is static.
     unsafe {
         check(sys::SNESGetLineSearch(snes, &mut line))?;
-        check(sys::SNESLineSearchSetType(line, name.as_ptr()))
+        check(sys::SNESLineSearchSetType(line, c"cp".as_ptr()))
     }
 }
 

@@ -127,12 +127,6 @@ impl Comm {
         result
     }
 
-    /// Elementwise maximum of an array over the ranks, in place.
-    pub fn max_all(&self, values: &mut [f64]) {
-        // SAFETY: MPI_MAX is a constant handle.
-        self.reduce_all(values, unsafe { sys::squeal_op_max() });
-    }
-
     /// Elementwise sum of an array over the ranks, in place.
     pub fn sum_all(&self, values: &mut [f64]) {
         // SAFETY: MPI_SUM is a constant handle.

@@ -55,7 +55,7 @@ pub struct Band {
 /// Eigenvalue tolerance handed to SLEPc: near double roots an error e in the residual is sqrt(e) in the eigenvalue.
 const TOLERANCE: f64 = 1e-12;
 /// How often the search is widened before the band is given up.
-const TRIES: usize = 4;
+const TRIES: u32 = 4;
 
 /// Finds all modes of `band` (Hz) of a pencil, sorted by frequency, vectors scaled to a largest entry of 1. `progress` hears of
 /// (converged, wanted, solves). Collective.
@@ -70,13 +70,10 @@ pub fn solve(
 ) -> Result<Band> {
     let expected = solver.n_below(pencil, band[1])?;
     solver.factorise_shifted(pencil)?;
-    let mut margin = 4 + expected / 20;
     let (mut n_solves, mut last) = (0, None);
-    for _ in 0..TRIES {
-        let Some(found) = nearest(pencil, solver, expected + margin, progress)? else {
-            margin *= 3;
-            continue;
-        };
+    for attempt in 0..TRIES {
+        let margin = (4 + expected / 20) * 3_usize.pow(attempt);
+        let Some(found) = nearest(pencil, solver, expected + margin, progress)? else { continue };
         n_solves += found.n_solves;
         if let Some(count) = count(pencil, solver, &found, band[1], expected)? {
             if count.agrees() {
@@ -84,7 +81,6 @@ pub fn solve(
             }
             last = Some((found, count));
         }
-        margin *= 3;
     }
     match last {
         Some((found, count)) => finish(pencil, found, band, count, n_solves),
