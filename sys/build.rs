@@ -20,7 +20,7 @@ const FUNCTIONS: &[&str] = &[
     "IS(CreateGeneral|CreateStride|Destroy)",
     "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
     "Mat(SeqAIJSetPreallocationCSR|MPIAIJSetPreallocationCSR|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|ConvertIfNeeded)",
-    "Mat(CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
+    "Mat(MatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
     "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
     "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",
     "KSP(Create|Destroy|Solve|GMRESSetRestart|SetPCSide|SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
@@ -30,6 +30,7 @@ const FUNCTIONS: &[&str] = &[
     "PEP(Create|Destroy|SetOperators|SetProblemType|SetType|SetDimensions|SetTarget|SetWhichEigenpairs|SetTolerances|SetScale|SetRefine|SetExtract|SetFromOptions|SetOptionsPrefix)",
     "PEP(Solve|GetST|GetConverged|GetEigenpair|GetIterationNumber|GetConvergedReason|MonitorSet|SetStoppingTestFunction|StoppingBasic|SetInitialSpace|SetConvergenceTest|TOARSetRestart|TOARSetLocking|GetDimensions)",
     "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
+    "d(gemm|geev)_",
     "METIS_(PartGraphKway|PartGraphRecursive|NodeND|SetDefaultOptions)",
     "squeal_.*",
 ];
@@ -38,7 +39,9 @@ fn main() {
     let path = env::var("PKG_CONFIG_PATH").unwrap_or_default();
     // SAFETY: a build script is single-threaded here.
     unsafe { env::set_var("PKG_CONFIG_PATH", format!("{REAL}:{path}")) };
-    println!("cargo:rustc-link-lib=metis");
+    for library in ["metis", "lapack", "blas"] {
+        println!("cargo:rustc-link-lib={library}");
+    }
     let slepc = probe("slepc", "libslepc-real-dev");
     let petsc = probe("petsc", "libpetsc-real-dev");
     let mpi = probe("mpi-c", "libopenmpi-dev");

@@ -1,4 +1,5 @@
 #include <petscsnes.h>
 #include <slepcpep.h>
+#include <petscblaslapack.h>
 #include <metis.h>
 #include "shim.h"

@@ -201,6 +201,13 @@ impl Factor {
         self.verdict("solve")
     }
 
+    /// Dense right-hand sides and solutions of one shape.
+    pub(super) fn solve_dense(&self, b: sys::Mat, x: sys::Mat) -> Result<()> {
+        // SAFETY: both are dense matrices of the factor's row layout.
+        check(unsafe { sys::MatMatSolve(self.raw, b, x) })?;
+        self.verdict("solve")
+    }
+
     /// Number of negative pivots of a symmetric factor: how many eigenvalues of the matrix are negative.
     ///
     /// # Errors

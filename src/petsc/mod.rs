@@ -9,6 +9,8 @@
 //!
 //! Everything that takes a handle is collective over its communicator unless it says otherwise.
 
+mod block;
+pub mod dense;
 pub mod eigen;
 pub mod error;
 mod factor;
@@ -20,6 +22,7 @@ pub mod nonlinear;
 mod session;
 mod vector;
 
+pub use block::Block;
 pub use factor::{Factor, FactorKind, FactorStats, ORDERING};
 pub use matrix::Matrix;
 pub use metis::partition;

@@ -65,6 +65,16 @@ impl Vector {
         Ok(Vector { raw, comm: comm.clone(), n_local })
     }
 
+    /// A vector with the values that this rank holds. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn from_local(comm: &Comm, local: &[f64]) -> Result<Vector> {
+        let mut vector = Vector::zeros(comm, local.len())?;
+        vector.local_mut(|values| values.copy_from_slice(local))?;
+        Ok(vector)
+    }
+
     pub(super) fn raw(&self) -> sys::Vec {
         self.raw
     }

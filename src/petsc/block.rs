@@ -1,0 +1,165 @@
+//! Blocks of vectors: one pass over a matrix or a factor for many right-hand sides.
+
+use std::ptr;
+
+use squeal_sys as sys;
+
+use super::dense;
+use super::error::check;
+use super::{Comm, Factor, Matrix, Vector};
+use crate::Result;
+
+/// Columns distributed over the ranks by rows, column-major on each.
+#[derive(Clone)]
+pub struct Block {
+    comm: Comm,
+    n_local: usize,
+    n_columns: usize,
+    values: Vec<f64>,
+}
+
+/// A dense PETSc matrix on borrowed values, for the length of a call.
+struct View {
+    raw: sys::Mat,
+}
+
+impl Drop for View {
+    fn drop(&mut self) {
+        // SAFETY: this handle owns the matrix object; the values stay their owner's.
+        unsafe { sys::MatDestroy(&mut self.raw) };
+    }
+}
+
+impl View {
+    fn new(block: &Block, values: *mut f64) -> Result<View> {
+        let mut raw = ptr::null_mut();
+        let (rows, columns) = (block.n_local as i32, block.n_columns as i32);
+        // SAFETY: `values` has `n_local x n_columns` entries and outlives the view.
+        unsafe {
+            check(sys::MatCreateDense(
+                block.comm.raw(),
+                rows,
+                super::DETERMINE,
+                super::DETERMINE,
+                columns,
+                values,
+                &mut raw,
+            ))?;
+            let view = View { raw };
+            check(sys::MatAssemblyBegin(raw, sys::MatAssemblyType::MAT_FINAL_ASSEMBLY))?;
+            check(sys::MatAssemblyEnd(raw, sys::MatAssemblyType::MAT_FINAL_ASSEMBLY))?;
+            Ok(view)
+        }
+    }
+}
+
+impl Block {
+    /// A block of zeros with `n_local` rows on this rank. Not collective.
+    pub fn zeros(comm: &Comm, n_local: usize, n_columns: usize) -> Block {
+        Block { comm: comm.clone(), n_local, n_columns, values: vec![0.0; n_local * n_columns] }
+    }
+
+    /// Number of columns. Not collective.
+    pub fn n_columns(&self) -> usize {
+        self.n_columns
+    }
+
+    /// This rank's values of column `j`. Not collective.
+    pub fn column(&self, j: usize) -> &[f64] {
+        &self.values[j * self.n_local..(j + 1) * self.n_local]
+    }
+
+    /// This rank's values of column `j`. Not collective.
+    pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.values[j * self.n_local..(j + 1) * self.n_local]
+    }
+
+    /// All values of this rank. Not collective.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    /// Column `j` as a vector.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn vector(&self, j: usize) -> Result<Vector> {
+        Vector::from_local(&self.comm, self.column(j))
+    }
+
+    /// A part of the columns. Not collective.
+    pub fn columns(&self, range: std::ops::Range<usize>) -> Block {
+        let values = self.values[range.start * self.n_local..range.end * self.n_local].to_vec();
+        Block { comm: self.comm.clone(), n_local: self.n_local, n_columns: range.len(), values }
+    }
+
+    /// Appends the columns of another block. Not collective.
+    pub fn append(&mut self, other: &Block) {
+        self.values.extend_from_slice(&other.values);
+        self.n_columns += other.n_columns;
+    }
+
+    /// `A self`.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn multiplied_by(&self, a: &Matrix) -> Result<Block> {
+        let view = View::new(self, self.values.as_ptr().cast_mut())?;
+        let mut product = ptr::null_mut();
+        // SAFETY: MatMatMult reads `view` only and creates `product`, which is read and destroyed here.
+        unsafe {
+            let reuse = sys::MatReuse::MAT_INITIAL_MATRIX;
+            check(sys::MatMatMult(a.raw(), view.raw, reuse, f64::from(super::DEFAULT), &mut product))?;
+            let product = View { raw: product };
+            let mut pointer = ptr::null_mut();
+            check(sys::MatDenseGetArray(product.raw, &mut pointer))?;
+            let values = std::slice::from_raw_parts(pointer, self.values.len()).to_vec();
+            check(sys::MatDenseRestoreArray(product.raw, &mut pointer))?;
+            Ok(Block { values, ..self.like(self.n_columns) })
+        }
+    }
+
+    /// `A^-1 self`, all columns in one pass over the factor.
+    ///
+    /// # Errors
+    /// PETSc's, and MUMPS's with its code.
+    pub fn solved_by(&self, factor: &Factor) -> Result<Block> {
+        let mut solution = self.clone();
+        let b = View::new(self, self.values.as_ptr().cast_mut())?;
+        let pointer = solution.values.as_mut_ptr();
+        let x = View::new(&solution, pointer)?;
+        factor.solve_dense(b.raw, x.raw)?;
+        drop(x);
+        Ok(solution)
+    }
+
+    /// `self^T other`, column-major, the same on every rank.
+    pub fn gram(&self, other: &Block) -> Vec<f64> {
+        let mut product = vec![0.0; self.n_columns * other.n_columns];
+        let sizes = [self.n_columns, self.n_local, other.n_columns];
+        dense::multiply(true, sizes, &self.values, &other.values, &mut product);
+        self.comm.sum_all(&mut product);
+        product
+    }
+
+    /// `self coefficients`, with column-major coefficients of as many rows as this block has columns. Not collective.
+    ///
+    /// # Panics
+    /// Where the coefficients do not fill whole columns.
+    pub fn combined(&self, coefficients: &[f64], n_columns: usize) -> Block {
+        let mut product = self.like(n_columns);
+        let sizes = [self.n_local, self.n_columns, n_columns];
+        dense::multiply(false, sizes, &self.values, coefficients, &mut product.values);
+        product
+    }
+
+    /// Zeros in the same layout.
+    fn like(&self, n_columns: usize) -> Block {
+        Block::zeros(&self.comm, self.n_local, n_columns)
+    }
+
+    /// `self += a other`. Not collective.
+    pub fn axpy(&mut self, a: f64, other: &Block) {
+        self.values.iter_mut().zip(&other.values).for_each(|(x, y)| *x += a * y);
+    }
+}

@@ -1,0 +1,119 @@
+//! Small dense algebra by BLAS and LAPACK, column-major.
+
+use num_complex::Complex64;
+use squeal_sys as sys;
+
+use crate::{Error, Result};
+
+/// `C = op(A) B` with A of `rows x inner` (or its transpose where `transposed`), B of `inner x columns`. Not collective.
+///
+/// # Panics
+/// Where the slices do not have those sizes.
+pub fn multiply(transposed: bool, [rows, inner, columns]: [usize; 3], a: &[f64], b: &[f64], c: &mut [f64]) {
+    assert_eq!((a.len(), b.len(), c.len()), (rows * inner, inner * columns, rows * columns));
+    if rows == 0 || columns == 0 {
+        return;
+    }
+    if inner == 0 {
+        return c.fill(0.0);
+    }
+    let [m, k, n] = [rows as i32, inner as i32, columns as i32];
+    let (op, lda) = if transposed { (c"T", k) } else { (c"N", m) };
+    // SAFETY: the leading dimensions and sizes are those of the slices, checked above.
+    unsafe {
+        sys::dgemm_(
+            op.as_ptr(),
+            c"N".as_ptr(),
+            &m,
+            &n,
+            &k,
+            &1.0,
+            a.as_ptr(),
+            &lda,
+            b.as_ptr(),
+            &k,
+            &0.0,
+            c.as_mut_ptr(),
+            &m,
+        );
+    }
+}
+
+/// An eigenvalue with non-negative imaginary part, and its right eigenvector.
+pub type EigenPair = (Complex64, Vec<Complex64>);
+
+/// Right eigenpairs of the closed upper half plane of a real `n x n` matrix, which is destroyed. Not collective.
+///
+/// # Errors
+/// [`Error::NotConverged`] where LAPACK's QR iteration fails.
+///
+/// # Panics
+/// Where the slice is not `n x n`.
+pub fn eigen(n: usize, a: &mut [f64]) -> Result<Vec<EigenPair>> {
+    assert_eq!(a.len(), n * n);
+    let (size, mut info) = (n as i32, 0);
+    let (mut re, mut im, mut vectors) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n]);
+    let mut work = vec![0.0; 40 * n.max(1)];
+    let length = work.len() as i32;
+    // SAFETY: sizes are those of the arrays; left vectors are not asked for.
+    unsafe {
+        sys::dgeev_(
+            c"N".as_ptr(),
+            c"V".as_ptr(),
+            &size,
+            a.as_mut_ptr(),
+            &size,
+            re.as_mut_ptr(),
+            im.as_mut_ptr(),
+            std::ptr::null_mut(),
+            &1,
+            vectors.as_mut_ptr(),
+            &size,
+            work.as_mut_ptr(),
+            &length,
+            &mut info,
+        );
+    }
+    if info != 0 {
+        return Err(Error::NotConverged(format!("LAPACK's dgeev failed with code {info} on {n} rows")));
+    }
+    let column = |j: usize| &vectors[j * n..(j + 1) * n];
+    let pair = |j: usize| {
+        let lambda = Complex64::new(re[j], im[j]);
+        let vector = match im[j] {
+            0.0 => column(j).iter().map(|&x| Complex64::new(x, 0.0)).collect(),
+            _ => column(j).iter().zip(column(j + 1)).map(|(&x, &y)| Complex64::new(x, y)).collect(),
+        };
+        (lambda, vector)
+    };
+    // Conjugates are neighbours, the one above the axis first.
+    Ok((0..n).filter(|&j| im[j] >= 0.0).map(pair).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_are_column_major() {
+        // A = [1 3; 2 4; 5 6], B = [1; -1]
+        let a = [1.0, 2.0, 5.0, 3.0, 4.0, 6.0];
+        let mut c = [0.0; 3];
+        multiply(false, [3, 2, 1], &a, &[1.0, -1.0], &mut c);
+        assert_eq!(c, [-2.0, -2.0, -1.0]);
+        let mut d = [0.0; 2];
+        multiply(true, [2, 3, 1], &a, &[1.0, 1.0, 1.0], &mut d);
+        assert_eq!(d, [8.0, 13.0]);
+    }
+
+    #[test]
+    fn a_rotation_has_its_eigenvalue_above_the_axis() {
+        // [0 -2; 2 0] has +-2i
+        let pairs = eigen(2, &mut [0.0, 2.0, -2.0, 0.0]).unwrap();
+        assert_eq!(pairs.len(), 1);
+        let (lambda, x) = &pairs[0];
+        assert!((lambda - Complex64::new(0.0, 2.0)).norm() < 1e-15);
+        // A x = lambda x: -2 x_1 = 2i x_0
+        assert!((-2.0 * x[1] - lambda * x[0]).norm() < 1e-15);
+    }
+}
