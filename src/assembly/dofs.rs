@@ -55,6 +55,15 @@ impl DofMap {
         self.owner[node as usize] == self.rank
     }
 
+    /// A number for each of this rank's equations that does not depend on the number of ranks: `3 node + axis`.
+    pub fn labels(&self) -> Vec<u64> {
+        let of = |node: u32| {
+            let free = (0..3).filter(move |&i| self.equations(node)[i] >= 0);
+            free.map(move |i| 3 * u64::from(node) + i as u64)
+        };
+        self.owned_nodes().flat_map(of).collect()
+    }
+
     /// The nodes of this rank, in the order of their equations.
     pub fn owned_nodes(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.owner.len() as u32).filter(|&n| self.owns(n))

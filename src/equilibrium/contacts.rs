@@ -96,21 +96,23 @@ impl<'a> Contacts<'a> {
     /// # Errors
     /// PETSc's.
     pub fn add_forces(&self, responses: &[Response], factor: f64, r: &mut Vector) -> Result<()> {
-        let owned = self.dofs.owned();
         r.local_mut(|r| {
-            for (a, response) in responses.iter().enumerate() {
-                if response.status == Status::Open {
-                    continue;
-                }
-                self.interface.trace.spread(a, response.force, |node, f| {
-                    for (equation, f) in self.dofs.equations(node).into_iter().zip(f) {
-                        if owned.contains(&equation) {
-                            r[(equation - owned.start) as usize] += factor * f;
-                        }
-                    }
-                });
+            for (a, response) in responses.iter().enumerate().filter(|(_, response)| response.status != Status::Open) {
+                self.spread_into(a, response.force, factor, r);
             }
         })
+    }
+
+    /// `r += factor B_a^T f` on this rank's rows. Not collective.
+    pub fn spread_into(&self, a: usize, force: [f64; 3], factor: f64, r: &mut [f64]) {
+        let owned = self.dofs.owned();
+        self.interface.trace.spread(a, force, |node, f| {
+            for (equation, f) in self.dofs.equations(node).into_iter().zip(f) {
+                if owned.contains(&equation) {
+                    r[(equation - owned.start) as usize] += factor * f;
+                }
+            }
+        });
     }
 
     /// `A += sum B_a^T D_a B_a`. Collective.

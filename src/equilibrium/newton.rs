@@ -12,7 +12,9 @@ use super::step_factor::StepFactor;
 /// Residual at which an equilibrium counts as converged, relative to the larger of the loads and the contact forces.
 const TOLERANCE: f64 = 1e-9;
 /// A step's linear residual, relative to the step's own, over the equilibrium's: Newton's last steps stay quadratic.
-const FORCING: f64 = 1e-3;
+const FORCING: f64 = 1e-2;
+/// The last step need not go further below the equilibrium's tolerance than this.
+const ENOUGH: f64 = 0.1;
 /// Newton steps at most.
 const MAX_ITERATIONS: usize = 40;
 
@@ -80,7 +82,7 @@ impl Problem for Newton<'_, '_> {
         let responses = self.contacts.respond(u, self.stage)?;
         self.tangent.copy_from(&self.system.k)?;
         self.contacts.add_blocks(responses.iter().map(|r| r.tangent), self.tangent)?;
-        self.factor.adopt(responses.iter().map(|r| r.status).collect());
+        self.factor.adopt(responses);
         Ok(())
     }
 
@@ -90,7 +92,8 @@ impl Problem for Newton<'_, '_> {
 
     fn correct(&mut self, r: &Vector, du: &mut Vector) -> Result<()> {
         let residual = self.iterations.last().map_or(1.0, |it| it.residual);
-        self.factor.solve(self.tangent, r, du, FORCING * residual.min(1.0))
+        let tolerance = (FORCING * residual.min(1.0)).max(ENOUGH * TOLERANCE / residual);
+        self.factor.solve(self.tangent, r, du, tolerance, self.contacts)
     }
 
     fn judge(&mut self, iteration: usize, residual: f64, _step: f64) -> Verdict {

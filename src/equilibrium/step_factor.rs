@@ -1,67 +1,231 @@
 //! The tangent's factor, made anew only where it pays.
 //!
-//! A tangent that differs from the factorised one at few contact points is solved by GMRES with the old factor: each opened or closed
-//! point is an outlier that takes an iteration or two. Iterations may cost half a factorisation. One that differs at many is factorised anew.
+//! With `A_0 = L U` the tangent of an earlier iterate, the points F that have opened, closed, stuck or slipped since differ by a low rank:
+//!
+//! ```text
+//! A' = A_0 + sum_F B_a^T (D_a - D_a0) B_a = A_0 + U V^T
+//! A'^-1 = A_0^-1 - W (I + V^T W)^-1 V^T A_0^-1       W = A_0^-1 U
+//! ```
+//!
+//! (Sherman, Morrison and Woodbury; Golub and Van Loan, Matrix Computations, 2.1.4). W comes from solves with many right-hand sides at
+//! a time. What A' lacks, the smooth change of friction and of slip directions, is left to GMRES with A' for its preconditioner. All
+//! that is paid since the last factorisation is counted in solves; when it reaches the price of a factorisation, one is made.
 
+use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3};
+
+use super::contacts::Contacts;
 use crate::Result;
-use crate::contact::Status;
-use crate::petsc::{Factor, FactorKind, FactorStats, Matrix, Vector, linear};
+use crate::contact::Response;
+use crate::petsc::{Block, Factor, FactorKind, FactorStats, Matrix, Vector, linear};
 
-/// Share of a factorisation's cost that iterations with an old factor may take.
-const SHARE: f64 = 0.5;
-/// Iterations that a point of changed status takes, about.
-const ITERATIONS_A_POINT: f64 = 1.5;
+/// Price of a right-hand side among many, in single solves: 0.09 s against 0.35 s on the full demo brake, two ranks.
+const BLOCKED_PRICE: f64 = 0.3;
+/// Right-hand sides that updates may keep: memory, n doubles each.
+const MAX_UPDATES: usize = 200;
+/// A change of tangent this much smaller than the tangents themselves is GMRES's.
+const NEGLIGIBLE: f64 = 1e-6;
 
-/// A factor with the statuses that it was made for.
+/// `D_a - D_a0` of a point as a sum of dyads, `left right^T`.
+struct Dyad {
+    point: usize,
+    left: [f64; 3],
+    right: [f64; 3],
+}
+
+/// The columns of the low-rank change and what its inverse needs.
+struct Update {
+    dyads: Vec<Dyad>,
+    /// `W = A_0^-1 U`.
+    w: Block,
+    /// `I + V^T W`.
+    capacitance: LU<f64, Dyn, Dyn>,
+}
+
+/// A factor with the tangents of the points that it was made for.
 pub(super) struct StepFactor {
     factor: Factor,
-    /// Status of every point at the last factorisation.
-    made_for: Option<Vec<Status>>,
-    /// Status of every point in the current tangent.
-    current: Vec<Status>,
+    /// What every point did at the last factorisation.
+    made_for: Vec<Response>,
+    /// What every point does in the current tangent.
+    current: Vec<Response>,
+    /// What every point did when the update was made.
+    updated_for: Vec<Response>,
+    update: Option<Update>,
     /// Whether the factor is that of the current tangent.
     exact: bool,
+    /// Paid since the last factorisation, in single solves.
+    spent: f64,
     n_iterations: usize,
 }
 
 impl StepFactor {
     pub(super) fn new() -> StepFactor {
-        let factor = Factor::new(FactorKind::Unsymmetric);
-        StepFactor { factor, made_for: None, current: Vec::new(), exact: false, n_iterations: 0 }
+        StepFactor {
+            factor: Factor::new(FactorKind::Unsymmetric),
+            made_for: Vec::new(),
+            current: Vec::new(),
+            updated_for: Vec::new(),
+            update: None,
+            exact: false,
+            spent: 0.0,
+            n_iterations: 0,
+        }
     }
 
-    /// Hears of a new tangent and the statuses in it.
-    pub(super) fn adopt(&mut self, statuses: Vec<Status>) {
-        self.current = statuses;
+    /// Hears of a new tangent and the points in it.
+    pub(super) fn adopt(&mut self, responses: Vec<Response>) {
+        self.current = responses;
         self.exact = false;
     }
 
-    /// `x = A^-1 b`: with an old factor to the relative tolerance, else exactly.
-    pub(super) fn solve(&mut self, a: &Matrix, b: &Vector, x: &mut Vector, tolerance: f64) -> Result<()> {
-        let budget = (SHARE * self.factor.solves_per_factorisation()) as usize;
-        if !self.exact && self.is_near(budget) {
-            let iterations = linear::gmres(a, &self.factor, b, x, tolerance, budget)?;
-            self.n_iterations += iterations.unwrap_or(budget);
-            if iterations.is_some() {
-                return Ok(());
-            }
-        }
-        if !self.exact {
+    /// `x = A^-1 b`: with an old factor to the relative tolerance, else exactly. Collective.
+    pub(super) fn solve(
+        &mut self,
+        a: &Matrix,
+        b: &Vector,
+        x: &mut Vector,
+        tolerance: f64,
+        contacts: &mut Contacts,
+    ) -> Result<()> {
+        if !self.exact && !self.iterate(a, b, x, tolerance, contacts)? {
             self.factor.factorise(a)?;
-            self.made_for = Some(self.current.clone());
+            self.made_for.clone_from(&self.current);
+            self.update = None;
             self.exact = true;
+            self.spent = 0.0;
         }
-        self.factor.solve(b, x)
+        if self.exact { self.factor.solve(b, x) } else { Ok(()) }
     }
 
-    fn is_near(&self, budget: usize) -> bool {
-        let changed = |old: &Vec<Status>| old.iter().zip(&self.current).filter(|(a, b)| a != b).count();
-        // Of a small matrix a factor costs less than the first iteration.
-        let is_near = |old| ITERATIONS_A_POINT * changed(old) as f64 <= budget as f64;
-        budget > 0 && self.made_for.as_ref().is_some_and(is_near)
+    /// Tries GMRES with the updated old factor; tells whether it did.
+    fn iterate(
+        &mut self,
+        a: &Matrix,
+        b: &Vector,
+        x: &mut Vector,
+        tolerance: f64,
+        contacts: &mut Contacts,
+    ) -> Result<bool> {
+        if self.made_for.is_empty() || !self.bring_up_to_date(b, contacts)? {
+            return Ok(false);
+        }
+        let left = (self.factor.solves_per_factorisation() - self.spent).max(0.0) as usize;
+        if left == 0 {
+            return Ok(false);
+        }
+        let (factor, update) = (&self.factor, &self.update);
+        let mut inverse = |b: &Vector, x: &mut Vector| apply(factor, update.as_ref(), b, x, contacts);
+        let iterations = linear::gmres(a, &mut inverse, b, x, tolerance, left)?;
+        self.n_iterations += iterations.unwrap_or(left);
+        self.spent += iterations.unwrap_or(left) as f64;
+        Ok(iterations.is_some())
+    }
+
+    /// Makes the update that of the current statuses, unless it costs too much; tells whether it did.
+    fn bring_up_to_date(&mut self, like: &Vector, contacts: &mut Contacts) -> Result<bool> {
+        let flipped = |a: &usize| self.made_for[*a].status != self.current[*a].status;
+        let kept = |a: usize| self.updated_for.get(a).is_some_and(|old| old.status == self.current[a].status);
+        let (mut dyads, mut columns) = (Vec::new(), Vec::new());
+        if let Some(Update { dyads: old, w, .. }) = self.update.take() {
+            for (j, dyad) in old.into_iter().enumerate() {
+                if flipped(&dyad.point) && kept(dyad.point) {
+                    columns.extend_from_slice(w.column(j));
+                    dyads.push(dyad);
+                }
+            }
+        }
+        let known: Vec<usize> = dyads.iter().map(|dyad| dyad.point).collect();
+        let new = (0..self.current.len()).filter(flipped).filter(|a| !known.contains(a));
+        let new: Vec<Dyad> =
+            new.flat_map(|a| dyads_of(a, &self.made_for[a].tangent, &self.current[a].tangent)).collect();
+        let price = BLOCKED_PRICE * new.len() as f64;
+        if dyads.len() + new.len() > MAX_UPDATES || self.spent + price > self.factor.solves_per_factorisation() {
+            return Ok(false);
+        }
+        self.spent += price;
+        columns.extend_from_slice(self.responses_to(&new, like, contacts)?.values());
+        dyads.extend(new);
+        self.updated_for.clone_from(&self.current);
+        if !dyads.is_empty() {
+            let w = Block::from_columns(like.comm(), like.n_local(), columns);
+            let capacitance = capacitance(&dyads, &w, contacts)?.lu();
+            self.update = Some(Update { dyads, w, capacitance });
+        }
+        Ok(true)
+    }
+
+    /// `A_0^-1 B^T left` of each dyad.
+    fn responses_to(&self, dyads: &[Dyad], like: &Vector, contacts: &Contacts) -> Result<Block> {
+        let mut u = Block::zeros(like.comm(), like.n_local(), dyads.len());
+        for (j, dyad) in dyads.iter().enumerate() {
+            contacts.spread_into(dyad.point, dyad.left, 1.0, u.column_mut(j));
+        }
+        if dyads.is_empty() { Ok(u) } else { u.solved_by(&self.factor) }
     }
 
     pub(super) fn costs(&self) -> (FactorStats, usize) {
         (self.factor.stats(), self.n_iterations)
+    }
+}
+
+/// `x = A'^-1 b`.
+fn apply(factor: &Factor, update: Option<&Update>, b: &Vector, x: &mut Vector, contacts: &mut Contacts) -> Result<()> {
+    factor.solve(b, x)?;
+    let Some(Update { dyads, w, capacitance }) = update else { return Ok(()) };
+    let y = capacitance.solve(&DVector::from_vec(projections(dyads, x, contacts)?));
+    let y = y.ok_or_else(|| crate::Error::Library("the updated tangent is singular".into()))?;
+    let correction = w.combined(y.as_slice(), 1);
+    x.local_mut(|x| x.iter_mut().zip(correction.column(0)).for_each(|(x, c)| *x -= c))
+}
+
+/// `V^T z`, that is `right^T B_a z` of each dyad.
+fn projections(dyads: &[Dyad], z: &Vector, contacts: &mut Contacts) -> Result<Vec<f64>> {
+    let gaps = contacts.gaps(z)?;
+    Ok(dyads.iter().map(|dyad| crate::algebra::dot(dyad.right, gaps[dyad.point])).collect())
+}
+
+/// `I + V^T W`.
+fn capacitance(dyads: &[Dyad], w: &Block, contacts: &mut Contacts) -> Result<DMatrix<f64>> {
+    let n = dyads.len();
+    let mut matrix = DMatrix::identity(n, n);
+    for j in 0..n {
+        for (i, value) in projections(dyads, &w.vector(j)?, contacts)?.into_iter().enumerate() {
+            matrix[(i, j)] += value;
+        }
+    }
+    Ok(matrix)
+}
+
+/// `now - before` as dyads, by its singular values: one where a point opens or closes and slides.
+fn dyads_of(point: usize, before: &[[f64; 3]; 3], now: &[[f64; 3]; 3]) -> Vec<Dyad> {
+    let matrix = |rows: &[[f64; 3]; 3]| Matrix3::from(*rows).transpose();
+    let (before, now) = (matrix(before), matrix(now));
+    let smallest = NEGLIGIBLE * before.norm().max(now.norm());
+    let svd = (now - before).svd(true, true);
+    let (u, v_t) = (svd.u.expect("asked for"), svd.v_t.expect("asked for"));
+    let dyad = |k: usize| Dyad {
+        point,
+        left: (svd.singular_values[k] * u.column(k)).into(),
+        right: v_t.row(k).transpose().into(),
+    };
+    (0..3).filter(|&k| svd.singular_values[k] > smallest).map(dyad).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dyads_add_up_to_the_change() {
+        let before = [[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
+        let now = [[0.0, 1.0, 0.5], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
+        let dyads = dyads_of(3, &before, &now);
+        assert_eq!(dyads.len(), 1, "only the first row changes");
+        for i in 0..3 {
+            for j in 0..3 {
+                let sum: f64 = dyads.iter().map(|dyad| dyad.left[i] * dyad.right[j]).sum();
+                assert!((sum - (now[i][j] - before[i][j])).abs() < 1e-14);
+            }
+        }
     }
 }

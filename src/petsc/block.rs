@@ -2,6 +2,7 @@
 
 use std::ptr;
 
+use nalgebra::{DMatrix, SymmetricEigen};
 use squeal_sys as sys;
 
 use super::dense;
@@ -57,6 +58,31 @@ impl Block {
     /// A block of zeros with `n_local` rows on this rank. Not collective.
     pub fn zeros(comm: &Comm, n_local: usize, n_columns: usize) -> Block {
         Block { comm: comm.clone(), n_local, n_columns, values: vec![0.0; n_local * n_columns] }
+    }
+
+    /// Columns one after the other, `n_local` values each on this rank. Not collective.
+    ///
+    /// # Panics
+    /// Where the values do not fill whole columns.
+    pub fn from_columns(comm: &Comm, n_local: usize, values: Vec<f64>) -> Block {
+        let n_columns = values.len() / n_local.max(1);
+        assert_eq!(values.len(), n_columns * n_local);
+        Block { comm: comm.clone(), n_local, n_columns, values }
+    }
+
+    /// All values of this rank, column by column. Not collective.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The communicator.
+    pub fn comm(&self) -> &Comm {
+        &self.comm
+    }
+
+    /// Number of rows on this rank. Not collective.
+    pub fn n_local(&self) -> usize {
+        self.n_local
     }
 
     /// Number of columns. Not collective.
@@ -151,6 +177,21 @@ impl Block {
         let sizes = [self.n_local, self.n_columns, n_columns];
         dense::multiply(false, sizes, &self.values, coefficients, &mut product.values);
         product
+    }
+
+    /// Coefficients (column-major) and number of the combinations that make an orthonormal basis of the columns' span; directions smaller
+    /// than `negligible` times the largest are dropped, columns taken at length 1. Its accuracy is the square of that ratio's: twice is
+    /// enough. Collective.
+    pub fn orthonormalising(&self, negligible: f64) -> (Vec<f64>, usize) {
+        let n = self.n_columns;
+        let gram = DMatrix::from_vec(n, n, self.gram(self));
+        let scale: Vec<f64> = (0..n).map(|j| 1.0 / gram[(j, j)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        let eigen = SymmetricEigen::new(DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]));
+        let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
+        let kept: Vec<usize> = (0..n).filter(|&j| eigen.eigenvalues[j] > negligible.powi(2) * largest).collect();
+        let entry = |(i, j): (usize, usize)| scale[i] * eigen.eigenvectors[(i, j)] / eigen.eigenvalues[j].sqrt();
+        let entries = kept.iter().flat_map(|&j| (0..n).map(move |i| (i, j)));
+        (entries.map(entry).collect(), kept.len())
     }
 
     /// Zeros in the same layout.

@@ -9,7 +9,7 @@ use squeal_sys as sys;
 use super::error::{Trap, check};
 use super::vector::Borrowed;
 use super::{Comm, Factor, Matrix, Vector};
-use crate::Result;
+use crate::{Error, Result};
 
 /// The polynomial `lambda^2 M + lambda C + K` and a factor of it at a real shift.
 pub struct Quadratic<'a> {
@@ -105,6 +105,22 @@ pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(us
     }
     let n_solves = context.n_solves;
     collect(&pep, &comm, problem.k.n_local(), n_solves)
+}
+
+/// [`solve`], or none where LAPACK could not reorder the projected problem (xTREXC, info 1: blocks too close to swap, as the
+/// defective zeros of several rigid motions are). Another search space does not meet the same blocks. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn solve_or_none(
+    problem: &Quadratic,
+    options: &Options,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Option<Found>> {
+    match solve(problem, options, progress) {
+        Err(Error::Library(text)) if text.contains("LAPACK subroutine trexc: info=1") => Ok(None),
+        found => found.map(Some),
+    }
 }
 
 unsafe fn configure(pep: sys::PEP, shift: f64, options: &Options) -> Result<()> {

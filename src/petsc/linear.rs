@@ -7,11 +7,14 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Comm, Factor, Matrix, Vector};
+use super::{Comm, Matrix, Vector};
 use crate::Result;
 
+/// `x = M^-1 b` for a neighbour M of the matrix.
+pub type Inverse<'a> = &'a mut dyn FnMut(&Vector, &mut Vector) -> Result<()>;
+
 struct Context<'a> {
-    factor: &'a Factor,
+    inverse: Inverse<'a>,
     comm: Comm,
     trap: Trap,
 }
@@ -33,14 +36,14 @@ impl Drop for Ksp {
 /// PETSc's and MUMPS's.
 pub fn gmres(
     a: &Matrix,
-    neighbour: &Factor,
+    neighbour: Inverse,
     b: &Vector,
     x: &mut Vector,
     tolerance: f64,
     max_iterations: usize,
 ) -> Result<Option<usize>> {
     let comm = b.comm().clone();
-    let mut context = Context { factor: neighbour, comm: comm.clone(), trap: Trap::default() };
+    let mut context = Context { inverse: neighbour, comm: comm.clone(), trap: Trap::default() };
     let pointer = ptr::from_mut(&mut context).cast::<c_void>();
     let mut ksp = Ksp(ptr::null_mut());
     let (most, keep) = (max_iterations as i32, f64::from(super::DEFAULT));
@@ -73,6 +76,6 @@ unsafe extern "C" fn apply(pc: sys::PC, b: sys::Vec, x: sys::Vec) -> sys::PetscE
         sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast());
         &mut *pointer.cast::<Context>()
     };
-    let (factor, comm) = (context.factor, &context.comm);
-    context.trap.guard(c"solve", || factor.solve(&Borrowed::new(b, comm), Borrowed::new(x, comm).get_mut()))
+    let (inverse, comm) = (&mut context.inverse, &context.comm);
+    context.trap.guard(c"solve", || inverse(&Borrowed::new(b, comm), Borrowed::new(x, comm).get_mut()))
 }

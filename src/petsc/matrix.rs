@@ -45,6 +45,20 @@ impl Matrix {
         Ok(matrix)
     }
 
+    /// A full square matrix of `n` rows from its values by rows, on one rank.
+    ///
+    /// # Errors
+    /// PETSc's.
+    ///
+    /// # Panics
+    /// Where the values are not `n x n`, or the communicator has several ranks.
+    pub fn dense(comm: &Comm, n: usize, values: &[f64]) -> Result<Matrix> {
+        assert_eq!((values.len(), comm.size()), (n * n, 1));
+        let offsets: Vec<i32> = (0..=n).map(|i| (i * n) as i32).collect();
+        let columns: Vec<i32> = (0..n).flat_map(|_| 0..n as i32).collect();
+        Matrix::from_csr(comm, &offsets, &columns, values)
+    }
+
     fn set_option(&self, option: sys::MatOption, on: bool) -> Result<()> {
         let flag = if on { sys::PetscBool::PETSC_TRUE } else { sys::PetscBool::PETSC_FALSE };
         // SAFETY: the handle is alive.

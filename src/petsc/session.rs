@@ -148,6 +148,22 @@ impl Comm {
         }
     }
 
+    /// This rank's own communicator.
+    pub fn alone(&self) -> Comm {
+        // SAFETY: a constant handle.
+        Comm { raw: unsafe { sys::squeal_comm_self() }, rank: 0, size: 1, _session: self._session.clone() }
+    }
+
+    /// The first rank's values, on every rank. Collective.
+    pub fn from_root(&self, values: &[f64]) -> Vec<f64> {
+        let mut values = values.to_vec();
+        // SAFETY: the array has the same length on all ranks by contract.
+        unsafe {
+            sys::MPI_Bcast(values.as_mut_ptr().cast(), values.len() as i32, sys::squeal_type_double(), 0, self.raw);
+        }
+        values
+    }
+
     /// Waits for all ranks.
     pub fn barrier(&self) {
         // SAFETY: a valid communicator.

@@ -2,13 +2,17 @@
 
 use std::f64::consts::TAU;
 
-use super::mode::Residual;
+use num_complex::Complex64;
+
+use super::mode::backward_errors;
+use super::subspace::{self, Problem};
 use super::{Mode, Pencil};
-use crate::petsc::eigen::{self, Options, Quadratic};
-use crate::petsc::{Factor, FactorKind};
+use crate::assembly::System;
+use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
+use crate::petsc::{Block, Factor, FactorKind};
 use crate::{Error, Result};
 
-/// Factors whose analysis is made once and shared by all pencils of one pattern.
+/// What serves all pencils of one pattern: factors whose analysis is made once.
 pub struct Solver {
     /// LU of the unsymmetric stiffness; the equilibrium uses the same.
     pub lu: Factor,
@@ -16,11 +20,33 @@ pub struct Solver {
     pub ldl: Factor,
     /// Real shift of the inverted problem, 1/s: 0, unless the structure has rigid motions.
     pub shift: f64,
+    /// For the blocked search, where it pays: a number for each of this rank's equations that does not depend on the ranks.
+    labels: Option<Vec<u64>>,
 }
 
+/// Equations from which the blocked search pays: below, a single solve costs too little.
+const BLOCKED_FROM: usize = 50_000;
+
 impl Default for Solver {
+    /// Searches with TOAR.
     fn default() -> Self {
-        Solver { lu: Factor::new(FactorKind::Unsymmetric), ldl: Factor::new(FactorKind::Symmetric), shift: 0.0 }
+        let (lu, ldl) = (Factor::new(FactorKind::Unsymmetric), Factor::new(FactorKind::Symmetric));
+        Solver { lu, ldl, shift: 0.0, labels: None }
+    }
+}
+
+impl Solver {
+    /// The solver for a system: blocked for a large one, else [`Solver::default`].
+    pub fn for_system(system: &System) -> Solver {
+        match system.dofs.n_global() {
+            n if n >= BLOCKED_FROM => Solver::blocked(system),
+            _ => Solver::default(),
+        }
+    }
+
+    /// Searches with a growing subspace and many right-hand sides at a time.
+    pub fn blocked(system: &System) -> Solver {
+        Solver { labels: Some(system.dofs.labels()), ..Solver::default() }
     }
 }
 
@@ -56,6 +82,16 @@ pub struct Band {
 const TOLERANCE: f64 = 1e-12;
 /// How often the search is widened before the band is given up.
 const TRIES: u32 = 4;
+/// The blocked search goes this much beyond the band's end, so that the count finds a gap.
+const BEYOND: f64 = 1.03;
+
+/// Eigenpairs of the closed upper half plane, complete up to a frequency.
+struct Search {
+    pairs: Vec<Pair>,
+    /// Hz.
+    reach: f64,
+    n_solves: usize,
+}
 
 /// Finds all modes of `band` (Hz) of a pencil, sorted by frequency, vectors scaled to a largest entry of 1. `progress` hears of
 /// (converged, wanted, solves). Collective.
@@ -73,17 +109,19 @@ pub fn solve(
     let (mut n_solves, mut last) = (0, None);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
-        let Some(found) = nearest(pencil, solver, expected + margin, progress)? else { continue };
-        n_solves += found.n_solves;
-        if let Some(count) = count(pencil, solver, &found, band[1], expected)? {
+        let Some(search) = solver.search(pencil, expected + margin, band[1], progress)? else { continue };
+        n_solves += search.n_solves;
+        if let Some(count) = count(pencil, solver, &search, band[1], expected)? {
             if count.agrees() {
-                return finish(pencil, found, band, count, n_solves);
+                return finish(pencil, search, band, count, n_solves);
             }
-            last = Some((found, count));
+            last = Some((search, count));
         }
+        // What the blocked search has missed is left to the other one.
+        solver.labels = None;
     }
     match last {
-        Some((found, count)) => finish(pencil, found, band, count, n_solves),
+        Some((search, count)) => finish(pencil, search, band, count, n_solves),
         None => Err(Error::NotConverged(format!(
             "the eigensolver did not reach the end of the band {}-{} Hz, with {expected} modes expected. Try a narrower band \
              ([stability] band)",
@@ -96,43 +134,18 @@ fn n_equations(pencil: &Pencil) -> usize {
     pencil.k.comm().sum(pencil.k.n_local() as f64) as usize
 }
 
-/// The eigenpairs nearest to the shift, the expected modes and some beyond the band's end; none where LAPACK could not
-/// reorder the projected problem (xTREXC, info 1: blocks too close to swap, as the defective zeros of several rigid motions are).
-/// Another search space does not meet the same blocks.
-fn nearest(
-    pencil: &Pencil,
-    solver: &Solver,
-    n_modes: usize,
-    progress: &mut dyn FnMut(usize, usize, usize),
-) -> Result<Option<eigen::Found>> {
-    let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: solver.shift, factor: &solver.lu };
-    let n_wanted = (2 * n_modes).min(2 * n_equations(pencil));
-    let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
-    match eigen::solve(&problem, &options, &mut |converged, solves| progress(converged, n_wanted, solves)) {
-        Err(Error::Library(text)) if text.contains("LAPACK subroutine trexc: info=1") => Ok(None),
-        found => found.map(Some),
-    }
-}
-
 /// How many modes were found below the band's end, and how many there should be; none where the search did not get there.
 ///
 /// Friction may carry a mode across the band's end, where the two problems then differ by one: the count is taken again
 /// in the widest gap between modes above it.
-fn count(
-    pencil: &Pencil,
-    solver: &mut Solver,
-    found: &eigen::Found,
-    end: f64,
-    expected: usize,
-) -> Result<Option<Count>> {
-    let mut moduli: Vec<f64> = found.pairs.iter().map(|pair| pair.lambda.norm() / TAU).collect();
-    moduli.sort_by(f64::total_cmp);
-    let all = found.n_converged >= 2 * n_equations(pencil);
-    let reach = if all { f64::INFINITY } else { moduli.last().copied().unwrap_or(0.0) };
-    if reach <= end {
+fn count(pencil: &Pencil, solver: &mut Solver, search: &Search, end: f64, expected: usize) -> Result<Option<Count>> {
+    if search.reach <= end {
         return Ok(None);
     }
-    let below = |f: f64| found.pairs.iter().map(|pair| weight(pair, f)).sum::<f64>().round() as usize;
+    let mut moduli: Vec<f64> = search.pairs.iter().map(|pair| pair.lambda.norm() / TAU).collect();
+    moduli.extend(Some(search.reach).filter(|reach| reach.is_finite()));
+    moduli.sort_by(f64::total_cmp);
+    let below = |f: f64| search.pairs.iter().map(|pair| weight(pair, f)).sum::<f64>().round() as usize;
     let count = Count { below: end, expected, found: below(end) };
     match widest_gap(&moduli, end).filter(|_| !count.agrees()) {
         Some(gap) => Ok(Some(Count { below: gap, expected: solver.n_below(pencil, gap)?, found: below(gap) })),
@@ -141,7 +154,7 @@ fn count(
 }
 
 /// A pair of the upper half plane stands for one mode, a real eigenvalue for half of one.
-fn weight(pair: &eigen::Pair, below: f64) -> f64 {
+fn weight(pair: &Pair, below: f64) -> f64 {
     match pair.lambda.norm() <= TAU * below {
         true if pair.lambda.im > 0.0 => 1.0,
         true => 0.5,
@@ -155,20 +168,28 @@ fn widest_gap(sorted: &[f64], from: f64) -> Option<f64> {
     gaps.max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0]))).map(|w| 0.5 * (w[0] + w[1]))
 }
 
-fn finish(pencil: &Pencil, found: eigen::Found, band: [f64; 2], count: Count, n_solves: usize) -> Result<Band> {
-    let mut residual = Residual::new(pencil)?;
+fn finish(pencil: &Pencil, search: Search, band: [f64; 2], count: Count, n_solves: usize) -> Result<Band> {
+    let within = |pair: &Pair| (band[0]..=band[1]).contains(&(pair.lambda.im / TAU));
+    let pairs: Vec<Pair> = search.pairs.into_iter().filter(within).collect();
+    let lambdas: Vec<Complex64> = pairs.iter().map(|pair| pair.lambda).collect();
+    let errors = backward_errors(pencil, &lambdas, &vectors(pencil, &pairs)?)?;
     let mut modes = Vec::new();
-    for eigen::Pair { lambda, re, im } in found.pairs {
-        let frequency = lambda.im / TAU;
-        if frequency >= band[0] && frequency <= band[1] {
-            let backward_error = residual.backward_error(lambda, &re, &im)?;
-            let mut mode = Mode { lambda, backward_error, re, im };
-            mode.normalise()?;
-            modes.push(mode);
-        }
+    for (Pair { lambda, re, im }, backward_error) in pairs.into_iter().zip(errors) {
+        let mut mode = Mode { lambda, backward_error, re, im };
+        mode.normalise()?;
+        modes.push(mode);
     }
     sort(&mut modes);
     Ok(Band { modes, count, n_solves })
+}
+
+/// Real and imaginary parts as the columns of a block.
+fn vectors(pencil: &Pencil, pairs: &[Pair]) -> Result<Block> {
+    let mut block = Block::zeros(pencil.k.comm(), pencil.k.n_local(), 2 * pairs.len());
+    for (j, vector) in pairs.iter().flat_map(|pair| [&pair.re, &pair.im]).enumerate() {
+        vector.local(|values| block.column_mut(j).copy_from_slice(values))?;
+    }
+    Ok(block)
 }
 
 /// Sorts by frequency; modes of one frequency, such as the growing and the decaying one of a pair, by growth. What counts as one
@@ -182,6 +203,33 @@ fn sort(modes: &mut [Mode]) {
 }
 
 impl Solver {
+    /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where LAPACK gave up.
+    fn search(
+        &self,
+        pencil: &Pencil,
+        n_modes: usize,
+        end: f64,
+        progress: &mut dyn FnMut(usize, usize, usize),
+    ) -> Result<Option<Search>> {
+        if let Some(labels) = self.labels.as_ref().filter(|_| self.shift == 0.0) {
+            let problem = Problem { pencil, factor: &self.lu, labels };
+            let reach = BEYOND * end;
+            let found = subspace::solve(&problem, TAU * reach, n_modes, progress)?;
+            return Ok(Some(Search { pairs: found.pairs, reach, n_solves: found.n_solves }));
+        }
+        let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: self.shift, factor: &self.lu };
+        let n_all = 2 * n_equations(pencil);
+        let n_wanted = (2 * n_modes).min(n_all);
+        let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
+        let mut hear = |converged, solves| progress(converged, n_wanted, solves);
+        let found = eigen::solve_or_none(&problem, &options, &mut hear)?;
+        Ok(found.map(|Found { pairs, n_converged, n_solves }| {
+            let furthest = pairs.iter().map(|pair| pair.lambda.norm() / TAU).fold(0.0, f64::max);
+            let reach = if n_converged >= n_all { f64::INFINITY } else { furthest };
+            Search { pairs, reach, n_solves }
+        }))
+    }
+
     /// Number of modes of the symmetric problem below a frequency (Hz): negative pivots of `K_symmetric - omega^2 M`.
     fn n_below(&mut self, pencil: &Pencil, frequency: f64) -> Result<usize> {
         let omega = TAU * frequency;

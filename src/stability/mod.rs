@@ -7,6 +7,8 @@
 mod band;
 mod linearise;
 mod mode;
+mod noise;
+mod subspace;
 
 pub use band::{Band, Count, Solver, solve};
 pub use linearise::Linearised;

@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use crate::Result;
-use crate::petsc::{Matrix, Vector};
+use crate::petsc::{Block, Matrix, Vector};
 
 /// A mode is called unstable where its growth rate exceeds this fraction of its angular frequency: below is noise.
 pub const UNSTABLE_RATIO: f64 = 1e-6;
@@ -90,40 +90,38 @@ fn largest(re: &Vector, im: &Vector) -> Result<(Complex64, f64)> {
     Ok((Complex64::new(value[0], value[1]), modulus))
 }
 
-/// Backward errors of eigenpairs of one pencil.
-pub(super) struct Residual<'a> {
-    pencil: &'a Pencil<'a>,
-    norms: [f64; 3],
-    work: [Vector; 2],
+/// Columns of a block of products.
+const BLOCK: usize = 32;
+
+/// Backward errors `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)` of eigenpairs, maximum norms and moduli of complex
+/// entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub(super) fn backward_errors(pencil: &Pencil, lambdas: &[Complex64], x: &Block) -> Result<Vec<f64>> {
+    let norms = [pencil.k.norm_inf()?, pencil.c.norm_inf()?, pencil.m.norm_inf()?];
+    let mut errors = Vec::new();
+    for (part, lambdas) in lambdas.chunks(BLOCK / 2).enumerate() {
+        let x = x.columns(BLOCK * part..BLOCK * part + 2 * lambdas.len());
+        let images = [x.multiplied_by(pencil.k)?, x.multiplied_by(pencil.c)?, x.multiplied_by(pencil.m)?];
+        for (i, lambda) in lambdas.iter().enumerate() {
+            let powers = [Complex64::ONE, *lambda, lambda * lambda];
+            let residual = |row: usize| -> Complex64 {
+                let term = |(image, power): (&Block, &Complex64)| power * entry(image, i, row);
+                images.iter().zip(&powers).map(term).sum()
+            };
+            let largest = |value: &dyn Fn(usize) -> Complex64| {
+                (0..x.n_local()).map(|row| value(row).norm_sqr()).fold(0.0, f64::max).sqrt()
+            };
+            let scale: f64 = norms.iter().zip(&powers).map(|(norm, power)| norm * power.norm()).sum();
+            let comm = x.comm();
+            errors.push(comm.max(largest(&residual)) / (scale * comm.max(largest(&|row| entry(&x, i, row)))));
+        }
+    }
+    Ok(errors)
 }
 
-impl<'a> Residual<'a> {
-    pub(super) fn new(pencil: &'a Pencil) -> Result<Residual<'a>> {
-        let zeros = || Vector::zeros(pencil.k.comm(), pencil.k.n_local());
-        let norms = [pencil.m.norm_inf()?, pencil.c.norm_inf()?, pencil.k.norm_inf()?];
-        Ok(Residual { pencil, norms, work: [zeros()?, zeros()?] })
-    }
-
-    /// `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)`, maximum norms, moduli of complex entries.
-    pub(super) fn backward_error(&mut self, lambda: Complex64, re: &Vector, im: &Vector) -> Result<f64> {
-        let (mut r, mut s) = (re.duplicate()?, im.duplicate()?);
-        r.scale(0.0)?;
-        s.scale(0.0)?;
-        let [mx, my] = &mut self.work;
-        let terms =
-            [(lambda * lambda, self.pencil.m), (lambda, self.pencil.c), (Complex64::new(1.0, 0.0), self.pencil.k)];
-        // (p + i q)(A x + i A y) = (p A x - q A y) + i (q A x + p A y)
-        for (factor, matrix) in terms {
-            matrix.multiply(re, mx)?;
-            matrix.multiply(im, my)?;
-            r.axpy(factor.re, mx)?;
-            r.axpy(-factor.im, my)?;
-            s.axpy(factor.im, mx)?;
-            s.axpy(factor.re, my)?;
-        }
-        let [m, c, k] = self.norms;
-        let modulus = lambda.norm();
-        let scale = (modulus * modulus * m + modulus * c + k) * largest(re, im)?.1;
-        Ok(largest(&r, &s)?.1 / scale)
-    }
+/// Entry of the complex vector i kept as two columns.
+fn entry(x: &Block, i: usize, row: usize) -> Complex64 {
+    Complex64::new(x.column(2 * i)[row], x.column(2 * i + 1)[row])
 }

@@ -62,7 +62,7 @@ impl<'a> Sweep<'a> {
         Ok(Sweep {
             system,
             path: Path::new(system, interface)?,
-            solver: Solver::default(),
+            solver: Solver::for_system(system),
             linearised: None,
             friction_damping: false,
             seconds: [0.0; 2],
