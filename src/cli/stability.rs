@@ -81,13 +81,19 @@ fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
     let factors = [("equilibrium LU", costs.tangent), ("modes LU", costs.stiffness), ("modes LDL^T", costs.symmetric)];
     for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
         text += &format!(
-            "{name}: {} analysis {:.1} s, {} factorisations {:.1} s, {:.0} M entries, {:.0} MB, ordering {}\n",
+            "{name}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \
+             {:.0} MB of {:.0} MB estimated{}, ordering {}\n",
             cost.n_analyses,
             cost.analysis_seconds,
             cost.n_factorisations,
             cost.factorisation_seconds,
+            cost.n_solves,
+            cost.n_right_hand_sides,
+            cost.solve_seconds,
             1e-6 * cost.entries,
             cost.used_mb,
+            cost.estimated_mb,
+            if cost.out_of_core { ", out of core" } else { "" },
             ORDERING.get(cost.ordering as usize).unwrap_or(&"?")
         );
     }

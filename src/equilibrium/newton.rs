@@ -11,7 +11,7 @@ use super::step_factor::StepFactor;
 
 /// Residual at which an equilibrium counts as converged, relative to the larger of the loads and the contact forces.
 const TOLERANCE: f64 = 1e-9;
-/// A step's linear residual, relative to the step's own, over the equilibrium's: Newton's last steps stay quadratic.
+/// A step's linear residual relative to the step's own.
 const FORCING: f64 = 1e-2;
 /// The last step need not go further below the equilibrium's tolerance than this.
 const ENOUGH: f64 = 0.1;
@@ -92,7 +92,7 @@ impl Problem for Newton<'_, '_> {
 
     fn correct(&mut self, r: &Vector, du: &mut Vector) -> Result<()> {
         let residual = self.iterations.last().map_or(1.0, |it| it.residual);
-        let tolerance = (FORCING * residual.min(1.0)).max(ENOUGH * TOLERANCE / residual);
+        let tolerance = FORCING.max(ENOUGH * TOLERANCE / residual);
         self.factor.solve(self.tangent, r, du, tolerance, self.contacts)
     }
 

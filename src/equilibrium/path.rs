@@ -63,6 +63,16 @@ impl<'a> Path<'a> {
         self.factor.costs()
     }
 
+    /// What the tangent's factor has cost.
+    pub fn factor(&self) -> FactorStats {
+        self.factor.costs().0
+    }
+
+    /// Gives the memory of the tangent's factor back; the next step makes it anew. Collective.
+    pub fn release_factor(&mut self) {
+        self.factor.release();
+    }
+
     /// The last converged or attempted displacement, for output after a failure.
     pub fn last(&self) -> Option<&Vector> {
         self.state.as_ref().map(|(_, u)| u)

@@ -163,6 +163,13 @@ impl StepFactor {
         if dyads.is_empty() { Ok(u) } else { u.solved_by(&self.factor) }
     }
 
+    /// Gives the memory back. Collective.
+    pub(super) fn release(&mut self) {
+        self.factor.release();
+        self.made_for.clear();
+        self.update = None;
+    }
+
     pub(super) fn costs(&self) -> (FactorStats, usize) {
         (self.factor.stats(), self.n_iterations)
     }

@@ -121,6 +121,8 @@ impl Block {
 
     /// Appends the columns of another block. Not collective.
     pub fn append(&mut self, other: &Block) {
+        // Exactly, not twice as much: a basis may take gigabytes.
+        self.values.reserve_exact(other.values.len());
         self.values.extend_from_slice(&other.values);
         self.n_columns += other.n_columns;
     }
@@ -154,7 +156,7 @@ impl Block {
         let b = View::new(self, self.values.as_ptr().cast_mut())?;
         let pointer = solution.values.as_mut_ptr();
         let x = View::new(&solution, pointer)?;
-        factor.solve_dense(b.raw, x.raw)?;
+        factor.solve_dense(b.raw, x.raw, self.n_columns)?;
         drop(x);
         Ok(solution)
     }

@@ -1,5 +1,6 @@
 //! Sparse direct factors by MUMPS: analysed once for a pattern, factorised again as often as values change.
 
+use std::cell::Cell;
 use std::ptr;
 use std::time::Instant;
 
@@ -29,6 +30,8 @@ pub struct FactorStats {
     pub flops: f64,
     /// Memory MUMPS estimates after the analysis, MB over all ranks.
     pub estimated_mb: f64,
+    /// Whether the factor lies on disc: it did not fit into memory.
+    pub out_of_core: bool,
     /// Memory MUMPS used, MB over all ranks.
     pub used_mb: f64,
     /// Number of analyses.
@@ -39,6 +42,12 @@ pub struct FactorStats {
     pub analysis_seconds: f64,
     /// Seconds of the numerical factorisations.
     pub factorisation_seconds: f64,
+    /// Number of passes over the factor.
+    pub n_solves: usize,
+    /// Number of right-hand sides of all passes.
+    pub n_right_hand_sides: usize,
+    /// Seconds of the passes.
+    pub solve_seconds: f64,
 }
 
 /// Name of a MUMPS ordering.
@@ -51,6 +60,8 @@ pub struct Factor {
     /// Keeps the session alive as long as the factor.
     comm: Option<Comm>,
     stats: FactorStats,
+    /// Passes, right-hand sides and seconds, counted by solves that leave the factor as it is.
+    solves: Cell<(usize, usize, f64)>,
 }
 
 impl Drop for Factor {
@@ -69,7 +80,7 @@ const WORKSPACE_TRIES: usize = 4;
 impl Factor {
     /// A factor to be; nothing is computed yet.
     pub fn new(kind: FactorKind) -> Factor {
-        Factor { kind, raw: ptr::null_mut(), comm: None, stats: FactorStats::default() }
+        Factor { kind, raw: ptr::null_mut(), comm: None, stats: FactorStats::default(), solves: Cell::default() }
     }
 
     /// Orders the equations and makes the symbolic factorisation, unless that is done. No values are used.
@@ -99,7 +110,25 @@ impl Factor {
         self.stats.estimated_mb = self.infog(17)?;
         self.stats.n_analyses += 1;
         self.stats.analysis_seconds += start.elapsed().as_secs_f64();
+        if self.stats.estimated_mb > memory::available_mb(a.comm()) {
+            self.set_icntl(22, 1)?;
+            self.stats.out_of_core = true;
+            self.stats.estimated_mb = self.infog(27)?;
+        }
         memory::require(a.comm(), self.stats.estimated_mb)
+    }
+
+    /// Whether there is a factor. Not collective.
+    pub fn is_made(&self) -> bool {
+        !self.raw.is_null()
+    }
+
+    /// Gives the memory back; the next factorisation analyses anew. Collective.
+    pub fn release(&mut self) {
+        if self.comm.take().is_some() {
+            // SAFETY: this handle owns the factor; PETSc sets the pointer to null.
+            unsafe { sys::MatDestroy(&mut self.raw) };
+        }
     }
 
     fn symbolic(&self, a: &Matrix) -> Result<()> {
@@ -196,15 +225,24 @@ impl Factor {
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
     pub fn solve(&self, b: &Vector, x: &mut Vector) -> Result<()> {
+        let start = Instant::now();
         // SAFETY: all handles are alive.
         check(unsafe { sys::MatSolve(self.raw, b.raw(), x.raw()) })?;
+        self.count(1, start);
         self.verdict("solve")
     }
 
+    fn count(&self, n_right_hand_sides: usize, start: Instant) {
+        let (n, n_all, seconds) = self.solves.get();
+        self.solves.set((n + 1, n_all + n_right_hand_sides, seconds + start.elapsed().as_secs_f64()));
+    }
+
     /// Dense right-hand sides and solutions of one shape.
-    pub(super) fn solve_dense(&self, b: sys::Mat, x: sys::Mat) -> Result<()> {
+    pub(super) fn solve_dense(&self, b: sys::Mat, x: sys::Mat, n_columns: usize) -> Result<()> {
+        let start = Instant::now();
         // SAFETY: both are dense matrices of the factor's row layout.
         check(unsafe { sys::MatMatSolve(self.raw, b, x) })?;
+        self.count(n_columns, start);
         self.verdict("solve")
     }
 
@@ -227,6 +265,7 @@ impl Factor {
 
     /// What this factor has cost so far. Not collective.
     pub fn stats(&self) -> FactorStats {
-        self.stats
+        let (n_solves, n_right_hand_sides, solve_seconds) = self.solves.get();
+        FactorStats { n_solves, n_right_hand_sides, solve_seconds, ..self.stats }
     }
 }

@@ -12,19 +12,29 @@ use crate::{Error, Result};
 
 const MB: f64 = 1024.0 * 1024.0;
 
-/// Refuses a factor that the ranks together cannot hold. Collective; ranks are taken to share one machine and control group.
-pub(super) fn require(comm: &Comm, needed_mb: f64) -> Result<()> {
+/// Memory that the ranks together may still take, MB. Collective; ranks are taken to share one machine and control group.
+pub fn available_mb(comm: &Comm) -> f64 {
+    limits(comm).0
+}
+
+/// What the ranks together may still take, MB, and what limits it.
+fn limits(comm: &Comm) -> (f64, &'static str) {
     let own = machine_mb().unwrap_or(f64::INFINITY).min(group_mb().unwrap_or(f64::INFINITY));
     let shared = -comm.max(-own);
     let each = -comm.max(-address_space_mb().unwrap_or(f64::INFINITY));
     let available = shared.min(each * comm.size() as f64);
+    (available, if shared <= available { "the machine or its container" } else { "ulimit -v" })
+}
+
+/// Refuses a factor that the ranks together cannot hold. Collective.
+pub(super) fn require(comm: &Comm, needed_mb: f64) -> Result<()> {
+    let (available, whose) = limits(comm);
     if needed_mb <= available {
         return Ok(());
     }
     let gigabytes = |mb: f64| format!("{:.2} GB", mb / 1024.0);
-    let whose = if shared <= available { "the machine or its container" } else { "ulimit -v" };
     Err(Error::input(format!(
-        "too little memory: the factor needs {} and {whose} leaves {}. A coarser mesh, other programs closed, a higher limit or a \
+        "too little memory: the factor needs {}, even out of core, and {whose} leaves {}. A coarser mesh, other programs closed, a higher limit or a \
          machine with more memory help",
         gigabytes(needed_mb),
         gigabytes(available)

@@ -16,7 +16,7 @@ pub mod error;
 mod factor;
 pub mod linear;
 mod matrix;
-mod memory;
+pub mod memory;
 mod metis;
 pub mod nonlinear;
 mod session;

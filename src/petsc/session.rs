@@ -1,5 +1,6 @@
 //! MPI, PETSc and SLEPc from start to end, and the communicator.
 
+use std::env;
 use std::ffi::{CString, c_void};
 use std::ptr;
 use std::rc::Rc;
@@ -18,6 +19,9 @@ pub struct Session {
 const OPTIONS: &[(&str, &str)] =
     &[("-no_signal_handler", "1"), ("-skip_petscrc", "1"), ("-mat_mumps_icntl_7", "3"), ("-mat_mumps_icntl_28", "1")];
 
+/// Where MUMPS puts factors that do not fit into memory: the user's choice, else the system's temporary folder.
+const OUT_OF_CORE: &str = "MUMPS_OOC_TMPDIR";
+
 impl Session {
     /// Starts MPI, PETSc and SLEPc. `options` are `(name, value)` pairs for PETSc's option database, names with their dash.
     ///
@@ -29,6 +33,10 @@ impl Session {
         unsafe { sys::MPI_Finalized(&mut finalized) };
         if finalized != 0 {
             return Err(Error::Library("MPI cannot be started twice in one process".into()));
+        }
+        if env::var_os(OUT_OF_CORE).is_none() {
+            // SAFETY: MPI has not started yet, and with it no thread that reads the environment.
+            unsafe { env::set_var(OUT_OF_CORE, env::temp_dir()) };
         }
         let own = OPTIONS.iter().map(|(name, value)| (name.to_string(), value.to_string()));
         for (name, value) in own.chain(options.iter().cloned()) {

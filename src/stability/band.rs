@@ -9,7 +9,7 @@ use super::subspace::{self, Problem};
 use super::{Mode, Pencil};
 use crate::assembly::System;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::petsc::{Block, Factor, FactorKind};
+use crate::petsc::{Block, Factor, FactorKind, FactorStats, memory};
 use crate::{Error, Result};
 
 /// What serves all pencils of one pattern: factors whose analysis is made once.
@@ -80,6 +80,9 @@ pub struct Band {
 
 /// Eigenvalue tolerance handed to SLEPc: near double roots an error e in the residual is sqrt(e) in the eigenvalue.
 const TOLERANCE: f64 = 1e-12;
+/// Memory of an LU over that of the symmetric factor on the same pattern: both took their place on the full demo brake with 5.6 and
+/// 3.3 GB; with room to spare.
+const LU_OVER_SYMMETRIC: f64 = 2.0;
 /// How often the search is widened before the band is given up.
 const TRIES: u32 = 4;
 /// The blocked search goes this much beyond the band's end, so that the count finds a gap.
@@ -91,6 +94,8 @@ struct Search {
     /// Hz.
     reach: f64,
     n_solves: usize,
+    /// Where the search has them.
+    backward_errors: Option<Vec<f64>>,
 }
 
 /// Finds all modes of `band` (Hz) of a pencil, sorted by frequency, vectors scaled to a largest entry of 1. `progress` hears of
@@ -105,20 +110,26 @@ pub fn solve(
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Band> {
     let expected = solver.n_below(pencil, band[1])?;
+    let lu = LU_OVER_SYMMETRIC * solver.ldl.stats().used_mb;
+    if !solver.lu.is_made() && lu > memory::available_mb(pencil.k.comm()) {
+        solver.ldl.release();
+    }
     solver.factorise_shifted(pencil)?;
     let (mut n_solves, mut last) = (0, None);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
-        let Some(search) = solver.search(pencil, expected + margin, band[1], progress)? else { continue };
+        let search = solver.search(pencil, expected + margin, band[1], progress)?;
+        // What the blocked search does not find is left to the other one.
+        let labels = solver.labels.take();
+        let Some(search) = search else { continue };
         n_solves += search.n_solves;
         if let Some(count) = count(pencil, solver, &search, band[1], expected)? {
             if count.agrees() {
+                solver.labels = labels;
                 return finish(pencil, search, band, count, n_solves);
             }
             last = Some((search, count));
         }
-        // What the blocked search has missed is left to the other one.
-        solver.labels = None;
     }
     match last {
         Some((search, count)) => finish(pencil, search, band, count, n_solves),
@@ -169,12 +180,15 @@ fn widest_gap(sorted: &[f64], from: f64) -> Option<f64> {
 }
 
 fn finish(pencil: &Pencil, search: Search, band: [f64; 2], count: Count, n_solves: usize) -> Result<Band> {
-    let within = |pair: &Pair| (band[0]..=band[1]).contains(&(pair.lambda.im / TAU));
-    let pairs: Vec<Pair> = search.pairs.into_iter().filter(within).collect();
+    let pairs = search.pairs;
     let lambdas: Vec<Complex64> = pairs.iter().map(|pair| pair.lambda).collect();
-    let errors = backward_errors(pencil, &lambdas, &vectors(pencil, &pairs)?)?;
+    let errors = match search.backward_errors {
+        Some(errors) => errors,
+        None => backward_errors(pencil, &lambdas, &vectors(pencil, &pairs)?)?,
+    };
+    let within = |(pair, _): &(Pair, f64)| (band[0]..=band[1]).contains(&(pair.lambda.im / TAU));
     let mut modes = Vec::new();
-    for (Pair { lambda, re, im }, backward_error) in pairs.into_iter().zip(errors) {
+    for (Pair { lambda, re, im }, backward_error) in pairs.into_iter().zip(errors).filter(within) {
         let mut mode = Mode { lambda, backward_error, re, im };
         mode.normalise()?;
         modes.push(mode);
@@ -203,7 +217,7 @@ fn sort(modes: &mut [Mode]) {
 }
 
 impl Solver {
-    /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where LAPACK gave up.
+    /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up.
     fn search(
         &self,
         pencil: &Pencil,
@@ -214,8 +228,14 @@ impl Solver {
         if let Some(labels) = self.labels.as_ref().filter(|_| self.shift == 0.0) {
             let problem = Problem { pencil, factor: &self.lu, labels };
             let reach = BEYOND * end;
-            let found = subspace::solve(&problem, TAU * reach, n_modes, progress)?;
-            return Ok(Some(Search { pairs: found.pairs, reach, n_solves: found.n_solves }));
+            let outcome = subspace::solve(&problem, TAU * reach, n_modes, progress);
+            return match outcome {
+                Ok((Found { pairs, n_solves, .. }, errors)) => {
+                    Ok(Some(Search { pairs, reach, n_solves, backward_errors: Some(errors) }))
+                }
+                Err(Error::NotConverged(_)) => Ok(None),
+                Err(error) => Err(error),
+            };
         }
         let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: self.shift, factor: &self.lu };
         let n_all = 2 * n_equations(pencil);
@@ -226,8 +246,15 @@ impl Solver {
         Ok(found.map(|Found { pairs, n_converged, n_solves }| {
             let furthest = pairs.iter().map(|pair| pair.lambda.norm() / TAU).fold(0.0, f64::max);
             let reach = if n_converged >= n_all { f64::INFINITY } else { furthest };
-            Search { pairs, reach, n_solves }
+            Search { pairs, reach, n_solves, backward_errors: None }
         }))
+    }
+
+    /// Memory (MB) that the next solution takes beyond what is held, as far as a factor of the same pattern tells: an LU, and
+    /// its symmetric counterpart of half the size.
+    pub fn still_needs_mb(&self, like: &FactorStats) -> f64 {
+        let missing = |factor: &Factor, share: f64| if factor.is_made() { 0.0 } else { share * like.used_mb };
+        missing(&self.lu, 1.0) + missing(&self.ldl, 0.6)
     }
 
     /// Number of modes of the symmetric problem below a frequency (Hz): negative pivots of `K_symmetric - omega^2 M`.

@@ -73,7 +73,7 @@ pub struct Problem<'a> {
 }
 
 /// All eigenpairs of the closed upper half plane with `|lambda| <= radius` (1/s), given about how many modes to expect there.
-/// `progress` hears of (at rest, wanted, solves). Collective.
+/// With their backward errors. `progress` hears of (at rest, wanted, solves). Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] after too many rounds.
@@ -82,7 +82,7 @@ pub fn solve(
     radius: f64,
     n_expected: usize,
     progress: &mut dyn FnMut(usize, usize, usize),
-) -> Result<Found> {
+) -> Result<(Found, Vec<f64>)> {
     let mut space = Subspace::krylov(problem, n_expected)?;
     let mut last: Vec<Complex64> = Vec::new();
     for _ in 0..MAX_ROUNDS {
@@ -94,8 +94,9 @@ pub fn solve(
         if late.is_empty() && last.len() == ritz.len() {
             let x = space.vectors(&ritz);
             let errors = backward_errors(problem.pencil, &lambdas, &x)?;
-            if errors.iter().all(|&e| e <= BACKWARD_ERROR) {
-                return found(&lambdas, &x, space.n_solves);
+            late = ritz.iter().zip(&errors).filter(|(_, e)| **e > BACKWARD_ERROR).map(|(r, _)| r).collect();
+            if late.is_empty() {
+                return Ok((found(&lambdas, &x, space.n_solves)?, errors));
             }
         }
         if late.is_empty() {

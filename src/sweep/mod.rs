@@ -13,7 +13,7 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
-use crate::petsc::FactorStats;
+use crate::petsc::{FactorStats, memory};
 use crate::stability::{self, Band, Linearised, Solver};
 
 /// A structure under analysis at one friction after the other.
@@ -52,6 +52,9 @@ pub enum Event<'a> {
     /// The eigensolver has (converged, wanted, solves).
     Modes(usize, usize, usize),
 }
+
+/// The equilibrium's factor stays beside those of the modes where these take no more than this of the memory left.
+const SHARE_OF_MEMORY: f64 = 0.8;
 
 impl<'a> Sweep<'a> {
     /// A sweep that starts from rest. Collective.
@@ -92,11 +95,21 @@ impl<'a> Sweep<'a> {
         let linearised = self.linearised.as_mut().expect("made above");
         linearised.update(self.system, self.path.contacts(), equilibrium, self.friction_damping)?;
         let pencil = linearised.pencil(self.system);
+        if SHARE_OF_MEMORY * memory::available_mb(self.system.k.comm())
+            < self.solver.still_needs_mb(&self.path.factor())
+        {
+            self.path.release_factor();
+        }
         let outcome = stability::solve(&pencil, &mut self.solver, band, &mut |converged, wanted, solves| {
             hear(Event::Modes(converged, wanted, solves));
         });
         self.seconds[1] += start.elapsed().as_secs_f64();
         outcome
+    }
+
+    /// Finds the modes with blocks of right-hand sides, whatever the size: [`Solver::blocked`].
+    pub fn search_in_blocks(&mut self) {
+        self.solver = Solver::blocked(self.system);
     }
 
     /// The last state tried, for output after a failure.
