@@ -62,7 +62,7 @@ fn a_plate_with_three_rigid_motions_has_the_published_modes() {
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
     let pencil = Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k };
-    let mut solver = Solver { shift: 300.0, ..Solver::default() };
+    let mut solver = Solver::shifted(300.0);
     let band = stability::solve(&pencil, &mut solver, brake.model.band, &mut |_, _, _| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);
     let elastic: Vec<&Mode> = band.modes.iter().filter(|mode| mode.frequency() > 1.0).collect();

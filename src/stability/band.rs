@@ -19,7 +19,7 @@ pub struct Solver {
     /// Symmetric factor that counts.
     pub ldl: Factor,
     /// Real shift of the inverted problem, 1/s: 0, unless the structure has rigid motions.
-    pub shift: f64,
+    shift: f64,
     /// For the blocked search, where it pays: a number for each of this rank's equations that does not depend on the ranks.
     labels: Option<Vec<u64>>,
 }
@@ -42,6 +42,11 @@ impl Solver {
             n if n >= BLOCKED_FROM => Solver::blocked(system),
             _ => Solver::default(),
         }
+    }
+
+    /// Searches about a real shift, 1/s, with TOAR: for structures with rigid motions.
+    pub fn shifted(shift: f64) -> Solver {
+        Solver { shift, ..Solver::default() }
     }
 
     /// Searches with a growing subspace and many right-hand sides at a time.
