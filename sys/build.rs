@@ -19,7 +19,7 @@ const FUNCTIONS: &[&str] = &[
     "VecScatter(Create|CreateToAll|CreateToZero|Begin|End|Destroy)",
     "IS(CreateGeneral|CreateStride|Destroy)",
     "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
-    "Mat(SeqAIJSetPreallocationCSR|MPIAIJSetPreallocationCSR|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|ConvertIfNeeded)",
+    "Mat(CreateSeqAIJWithArrays|CreateMPIAIJWithSplitArrays|MPIAIJGetSeqAIJ|SeqAIJGetArray|SeqAIJRestoreArray|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|ConvertIfNeeded)",
     "Mat(MatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
     "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
     "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",
@@ -31,7 +31,7 @@ const FUNCTIONS: &[&str] = &[
     "PEP(Solve|GetST|GetConverged|GetEigenpair|GetIterationNumber|GetConvergedReason|MonitorSet|SetStoppingTestFunction|StoppingBasic|SetInitialSpace|SetConvergenceTest|TOARSetRestart|TOARSetLocking|GetDimensions)",
     "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
     "d(gemm|geev)_",
-    "METIS_(PartGraphKway|PartGraphRecursive|NodeND|SetDefaultOptions)",
+    "METIS_PartMeshDual",
     "squeal_.*",
 ];
 

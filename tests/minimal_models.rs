@@ -7,9 +7,7 @@ use squeal::petsc::eigen::{self, Options, Quadratic};
 use squeal::petsc::{Comm, Factor, FactorKind, Matrix, Session};
 
 fn dense<const N: usize>(comm: &Comm, a: [[f64; N]; N]) -> Matrix {
-    let offsets: Vec<i32> = (0..=N as i32).map(|i| i * N as i32).collect();
-    let columns: Vec<i32> = (0..N).flat_map(|_| 0..N as i32).collect();
-    Matrix::from_csr(comm, &offsets, &columns, a.as_flattened()).unwrap()
+    Matrix::dense(comm, N, a.as_flattened()).unwrap()
 }
 
 /// All eigenvalues of the closed upper half plane, sorted by imaginary part, equal ones by real part.

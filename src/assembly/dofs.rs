@@ -2,57 +2,51 @@
 
 use std::ops::Range;
 
-/// Equation numbers by node: `-1` where a displacement is held. Each rank owns a contiguous range of equations.
+use crate::mesh::Numbering;
+
+/// Equation numbers of the nodes that this rank has: `-1` where a displacement is held.
+///
+/// Equations are numbered in the order of the nodes' global numbers, so that each rank owns a contiguous range.
 #[derive(Debug, Clone)]
 pub struct DofMap {
     equations: Vec<[i32; 3]>,
-    owner: Vec<u32>,
+    owned_nodes: Range<u32>,
     owned: Range<i32>,
     n_global: usize,
-    rank: u32,
 }
 
 impl DofMap {
-    /// Numbers the free displacements rank by rank, within a rank in the order of the nodes.
-    ///
-    /// `owner[n]` is the rank of node n, `held[n]` which of its displacements are held at zero.
+    /// Numbers the free displacements. `held[n]` says which displacements of this rank's node n are held at zero; the rank must
+    /// have every node of the model with a held displacement. Not collective.
     ///
     /// # Panics
-    /// Where the two lists differ in length.
-    pub fn new(owner: Vec<u32>, held: &[[bool; 3]], rank: usize, size: usize) -> DofMap {
-        assert_eq!(owner.len(), held.len());
-        let mut count = vec![0_i32; size + 1];
-        for (&rank, held) in owner.iter().zip(held) {
-            count[rank as usize + 1] += held.iter().filter(|&&h| !h).count() as i32;
+    /// Where there is not one entry a node.
+    pub fn new(nodes: &Numbering, held: &[[bool; 3]]) -> DofMap {
+        assert_eq!(nodes.n_local(), held.len());
+        let mut n_held = 0;
+        let mut equations = Vec::with_capacity(held.len());
+        for (&global, held) in nodes.global().iter().zip(held) {
+            // All displacements of nodes before this one, and of its axes before this one, less those that are held.
+            equations.push([0, 1, 2].map(|i| {
+                n_held += i32::from(held[i]);
+                if held[i] { -1 } else { 3 * global as i32 + i as i32 - n_held }
+            }));
         }
-        for r in 0..size {
-            count[r + 1] += count[r];
-        }
-        let owned = count[rank]..count[rank + 1];
-        let n_global = count[size] as usize;
-        let mut next = count;
-        let number = |(&rank, held): (&u32, &[bool; 3])| {
-            held.map(|h| {
-                if h {
-                    return -1;
-                }
-                let equation = next[rank as usize];
-                next[rank as usize] += 1;
-                equation
-            })
-        };
-        let equations = owner.iter().zip(held).map(number).collect();
-        DofMap { equations, owner, owned, n_global, rank: rank as u32 }
+        let n_global = 3 * nodes.n_global() - n_held as usize;
+        let owned = range(&equations, nodes.owned());
+        DofMap { equations, owned_nodes: nodes.owned(), owned, n_global }
     }
 
     /// Equation numbers of a node's three displacements, -1 where held.
+    #[inline]
     pub fn equations(&self, node: u32) -> [i32; 3] {
         self.equations[node as usize]
     }
 
     /// Whether this rank owns the node.
+    #[inline]
     pub fn owns(&self, node: u32) -> bool {
-        self.owner[node as usize] == self.rank
+        self.owned_nodes.contains(&node)
     }
 
     /// A number for each of this rank's equations that does not depend on the number of ranks: `3 node + axis`.
@@ -65,8 +59,8 @@ impl DofMap {
     }
 
     /// The nodes of this rank, in the order of their equations.
-    pub fn owned_nodes(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..self.owner.len() as u32).filter(|&n| self.owns(n))
+    pub fn owned_nodes(&self) -> Range<u32> {
+        self.owned_nodes.clone()
     }
 
     /// This rank's equations.
@@ -84,7 +78,7 @@ impl DofMap {
         self.n_global
     }
 
-    /// Number of nodes over all ranks.
+    /// Number of nodes that this rank has.
     pub fn n_nodes(&self) -> usize {
         self.equations.len()
     }
@@ -94,10 +88,26 @@ impl DofMap {
         out.extend(nodes.iter().flat_map(|&n| self.equations(n)));
     }
 
-    /// Nodal displacements (zero where held) from the values of all equations.
+    /// Equations of all nodes that this rank has, in the order of the nodes.
+    pub fn all(&self) -> impl Iterator<Item = i32> + '_ {
+        self.equations.as_flattened().iter().copied().filter(|&e| e >= 0)
+    }
+
+    /// Nodal displacements (zero where held) from the values of [`DofMap::all`].
     pub fn nodal(&self, values: &[f64]) -> Vec<[f64; 3]> {
-        let value = |e: i32| if e < 0 { 0.0 } else { values[e as usize] };
-        self.equations.iter().map(|e| e.map(value)).collect()
+        let mut values = values.iter();
+        let mut next = |e: i32| if e < 0 { 0.0 } else { *values.next().expect("a value for each equation") };
+        self.equations.iter().map(|e| e.map(&mut next)).collect()
+    }
+}
+
+/// The equations of a range of nodes.
+fn range(equations: &[[i32; 3]], nodes: Range<u32>) -> Range<i32> {
+    let own = equations[nodes.start as usize..nodes.end as usize].as_flattened();
+    let mut free = own.iter().copied().filter(|&e| e >= 0);
+    match (free.next(), own.iter().max()) {
+        (Some(first), Some(last)) => first..last + 1,
+        _ => 0..0,
     }
 }
 
@@ -106,14 +116,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equations_are_contiguous_by_rank_and_skip_held_displacements() {
+    fn equations_follow_the_nodes_and_skip_held_displacements() {
         let held = [[false; 3], [true, false, true], [false; 3]];
-        let map = DofMap::new(vec![1, 0, 1], &held, 1, 2);
-        assert_eq!(map.equations(0), [1, 2, 3]);
-        assert_eq!(map.equations(1), [-1, 0, -1]);
-        assert_eq!(map.owned(), 1..7);
-        assert_eq!(map.owned_nodes().collect::<Vec<_>>(), [0, 2]);
+        let map = DofMap::new(&Numbering::whole(3, 1..3), &held);
+        assert_eq!([0, 1, 2].map(|n| map.equations(n)), [[0, 1, 2], [-1, 3, -1], [4, 5, 6]]);
+        assert_eq!((map.owned(), map.n_global(), map.owned_nodes()), (3..7, 7, 1..3));
+        assert_eq!(map.all().collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6]);
         let values = [9.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-        assert_eq!(map.nodal(&values), [[1.0, 2.0, 3.0], [0.0, 9.0, 0.0], [4.0, 5.0, 6.0]]);
+        assert_eq!(map.nodal(&values), [[9.0, 1.0, 2.0], [0.0, 3.0, 0.0], [4.0, 5.0, 6.0]]);
+    }
+
+    #[test]
+    fn a_rank_without_free_displacements_has_no_equations() {
+        let map = DofMap::new(&Numbering::whole(2, 1..2), &[[false; 3], [true; 3]]);
+        assert_eq!((map.owned(), map.n_global()), (0..0, 3));
     }
 }

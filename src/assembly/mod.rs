@@ -9,12 +9,14 @@
 //! Each rank computes every element that touches a node of its own and keeps the rows that it owns. Elements on the
 //! border are computed twice and nothing is communicated: every entry is the same sum in the same order on any number of ranks.
 
+mod axes;
 mod dofs;
 mod pattern;
+mod scatter;
 mod structure;
 mod system;
 
 pub use dofs::DofMap;
-pub use pattern::{BlockRows, Csr, Pattern};
+pub use pattern::Pattern;
 pub use structure::{Link, Tets, held, links, loads};
 pub use system::{Connectivity, ElementMatrices, Elements, System};

@@ -59,24 +59,27 @@ impl Connectivity for Tets<'_> {
 }
 
 impl Elements for Tets<'_> {
-    /// `C = alpha M + beta K` with the part's own coefficients.
+    fn mass_couples_axes(&self) -> bool {
+        false
+    }
+
+    /// `C = alpha M + beta K` with the part's own coefficients; the mass does not couple axes.
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
         let (x, part) = (self.mesh.tet_nodes(e), self.part(e));
-        let mut mass = [0.0; 100];
-        out.reset(10);
+        out.k.resize(900, 0.0);
+        out.m.resize(100, 0.0);
+        let mass: &mut [f64; 100] = out.m.as_mut_slice().try_into().expect("ten nodes");
         tet10::stiffness(&x, &part.material.elasticity, &mut out.k);
-        tet10::scalar_mass(&x, part.material.density, &mut mass);
+        tet10::scalar_mass(&x, part.material.density, mass);
+        let (alpha, beta) = (part.rayleigh.alpha, part.rayleigh.beta);
+        out.c.clear();
+        if alpha == 0.0 && beta == 0.0 {
+            return;
+        }
+        out.c.extend(out.k.iter().map(|k| beta * k));
         for a in 0..10 {
             for b in 0..10 {
-                for i in 0..3 {
-                    out.m[30 * (3 * a + i) + 3 * b + i] = mass[10 * a + b];
-                }
-            }
-        }
-        let (alpha, beta) = (part.rayleigh.alpha, part.rayleigh.beta);
-        if alpha != 0.0 || beta != 0.0 {
-            for (c, (m, k)) in out.c.iter_mut().zip(out.m.iter().zip(&out.k)) {
-                *c = alpha * m + beta * k;
+                (0..3).for_each(|i| out.c[30 * (3 * a + i) + 3 * b + i] += alpha * mass[10 * a + b]);
             }
         }
     }
@@ -141,11 +144,18 @@ impl Connectivity for Vec<Link> {
 }
 
 impl Elements for Vec<Link> {
+    fn mass_couples_axes(&self) -> bool {
+        false
+    }
+
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
         let link = &self[e];
-        out.reset(link.nodes.len());
+        out.m.clear();
         out.k = link.motion.weighted_product(link.stiffness);
-        out.c = link.motion.weighted_product(link.damping);
+        out.c = match link.damping {
+            [0.0, 0.0, 0.0, 0.0, 0.0, 0.0] => Vec::new(),
+            damping => link.motion.weighted_product(damping),
+        };
     }
 }
 

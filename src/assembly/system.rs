@@ -1,9 +1,15 @@
 //! The assembled system: M, C, K and the numbering of its equations.
 
-use super::{BlockRows, DofMap, Pattern};
+use std::borrow::Cow;
+use std::time::Instant;
+
+use super::axes::AxisSum;
+use super::scatter::{Places, Scatter};
+use super::{DofMap, Pattern};
 use crate::Result;
 use crate::contact::Trace;
-use crate::petsc::{Comm, Gather, Matrix, Vector, partition};
+use crate::mesh::Numbering;
+use crate::petsc::{Comm, Gather, Matrix, Vector};
 
 /// Anything that couples lists of nodes.
 pub trait Connectivity {
@@ -19,29 +25,37 @@ pub trait Connectivity {
 
 /// A family of elements: members with nodes and dense matrices.
 pub trait Elements: Connectivity {
+    /// Whether a mass matrix of the family couples displacements along different axes, and so has `(3n)^2` entries.
+    fn mass_couples_axes(&self) -> bool {
+        true
+    }
     /// Overwrites `out` with member e's matrices. Rows are node-major: three displacements a node.
     fn matrices(&self, e: usize, out: &mut ElementMatrices);
 }
 
-/// Dense row-major `(3n)^2` matrices of one element.
+/// Dense row-major matrices of one element with n nodes.
 #[derive(Debug, Clone, Default)]
 pub struct ElementMatrices {
-    /// Stiffness, N/m.
+    /// Stiffness, N/m: `(3n)^2` entries.
     pub k: Vec<f64>,
-    /// Mass, kg.
+    /// Mass, kg: `(3n)^2` entries, or `n^2` where it is the same on each axis and couples none, or no entries.
     pub m: Vec<f64>,
-    /// Damping, N s/m.
+    /// Damping, N s/m: `(3n)^2` entries, or none.
     pub c: Vec<f64>,
 }
 
 impl ElementMatrices {
-    /// Room for n nodes, all zero.
-    pub fn reset(&mut self, n_nodes: usize) {
-        let size = 9 * n_nodes * n_nodes;
-        for matrix in [&mut self.k, &mut self.m, &mut self.c] {
-            matrix.clear();
-            matrix.resize(size, 0.0);
+    /// The mass with `(3n)^2` entries, or none: `m_ab delta_ij` at (3a + i, 3b + j) where it is the same on each axis.
+    pub fn mass_on_all_axes(&self) -> Cow<'_, [f64]> {
+        if self.m.len() == self.k.len() || self.m.is_empty() {
+            return Cow::Borrowed(&self.m);
         }
+        let n = self.m.len().isqrt();
+        let entry = |at: usize| {
+            let [row, column] = [at / (3 * n), at % (3 * n)];
+            if row % 3 == column % 3 { self.m[n * (row / 3) + column / 3] } else { 0.0 }
+        };
+        Cow::Owned((0..9 * n * n).map(entry).collect())
     }
 }
 
@@ -57,6 +71,8 @@ pub struct System {
     pub c: Matrix,
     /// External forces, N.
     pub load: Vector,
+    /// What it took to find which entries there are, s; the rest went into their values.
+    pub pattern_seconds: f64,
 }
 
 impl System {
@@ -64,27 +80,30 @@ impl System {
     /// `contacts` take part in the pattern only. Collective.
     ///
     /// # Errors
-    /// METIS's and PETSc's.
+    /// PETSc's.
     pub fn assemble(
         comm: &Comm,
+        nodes: &Numbering,
         held: &[[bool; 3]],
         families: &[&dyn Elements],
         contacts: &[&dyn Connectivity],
     ) -> Result<System> {
         let mut couplings: Vec<&dyn Connectivity> = contacts.to_vec();
         couplings.extend(families.iter().map(|&f| f as &dyn Connectivity));
-        let pattern = Pattern::new(held.len(), &couplings);
-        let owner = match comm.size() {
-            1 => vec![0; held.len()],
-            size => {
-                let (offsets, neighbours) = pattern.graph();
-                partition(&offsets, &neighbours, size)?
-            }
+        let start = Instant::now();
+        let pattern = Pattern::new(nodes, &couplings);
+        let dofs = DofMap::new(nodes, held);
+        let (scatter, rows) = Scatter::new(&pattern, &dofs);
+        let k = Matrix::zeros(comm, rows)?;
+        let mass = match families.iter().any(|family| family.mass_couples_axes()) {
+            true => None,
+            false => Some(AxisSum::new(&pattern, &dofs)),
         };
-        let dofs = DofMap::new(owner, held, comm.rank(), comm.size());
-        let [k, m, c] = sum(comm, &pattern, &dofs, families)?;
+        let m = mass.as_ref().map_or_else(|| k.zeros_like(), |mass| Matrix::zeros(comm, mass.rows()))?;
+        let (c, pattern_seconds) = (k.zeros_like()?, start.elapsed().as_secs_f64());
+        let [k, m, c] = sum([k, m, c], mass, &scatter, families)?;
         let load = Vector::zeros(comm, dofs.n_local())?;
-        Ok(System { dofs, k, m, c, load })
+        Ok(System { dofs, k, m, c, load, pattern_seconds })
     }
 
     /// Adds forces (N) at nodes to the load; those at held displacements go into the support.
@@ -112,34 +131,59 @@ impl System {
         Vector::zeros(self.k.comm(), self.dofs.n_local())
     }
 
-    /// All nodal values of several vectors, on every rank; zero where held. Collective.
+    /// Values of several vectors at the nodes that this rank has; zero where held. Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn nodal(&self, vectors: &[&Vector]) -> Result<Vec<Vec<[f64; 3]>>> {
-        let all: Vec<i32> = (0..self.dofs.n_global() as i32).collect();
+        let all: Vec<i32> = self.dofs.all().collect();
         let mut gather = Gather::new(&self.load, &all)?;
         vectors.iter().map(|v| gather.run(v, |values| self.dofs.nodal(values))).collect()
     }
 }
 
-/// One pass over the elements that touch this rank's rows.
-fn sum(comm: &Comm, pattern: &Pattern, dofs: &DofMap, families: &[&dyn Elements]) -> Result<[Matrix; 3]> {
-    let mut sums = BlockRows::<3>::new(pattern, dofs);
-    let mut element = ElementMatrices::default();
+/// K, M and C by one pass over the elements that touch this rank's rows; M by way of `mass` where it does not couple axes.
+fn sum(
+    [mut k, mut m, mut c]: [Matrix; 3],
+    mass: Option<AxisSum>,
+    scatter: &Scatter,
+    families: &[&dyn Elements],
+) -> Result<[Matrix; 3]> {
+    match mass {
+        Some(mut mass) => {
+            Matrix::change_values(&mut [&mut k, &mut c, &mut m], |values| {
+                pass(scatter, families, |element, places| {
+                    places.add(&element.k, &mut values[0]);
+                    places.add(&element.c, &mut values[1]);
+                    mass.add(places, &element.m);
+                });
+                mass.values_into(&mut values[2]);
+            })?;
+        }
+        None => Matrix::change_values(&mut [&mut k, &mut c, &mut m], |values| {
+            pass(scatter, families, |element, places| {
+                places.add(&element.k, &mut values[0]);
+                places.add(&element.c, &mut values[1]);
+                places.add(&element.mass_on_all_axes(), &mut values[2]);
+            });
+        })?,
+    }
+    Ok([k, m, c])
+}
+
+/// Visits the elements that touch this rank's rows.
+fn pass(scatter: &Scatter, families: &[&dyn Elements], mut visit: impl FnMut(&ElementMatrices, &Places)) {
+    let (mut element, mut places) = (ElementMatrices::default(), Places::default());
     for family in families {
         for e in 0..family.len() {
             let nodes = family.nodes(e);
-            if nodes.iter().any(|&n| dofs.owns(n)) {
+            if nodes.iter().any(|&n| scatter.owns(n)) {
                 family.matrices(e, &mut element);
-                sums.add(dofs, nodes, [&element.k, &element.m, &element.c]);
+                places.find(scatter, nodes);
+                visit(&element, &places);
             }
         }
     }
-    let csr = sums.csr(dofs);
-    let matrix = |values: &[f64]| Matrix::from_csr(comm, &csr.offsets, &csr.columns, values);
-    let [k, m, c] = &csr.values;
-    Ok([matrix(k)?, matrix(m)?, matrix(c)?])
 }
 
 /// Contact points couple the nodes that their relative displacement depends on.

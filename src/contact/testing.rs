@@ -36,7 +36,7 @@ pub fn patch(nodes: &mut Vec<[f64; 3]>, [nu, nv]: [usize; 2], map: impl Fn(f64, 
         surface.facets.push([a, b, c, south, east, middle]);
         surface.facets.push([a, c, d, middle, north, west]);
     }
-    surface.tets = vec![0; surface.facets.len()];
+    surface.parts = vec![0; surface.facets.len()];
     surface
 }
 
@@ -91,8 +91,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
 pub fn skin(nodes: Vec<[f64; 3]>, surfaces: Vec<(&str, &str, Surface)>) -> Mesh {
     let mut mesh = Mesh { nodes, ..Mesh::default() };
     for (name, part, mut surface) in surfaces {
-        surface.tets = vec![mesh.tet_part.len() as u32; surface.facets.len()];
-        mesh.tet_part.push(mesh.parts.len() as u32);
+        surface.parts = vec![mesh.parts.len() as u32; surface.facets.len()];
         mesh.parts.push(part.into());
         mesh.surfaces.insert(name.into(), surface);
     }

@@ -22,9 +22,11 @@
 mod check;
 mod gmsh;
 pub mod jacobian;
+mod numbering;
 pub mod quality;
 mod skin;
 mod types;
 
 pub use gmsh::read;
+pub use numbering::{Numbering, order};
 pub use types::{Mesh, Surface};

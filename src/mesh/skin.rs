@@ -1,4 +1,4 @@
-//! Which tetrahedron a facet belongs to, and the facet seen from outside it.
+//! Which part a facet belongs to, and the facet seen from outside it.
 
 use std::collections::HashMap;
 
@@ -8,8 +8,8 @@ const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3
 /// A face of a tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Face {
-    /// The tetrahedron.
-    pub tet: u32,
+    /// The part of the tetrahedron.
+    pub part: u32,
     /// Nodes of the facet, turning so that its normal points out of the tetrahedron.
     pub facet: [u32; 6],
     /// Whether there is a tetrahedron on the other side, too.
@@ -39,14 +39,13 @@ impl Skin {
             }
             faces.insert(key(facet), None);
         }
-        for (tet, nodes) in tets.iter().enumerate() {
+        for (nodes, &part) in tets.iter().zip(tet_part) {
             for facet in FACES.map(|local| local.map(|i| nodes[i])) {
                 if !facet[..3].iter().all(|&node| wanted[node as usize]) {
                     continue;
                 }
                 if let Some(face) = faces.get_mut(&key(&facet)) {
-                    let found = Face { tet: tet as u32, facet, inner: false };
-                    *face = Some(outer(*face, found, tet_part));
+                    *face = Some(outer(*face, Face { part, facet, inner: false }));
                 }
             }
         }
@@ -61,12 +60,11 @@ impl Skin {
 }
 
 /// Of two tetrahedra that meet at a facet, the one of the first part.
-fn outer(known: Option<Face>, found: Face, tet_part: &[u32]) -> Face {
+fn outer(known: Option<Face>, found: Face) -> Face {
     let Some(known) = known else {
         return found;
     };
-    let is_first = tet_part[known.tet as usize] <= tet_part[found.tet as usize];
-    Face { inner: true, ..if is_first { known } else { found } }
+    Face { inner: true, ..if known.part <= found.part { known } else { found } }
 }
 
 fn key(facet: &[u32; 6]) -> [u32; 3] {
@@ -103,14 +101,15 @@ mod tests {
     fn a_shared_facet_belongs_to_the_first_part() {
         let tets = [[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], [0, 2, 1, 10, 6, 5, 4, 11, 12, 13]];
         let facet = [1, 2, 0, 5, 6, 4];
+        let seen_from = [[0, 2, 1, 6, 5, 4], [0, 1, 2, 4, 5, 6]];
         for (parts, tet) in [([0, 1], 0), ([1, 0], 1), ([0, 0], 0)] {
             let skin = Skin::new(14, &tets, &parts, [facet].iter());
             let face = skin.face(&facet).unwrap();
-            assert_eq!((face.tet, face.inner), (tet, true));
+            assert_eq!(face, Face { part: 0, facet: seen_from[tet], inner: true });
         }
         let skin = Skin::new(14, &tets, &[0, 1], [[0, 1, 3, 4, 8, 7]].iter());
         let face = skin.face(&[3, 0, 1, 7, 4, 8]).unwrap();
-        assert_eq!(face, Face { tet: 0, facet: [0, 1, 3, 4, 8, 7], inner: false });
+        assert_eq!(face, Face { part: 0, facet: [0, 1, 3, 4, 8, 7], inner: false });
         assert_eq!(skin.face(&[3, 0, 1, 7, 4, 9]), None);
         assert_eq!(skin.face(&[0, 3, 2, 7, 9, 6]), None);
     }

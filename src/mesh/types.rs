@@ -27,8 +27,8 @@ pub struct Mesh {
 pub struct Surface {
     /// The facets, six node indices each.
     pub facets: Vec<[u32; 6]>,
-    /// For each facet the index of the tetrahedron it belongs to.
-    pub tets: Vec<u32>,
+    /// For each facet the index of the part whose skin it is.
+    pub parts: Vec<u32>,
     /// Indices of the facets with a tetrahedron on both sides: a conformal interface inside the mesh, not its skin. They belong to
     /// the tetrahedron of the part that comes first.
     pub inner: Vec<u32>,
@@ -48,8 +48,7 @@ impl Mesh {
 
     /// The parts that a surface lies on (indices, ascending); none where no surface has this name.
     pub fn parts_of_surface(&self, name: &str) -> Option<Vec<u32>> {
-        let tets = &self.surfaces.get(name)?.tets;
-        let mut parts: Vec<u32> = tets.iter().map(|&tet| self.tet_part[tet as usize]).collect();
+        let mut parts = self.surfaces.get(name)?.parts.clone();
         parts.sort_unstable();
         parts.dedup();
         Some(parts)
@@ -61,6 +60,28 @@ impl Mesh {
             [part] => Some(part),
             _ => None,
         }
+    }
+
+    /// Puts the nodes into a new order, `order[new] = old`, and the tetrahedra into that of their first nodes.
+    ///
+    /// # Panics
+    /// Where `order` does not have every node once.
+    pub fn reorder(&mut self, order: &[u32]) {
+        let mut new = vec![u32::MAX; self.nodes.len()];
+        order.iter().enumerate().for_each(|(number, &old)| new[old as usize] = number as u32);
+        assert!(order.len() == new.len() && new.iter().all(|&n| n != u32::MAX));
+        self.nodes = order.iter().map(|&old| self.nodes[old as usize]).collect();
+        let rename = |nodes: &mut [u32]| nodes.iter_mut().for_each(|n| *n = new[*n as usize]);
+        rename(self.tets.as_flattened_mut());
+        self.surfaces.values_mut().for_each(|surface| rename(surface.facets.as_flattened_mut()));
+        self.node_sets.values_mut().for_each(|set| {
+            rename(set);
+            set.sort_unstable();
+        });
+        let mut tets: Vec<usize> = (0..self.tets.len()).collect();
+        tets.sort_by_cached_key(|&tet| self.tets[tet].iter().min().copied());
+        self.tet_part = tets.iter().map(|&tet| self.tet_part[tet]).collect();
+        self.tets = tets.iter().map(|&tet| self.tets[tet]).collect();
     }
 
     /// Coordinates of a tetrahedron's nodes, m.

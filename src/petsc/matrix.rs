@@ -8,6 +8,45 @@ use super::error::check;
 use super::{Comm, Vector};
 use crate::Result;
 
+/// The pattern of some rows, compressed by rows.
+#[derive(Debug, Clone)]
+pub struct Csr {
+    /// Where each row starts, and the end of the last.
+    pub offsets: Vec<i32>,
+    /// Columns, rising within each row.
+    pub columns: Vec<i32>,
+}
+
+impl Default for Csr {
+    fn default() -> Self {
+        Csr { offsets: vec![0], columns: Vec::new() }
+    }
+}
+
+impl Csr {
+    fn push(&mut self, columns: &[i32]) {
+        self.columns.extend_from_slice(columns);
+        self.offsets.push(self.columns.len() as i32);
+    }
+}
+
+/// The pattern of this rank's rows, as PETSc keeps it: apart for the columns that this rank owns and for all others.
+#[derive(Debug, Clone, Default)]
+pub struct Rows {
+    /// Columns that this rank owns, counted from its first.
+    pub own: Csr,
+    /// Columns that other ranks own, by their global numbers.
+    pub other: Csr,
+}
+
+impl Rows {
+    /// Appends a row with these columns, both lists rising.
+    pub fn push(&mut self, own: &[i32], other: &[i32]) {
+        self.own.push(own);
+        self.other.push(other);
+    }
+}
+
 /// A distributed sparse matrix of doubles; each rank holds whole rows.
 pub struct Matrix {
     raw: sys::Mat,
@@ -23,26 +62,83 @@ impl Drop for Matrix {
 }
 
 impl Matrix {
-    /// A square matrix from this rank's rows in CSR form with global column numbers, sorted within each row.
+    /// A square matrix of zeros on the rows of this rank.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn from_csr(comm: &Comm, offsets: &[i32], columns: &[i32], values: &[f64]) -> Result<Matrix> {
-        let n_local = offsets.len() as i32 - 1;
-        let mut raw = ptr::null_mut();
-        // SAFETY: PETSc copies the three arrays; of the two preallocations the one that fits the type acts.
+    pub fn zeros(comm: &Comm, mut rows: Rows) -> Result<Matrix> {
+        let n = rows.own.offsets.len() as i32 - 1;
+        // Never read: PETSc wants values even where it is to copy the pattern alone.
+        let mut unused = [vec![0.0; rows.own.columns.len()], vec![0.0; rows.other.columns.len()]];
+        let [v, other_v] = unused.each_mut().map(|values| values.as_mut_ptr());
+        let (i, j) = (rows.own.offsets.as_mut_ptr(), rows.own.columns.as_mut_ptr());
+        let (other_i, other_j) = (rows.other.offsets.as_mut_ptr(), rows.other.columns.as_mut_ptr());
+        let (decide, mut borrowed) = (super::DETERMINE, ptr::null_mut());
+        // SAFETY: the first matrix stands on our arrays, which outlive it; the copy has its own.
         unsafe {
-            check(sys::MatCreate(comm.raw(), &mut raw))?;
-            check(sys::MatSetSizes(raw, n_local, n_local, super::DETERMINE, super::DETERMINE))?;
-            check(sys::MatSetType(raw, c"aij".as_ptr()))?;
-            let (i, j, v) = (offsets.as_ptr(), columns.as_ptr(), values.as_ptr());
-            check(sys::MatSeqAIJSetPreallocationCSR(raw, i, j, v))?;
-            check(sys::MatMPIAIJSetPreallocationCSR(raw, i, j, v))?;
+            let code = match comm.size() {
+                1 => sys::MatCreateSeqAIJWithArrays(comm.raw(), n, n, i, j, v, &mut borrowed),
+                _ => sys::MatCreateMPIAIJWithSplitArrays(
+                    comm.raw(),
+                    n,
+                    n,
+                    decide,
+                    decide,
+                    i,
+                    j,
+                    v,
+                    other_i,
+                    other_j,
+                    other_v,
+                    &mut borrowed,
+                ),
+            };
+            check(code)?;
+            let borrowed = Matrix { raw: borrowed, comm: comm.clone(), n_local: n as usize };
+            borrowed.copy(sys::MatDuplicateOption::MAT_DO_NOT_COPY_VALUES)
         }
-        let matrix = Matrix { raw, comm: comm.clone(), n_local: n_local as usize };
-        matrix.set_option(sys::MatOption::MAT_IGNORE_OFF_PROC_ENTRIES, true)?;
-        matrix.set_option(sys::MatOption::MAT_NEW_NONZERO_LOCATION_ERR, true)?;
-        Ok(matrix)
+    }
+
+    /// A matrix of zeros on the same pattern, of which there is one copy for both.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn zeros_like(&self) -> Result<Matrix> {
+        self.copy(sys::MatDuplicateOption::MAT_SHARE_NONZERO_PATTERN)
+    }
+
+    fn copy(&self, what: sys::MatDuplicateOption) -> Result<Matrix> {
+        let mut raw = ptr::null_mut();
+        // SAFETY: the handle is alive.
+        check(unsafe { sys::MatDuplicate(self.raw, what, &mut raw) })?;
+        let copy = Matrix { raw, comm: self.comm.clone(), n_local: self.n_local };
+        copy.set_option(sys::MatOption::MAT_IGNORE_OFF_PROC_ENTRIES, true)?;
+        copy.set_option(sys::MatOption::MAT_NEW_NONZERO_LOCATION_ERR, true)?;
+        Ok(copy)
+    }
+
+    /// Changes the values of several matrices: `change` has for each those in columns of this rank and those in all others, in the
+    /// order of the [`Rows`] that it was made of.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn change_values(matrices: &mut [&mut Matrix], change: impl FnOnce(&mut [[&mut [f64]; 2]])) -> Result<()> {
+        let mut values = Vec::new();
+        for matrix in matrices.iter_mut() {
+            values.push(matrix.values()?);
+        }
+        change(&mut values);
+        matrices.iter_mut().try_for_each(|matrix| matrix.finish())
+    }
+
+    /// The values of the one or two sequential matrices behind this one.
+    fn values<'a>(&mut self) -> Result<[&'a mut [f64]; 2]> {
+        let (mut own, mut other) = (self.raw, ptr::null_mut());
+        if self.comm.size() > 1 {
+            // SAFETY: the matrix is of the parallel type; it keeps its two parts.
+            check(unsafe { sys::MatMPIAIJGetSeqAIJ(self.raw, &mut own, &mut other, ptr::null_mut()) })?;
+        }
+        Ok([values(own)?, values(other)?])
     }
 
     /// A full square matrix of `n` rows from its values by rows, on one rank.
@@ -54,9 +150,11 @@ impl Matrix {
     /// Where the values are not `n x n`, or the communicator has several ranks.
     pub fn dense(comm: &Comm, n: usize, values: &[f64]) -> Result<Matrix> {
         assert_eq!((values.len(), comm.size()), (n * n, 1));
-        let offsets: Vec<i32> = (0..=n).map(|i| (i * n) as i32).collect();
-        let columns: Vec<i32> = (0..n).flat_map(|_| 0..n as i32).collect();
-        Matrix::from_csr(comm, &offsets, &columns, values)
+        let (mut rows, columns) = (Rows::default(), (0..n as i32).collect::<Vec<_>>());
+        (0..n).for_each(|_| rows.push(&columns, &[]));
+        let mut matrix = Matrix::zeros(comm, rows)?;
+        Matrix::change_values(&mut [&mut matrix], |all| all[0][0].copy_from_slice(values))?;
+        Ok(matrix)
     }
 
     fn set_option(&self, option: sys::MatOption, on: bool) -> Result<()> {
@@ -103,12 +201,8 @@ impl Matrix {
     /// # Errors
     /// PETSc's.
     pub fn duplicate(&self) -> Result<Matrix> {
-        let mut raw = ptr::null_mut();
-        // SAFETY: the handle is alive.
-        check(unsafe { sys::MatDuplicate(self.raw, sys::MatDuplicateOption::MAT_COPY_VALUES, &mut raw) })?;
-        let copy = Matrix { raw, comm: self.comm.clone(), n_local: self.n_local };
-        copy.set_option(sys::MatOption::MAT_IGNORE_OFF_PROC_ENTRIES, true)?;
-        copy.set_option(sys::MatOption::MAT_NEW_NONZERO_LOCATION_ERR, true)?;
+        let mut copy = self.zeros_like()?;
+        copy.copy_from(self)?;
         Ok(copy)
     }
 
@@ -172,5 +266,22 @@ impl Matrix {
         // SAFETY: the handle is alive.
         check(unsafe { sys::MatNorm(self.raw, sys::NormType::NORM_INFINITY, &mut value) })?;
         Ok(value)
+    }
+}
+
+/// The values of a sequential matrix; none where there is no matrix.
+fn values<'a>(raw: sys::Mat) -> Result<&'a mut [f64]> {
+    let (mut info, mut pointer) = (sys::MatInfo::default(), ptr::null_mut());
+    if raw.is_null() {
+        return Ok(&mut []);
+    }
+    // SAFETY: PETSc's array has as many entries as the matrix, and stays where it is as long as the matrix lives.
+    unsafe {
+        check(sys::MatGetInfo(raw, sys::MatInfoType::MAT_LOCAL, &mut info))?;
+        check(sys::MatSeqAIJGetArray(raw, &mut pointer))?;
+        let array = pointer;
+        check(sys::MatSeqAIJRestoreArray(raw, &mut pointer))?;
+        let n = info.nz_used as usize;
+        Ok(if n == 0 { &mut [] } else { std::slice::from_raw_parts_mut(array, n) })
     }
 }

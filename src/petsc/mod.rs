@@ -24,7 +24,7 @@ mod vector;
 
 pub use block::Block;
 pub use factor::{Factor, FactorKind, FactorStats, ORDERING};
-pub use matrix::Matrix;
+pub use matrix::{Csr, Matrix, Rows};
 pub use metis::partition;
 pub use session::{Comm, Session};
 pub use vector::{Gather, Vector};

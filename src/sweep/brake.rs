@@ -6,9 +6,9 @@ use std::path::Path;
 use crate::assembly::{self, Connectivity, Elements, Link, System, Tets};
 use crate::contact::Interface;
 use crate::equilibrium::free_motions;
-use crate::mesh::{self, Mesh};
+use crate::mesh::{self, Mesh, Numbering};
 use crate::model::{self, Model, located};
-use crate::petsc::Comm;
+use crate::petsc::{Comm, partition};
 use crate::{Error, Result};
 
 /// A model with its mesh and contact interface, the same on every rank.
@@ -17,6 +17,8 @@ pub struct Brake {
     pub model: Model,
     /// The mesh, m.
     pub mesh: Mesh,
+    /// Which of its nodes this rank owns.
+    pub nodes: Numbering,
     /// Contact points of all pairs.
     pub interface: Interface,
     /// Forces (N) at nodes.
@@ -48,7 +50,7 @@ impl Brake {
     /// # Errors
     /// [`Error::Input`] with file and line, whatever is wrong.
     pub fn read(comm: &Comm, path: &Path) -> Result<Brake> {
-        comm.agree(Brake::read_alone(path))
+        comm.agree(Brake::read_alone(comm, path))
     }
 
     /// Refuses a brake of which a part is held by nothing.
@@ -77,20 +79,21 @@ impl Brake {
         )))
     }
 
-    fn read_alone(path: &Path) -> Result<Brake> {
+    fn read_alone(comm: &Comm, path: &Path) -> Result<Brake> {
         let model = model::read(path)?;
         if let Err(reason) = File::open(&model.mesh_file) {
             let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
             let advice = "Give its path in [mesh] file, relative to the model file";
             return Err(Error::Input(located(&model.file, model.mesh_line, format!("{what}. {advice}"))));
         }
-        let mesh = mesh::read(&model.mesh_file, model.mesh_unit)?;
+        let mut mesh = mesh::read(&model.mesh_file, model.mesh_unit)?;
         model.check_against(&mesh)?;
+        let nodes = share_out(comm, &mut mesh)?;
         let interface = Interface::build(&model, &mesh)?;
         let loads = assembly::loads(&model, &mesh)?;
         let held = assembly::held(&model, &mesh)?;
         let links = assembly::links(&model, &mesh)?;
-        Ok(Brake { model, mesh, interface, loads, held, links })
+        Ok(Brake { model, mesh, nodes, interface, loads, held, links })
     }
 
     /// The families of elements.
@@ -104,10 +107,18 @@ impl Brake {
     /// Assembles M, C, K and the load. Collective.
     ///
     /// # Errors
-    /// METIS's and PETSc's.
+    /// PETSc's.
     pub fn assemble(&self, comm: &Comm, families: &Families) -> Result<System> {
+        self.assemble_families(comm, &families.list())
+    }
+
+    /// As [`Brake::assemble`], of any families on the brake's nodes. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn assemble_families(&self, comm: &Comm, families: &[&dyn Elements]) -> Result<System> {
         let contacts: [&dyn Connectivity; 1] = [&self.interface.trace];
-        let mut system = System::assemble(comm, &self.held, &families.list(), &contacts)?;
+        let mut system = System::assemble(comm, &self.nodes, &self.held, families, &contacts)?;
         system.add_load(&self.loads)?;
         Ok(system)
     }
@@ -131,4 +142,13 @@ impl Brake {
             ))
         })
     }
+}
+
+/// Puts the nodes into an order in which each rank's own are together.
+fn share_out(comm: &Comm, mesh: &mut Mesh) -> Result<Numbering> {
+    let owner = partition(&mesh.tets, mesh.nodes.len(), comm.size())?;
+    mesh.reorder(&mesh::order(&mesh.nodes, &owner));
+    let n_of = |ranks: std::ops::Range<u32>| owner.iter().filter(|&&rank| ranks.contains(&rank)).count() as u32;
+    let rank = comm.rank() as u32;
+    Ok(Numbering::whole(mesh.nodes.len(), n_of(0..rank)..n_of(0..rank + 1)))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use squeal::assembly;
 use squeal::contact::Interface;
-use squeal::mesh::{Mesh, Surface, jacobian};
+use squeal::mesh::{Mesh, Numbering, Surface, jacobian};
 use squeal::model;
 use squeal::sweep::Brake;
 
@@ -32,7 +32,8 @@ pub fn brake(text: &str, mesh: Mesh) -> Brake {
     let loads = assembly::loads(&model, &mesh).unwrap();
     let held = assembly::held(&model, &mesh).unwrap();
     let links = assembly::links(&model, &mesh).unwrap();
-    Brake { model, mesh, interface, loads, held, links }
+    let nodes = Numbering::even(mesh.nodes.len(), 0, 1);
+    Brake { model, mesh, nodes, interface, loads, held, links }
 }
 
 /// A block of `cells` cells of six tetrahedra each (Kuhn's), the unit cube mapped by `map`.
@@ -84,7 +85,7 @@ impl Block<'_> {
                 if let Some(side) = self.side(face.map(|a| lattice[a])) {
                     let surface = sides.entry(format!("{}_{side}", self.part)).or_default();
                     surface.facets.push(face.map(|a| tet[a]));
-                    surface.tets.push(index);
+                    surface.parts.push(part);
                 }
             }
         }

@@ -182,7 +182,7 @@ fn merged_surfaces_are_refused() {
     let mut mesh = plates(0.0);
     let merged = flipped(&mesh.surfaces["disc_face"]);
     mesh.surfaces.get_mut("pad_face").unwrap().facets = merged.facets;
-    mesh.surfaces.get_mut("pad_face").unwrap().tets = vec![0; 32];
+    mesh.surfaces.get_mut("pad_face").unwrap().parts = vec![0; 32];
     assert!(refused(pad(), true, &mesh).contains("56 nodes belong to both surfaces"));
 }
 

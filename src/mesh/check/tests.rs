@@ -175,7 +175,7 @@ fn contact_surfaces_lie_on_one_part_each() {
     let outer = mesh.surfaces["lining_outer_face"].clone();
     let inner = mesh.surfaces.get_mut("lining_inner_face").unwrap();
     inner.facets.extend(outer.facets);
-    inner.tets.extend(outer.tets);
+    inner.parts.extend(outer.parts);
     assert_eq!(mesh.part_of_surface("lining_inner_face"), None);
     assert_eq!(
         said(GOOD, &mesh),

@@ -161,7 +161,7 @@ fn surface(name: &str, facets: &[(u64, [u32; 6])], skin: &Skin) -> Result<Surfac
             surface.inner.push(surface.facets.len() as u32);
         }
         surface.facets.push(face.facet);
-        surface.tets.push(face.tet);
+        surface.parts.push(face.part);
     }
     Ok(surface)
 }

@@ -59,7 +59,7 @@ fn text_bytes_and_parameters_are_read_alike() {
         assert_eq!(other.node_sets, ascii.node_sets);
         for (name, surface) in &ascii.surfaces {
             assert_eq!(other.surfaces[name].facets, surface.facets);
-            assert_eq!(other.surfaces[name].tets, surface.tets);
+            assert_eq!(other.surfaces[name].parts, surface.parts);
         }
         for (a, b) in ascii.nodes.iter().zip(&other.nodes) {
             assert!((0..3).all(|i| (a[i] - b[i]).abs() < 1e-17), "{a:?} {b:?}");
