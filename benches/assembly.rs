@@ -23,7 +23,7 @@ fn main() -> Result<()> {
     let others = if launched { None } else { Some(dolfinx(&path)?) };
     let comm = Session::start(&[])?;
     let brake = Brake::read(&comm, &path)?;
-    let n_tets = brake.mesh.tets.len();
+    let n_tets = comm.sum(brake.own_tets().count() as f64);
     if comm.is_root() {
         println!("{}: {n_tets} tetrahedra on {} ranks", path.display(), comm.size());
     }
@@ -113,8 +113,8 @@ impl Elements for Chosen<'_> {
     }
 }
 
-fn tell(comm: &Comm, who: &str, what: &str, run: &str, [pattern, values]: [f64; 2], n_tets: usize) {
-    let rate = n_tets as f64 / (pattern + values) / comm.size() as f64;
+fn tell(comm: &Comm, who: &str, what: &str, run: &str, [pattern, values]: [f64; 2], n_tets: f64) {
+    let rate = n_tets / (pattern + values) / comm.size() as f64;
     if comm.is_root() {
         println!("{who:8} {what:11} {run:6} pattern {pattern:.3} s, values {values:.3} s, {rate:.0} tets/s and rank");
     }

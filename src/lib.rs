@@ -46,10 +46,14 @@
 //!
 //! # Ranks
 //!
-//! Rows of the matrices and entries of vectors are distributed (METIS on the graph of coupled nodes). The mesh, the contact points
-//! and their state are on every rank: a million equations have 16 MB of mesh and some thousand points, while the factor
-//! takes gigabytes. So each rank computes the elements that touch its rows without any communication, and every sum is the
-//! same on any number of ranks.
+//! Nothing that grows with the model's volume is on one rank alone, but for the seconds in which the first reads the mesh. It cuts the mesh
+//! by METIS, numbers the nodes rank by rank, and sends each rank its piece: the nodes that the rank owns, all tetrahedra that
+//! touch them, and everything that has a name ([`mesh::Piece`]). So each rank owns a range of rows, computes the elements that touch
+//! them without any communication, and writes its own piece of the results. Surfaces are on every rank, and so are the contact points and
+//! their state, which grow with the power 2/3 of the volume; ranks divide the search for them and tell each other what they found.
+//!
+//! Nodes have *local* numbers, those of the piece: a mesh, a trace, loads and supports all use them. [`mesh::Numbering`] knows the
+//! global ones; local numbers rise with them, so that what is ordered by nodes is ordered alike on all ranks.
 //!
 //! # Notation
 //!

@@ -10,7 +10,7 @@ const REAL: &str = "/usr/lib/slepcdir/slepc-real/lib/pkgconfig:/usr/lib/petscdir
 
 /// Everything `squeal` calls; whatever these need comes along.
 const FUNCTIONS: &[&str] = &[
-    "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Bcast|Barrier|Abort)",
+    "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Bcast|Send|Recv|Barrier|Abort)",
     "Petsc(InitializeNoArguments|OptionsSetValue|OptionsClearValue|PushErrorHandler|PopErrorHandler|Error|GetVersion)",
     "PetscObject(SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
     "Slepc(Initialize|InitializeNoArguments|Finalize|GetVersion)",

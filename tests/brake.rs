@@ -17,7 +17,7 @@ const CLAMP: f64 = 12000.0;
 fn equilibria_balance_at_every_friction() {
     let comm = Session::start(&[]).unwrap();
     let brake = Brake::read(&comm, Path::new("meshes/brake-small.toml")).unwrap();
-    brake.require_held().unwrap();
+    brake.require_held(&comm).unwrap();
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
     let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
@@ -30,7 +30,7 @@ fn equilibria_balance_at_every_friction() {
         let points = &brake.mesh.nodes;
         let list = families.list();
         let responses = &equilibrium.responses;
-        let balance = Balance::new(points, &list, &brake.loads, &brake.interface, &system.dofs, &u, responses);
+        let balance = Balance::new(&system, points, &list, &brake.loads, &brake.interface, &u, responses);
         let [force, moment] = balance.residual();
         assert!(force < 1e-9 * CLAMP && moment < 1e-9 * CLAMP, "{force} N, {moment} N m");
         let normal = |name: &str| {
@@ -46,7 +46,7 @@ fn equilibria_balance_at_every_friction() {
         for (tet, _) in brake.mesh.tets.iter().zip(&brake.mesh.tet_part).filter(|(_, p)| **p as usize == disc) {
             tet.iter().for_each(|&n| on_disc[n as usize] = true);
         }
-        let held = balance.support_torque(points, |n| on_disc[n as usize], rotation.through, rotation.axis);
+        let held = balance.support_torque(&comm, points, |n| on_disc[n as usize], rotation.through, rotation.axis);
         let pairs = brake.interface.pairs.iter().zip(&balance.pairs).filter(|(pair, _)| pair.is_sliding());
         let friction_torque: f64 = pairs.map(|(_, f)| f.on_slave.about(rotation.through, rotation.axis)).sum();
         assert!((held - friction_torque).abs() < 1e-6 * held.abs(), "{held} and {friction_torque} N m");

@@ -2,8 +2,11 @@
 
 mod program;
 
+use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use program::{Place, Said, mpirun};
 use squeal::petsc::Session;
 
@@ -39,6 +42,65 @@ fn two_and_three_ranks_find_what_one_finds() {
         for (a, b) in contact.iter().zip(&other_contact) {
             assert!((a - b).abs() <= 1e-9 * a.abs(), "{a} on one rank, {b} on {ranks}");
         }
+    }
+}
+
+/// Displacements by position (single precision, as bits): nodes of two parts may lie at one place.
+type Displacements = HashMap<[u32; 3], Vec<[f32; 3]>>;
+
+/// Displacements of the nodes of a VTU file, and the number of its cells.
+fn displacements(text: &str) -> (Displacements, usize) {
+    let xml = roxmltree::Document::parse(text).unwrap();
+    let vectors = |name: &str| -> Vec<[f32; 3]> {
+        let array = xml.descendants().find(|node| node.attribute("Name") == Some(name)).unwrap();
+        let bytes = STANDARD.decode(array.text().unwrap()).unwrap();
+        let numbers: Vec<f32> = bytes[8..].as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect();
+        numbers.as_chunks().0.to_vec()
+    };
+    let mut nodes = Displacements::new();
+    for (x, u) in vectors("Points").into_iter().zip(vectors("displacement")) {
+        nodes.entry(x.map(f32::to_bits)).or_default().push(u);
+    }
+    let piece = xml.descendants().find(|node| node.has_tag_name("Piece")).unwrap();
+    (nodes, piece.attribute("NumberOfCells").unwrap().parse().unwrap())
+}
+
+/// What a rank has of the mesh, or writes, adds up to what one rank has and writes alone.
+#[test]
+fn pieces_add_up_to_the_whole() {
+    let place = Place::pads();
+    let before_the_equations =
+        |said: &Said| said.out.lines().take_while(|l| !l.contains("equations")).collect::<Vec<_>>().join("\n");
+    let alone = place.run(&["check", "brake.toml"]);
+    let said = place.run(&["static", "brake.toml", "--friction", "0.4", "-o", "1"]);
+    assert_eq!((alone.code, said.code), (0, 0), "{}{}", alone.err, said.err);
+    let (whole, n_cells) = displacements(&place.read("1/equilibrium_mu0.400.vtu"));
+    let largest = whole.values().flatten().flatten().fold(0.0, |most: f32, u| most.max(u.abs()));
+    for ranks in [2, 3] {
+        let check = place.run_on(ranks, &["check", "brake.toml"]);
+        assert_eq!(before_the_equations(&check), before_the_equations(&alone));
+        let folder = ranks.to_string();
+        let said = place.run_on(ranks, &["static", "brake.toml", "--friction", "0.4", "-o", &folder]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        let list = place.read(&format!("{folder}/equilibrium_mu0.400.pvtu"));
+        let (mut seen, mut cells) = (HashSet::new(), 0);
+        for rank in 0..ranks {
+            let name = format!("pieces/equilibrium_mu0.400.{rank}.vtu");
+            assert!(list.contains(&format!("Source=\"{name}\"")), "{list}");
+            let (piece, n) = displacements(&place.read(&format!("{folder}/{name}")));
+            assert!(n < n_cells * 2 / ranks, "{n} of {n_cells} cells on rank {rank} of {ranks}");
+            cells += n;
+            for (x, u) in &piece {
+                let is_near = |a: &[f32; 3], b: &[f32; 3]| (0..3).all(|i| (a[i] - b[i]).abs() <= 1e-6 * largest);
+                assert!(
+                    u.iter().all(|u| whole[x].iter().any(|w| is_near(u, w))),
+                    "{u:?}, and {:?} on one rank",
+                    whole[x]
+                );
+            }
+            seen.extend(piece.into_keys());
+        }
+        assert_eq!((cells, seen.len()), (n_cells, whole.len()), "{ranks} ranks");
     }
 }
 

@@ -7,7 +7,10 @@
 //! [`System`] is the result.
 //!
 //! Each rank computes every element that touches a node of its own and keeps the rows that it owns. Elements on the
-//! border are computed twice and nothing is communicated: every entry is the same sum in the same order on any number of ranks.
+//! border are computed twice and nothing is communicated.
+//!
+//! Element matrices go straight to their places in PETSc's arrays (`scatter`): K and C have one pattern, and room for all that contact adds.
+//! A mass that does not couple axes has a pattern of its own, a third as large (`axes`).
 
 mod axes;
 mod dofs;

@@ -31,15 +31,11 @@ impl<'a> Tets<'a> {
         Ok(Tets { mesh, parts: mesh.parts.iter().map(part).collect::<Result<_>>()? })
     }
 
-    /// Von Mises stress (Pa) of each tetrahedron's mean stress, for nodal displacements `u` (m).
-    pub fn von_mises(&self, u: &[[f64; 3]]) -> Vec<f64> {
-        let of = |e: usize| {
-            let displacements = self.mesh.tets[e].map(|n| u[n as usize]);
-            let stress =
-                tet10::stress_at_nodes(&self.mesh.tet_nodes(e), &self.part(e).material.elasticity, &displacements);
-            tet10::von_mises(&std::array::from_fn(|i| stress.iter().map(|s| s[i]).sum::<f64>() / 10.0))
-        };
-        (0..self.mesh.tets.len()).map(of).collect()
+    /// Von Mises stress (Pa) of the mean stress of tetrahedron `e`, for nodal displacements `u` (m).
+    pub fn von_mises(&self, e: usize, u: &[[f64; 3]]) -> f64 {
+        let displacements = self.mesh.tets[e].map(|n| u[n as usize]);
+        let stress = tet10::stress_at_nodes(&self.mesh.tet_nodes(e), &self.part(e).material.elasticity, &displacements);
+        tet10::von_mises(&std::array::from_fn(|i| stress.iter().map(|s| s[i]).sum::<f64>() / 10.0))
     }
 
     /// Model part of tetrahedron `e`.

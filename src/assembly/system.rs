@@ -196,3 +196,61 @@ impl Connectivity for Trace {
         self.point(a).0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::petsc::Session;
+
+    /// Springs between neighbours of a chain of nodes, with one number for the mass or with a full matrix.
+    struct Chain {
+        nodes: Vec<[u32; 2]>,
+        mass_couples_axes: bool,
+    }
+
+    impl Connectivity for Chain {
+        fn len(&self) -> usize {
+            self.nodes.len()
+        }
+        fn nodes(&self, e: usize) -> &[u32] {
+            &self.nodes[e]
+        }
+    }
+
+    impl Elements for Chain {
+        fn mass_couples_axes(&self) -> bool {
+            self.mass_couples_axes
+        }
+        fn matrices(&self, e: usize, out: &mut ElementMatrices) {
+            out.k = (0..36).map(|at| (1 + e + at) as f64).collect();
+            out.m = vec![2.0, 1.0, 1.0, 2.0];
+            out.c = Vec::new();
+            if self.mass_couples_axes {
+                out.m = out.mass_on_all_axes().into_owned();
+            }
+        }
+    }
+
+    /// A mass that comes as one number for all axes, or as a full matrix with the same entries, is the same.
+    #[test]
+    fn both_ways_of_the_mass_agree() {
+        let comm = Session::start(&[]).unwrap();
+        let mut held = [[false; 3]; 4];
+        held[1] = [false, true, false];
+        let product = |mass_couples_axes: bool| {
+            let chain = Chain { nodes: vec![[2, 0], [0, 1], [1, 3]], mass_couples_axes };
+            let system = System::assemble(&comm, &Numbering::even(4, 0, 1), &held, &[&chain], &[]).unwrap();
+            let x: Vec<f64> = (0..11).map(f64::from).collect();
+            let (x, mut y) = (Vector::from_local(&comm, &x).unwrap(), system.zeros().unwrap());
+            system.m.multiply(&x, &mut y).unwrap();
+            (y.to_vec().unwrap(), system.m.n_entries().unwrap())
+        };
+        let (alone, n_alone) = product(false);
+        let (coupled, n_coupled) = product(true);
+        assert_eq!(alone, coupled);
+        // Ten pairs of nodes with 2 or 3 free axes: one entry an axis that both have free, or one for each two axes.
+        assert_eq!((n_alone, n_coupled), (25.0, 73.0));
+        // The row of node 3, axis x: node 1's equation 3 and its own, 8.
+        assert_eq!(alone[8], 3.0 + 2.0 * 8.0);
+    }
+}

@@ -5,31 +5,37 @@ use std::path::Path;
 
 use crate::Result;
 use crate::element::tet10::{MassProperties, mass_properties};
-use crate::mesh::quality;
+use crate::mesh::quality::scaled_jacobian;
 use crate::model::LoadKind;
 use crate::petsc::{Comm, Factor, FactorKind};
 
 use crate::sweep::Brake;
 
+use super::ranked::Ranked;
+
 pub fn run(comm: &Comm, path: &Path) -> Result<()> {
     let brake = Brake::read(comm, path)?;
     let mut text = format!("{}\n\n", brake.model.title);
-    parts(&mut text, &brake);
+    parts(&mut text, comm, &brake);
     pairs(&mut text, &brake);
     supports(&mut text, &brake);
     tell(comm, &text)?;
-    brake.require_held()?;
+    brake.require_held(comm)?;
     memory(comm, &brake)
 }
 
-/// Parts with nodes, mass, centre and principal moments of inertia, and mesh quality.
-fn parts(text: &mut String, brake: &Brake) {
+/// Parts with tetrahedra, mass, centre and moments of inertia, and mesh quality. Collective.
+fn parts(text: &mut String, comm: &Comm, brake: &Brake) {
     let mesh = &brake.mesh;
-    let size = [0, 1, 2].map(|i| {
-        let x = || mesh.nodes.iter().map(|node| node[i]);
-        fixed(1e3 * (x().fold(f64::MIN, f64::max) - x().fold(f64::MAX, f64::min)), 1)
-    });
-    let (nodes, tets) = (mesh.nodes.len(), mesh.tets.len());
+    let ends = |sign: f64| {
+        let most = |i: usize| mesh.nodes.iter().map(|x| sign * x[i]).fold(f64::MIN, f64::max);
+        let mut ends = [0, 1, 2].map(most);
+        comm.max_all(&mut ends);
+        ends
+    };
+    let (high, low) = (ends(1.0), ends(-1.0));
+    let size = [0, 1, 2].map(|i| fixed(1e3 * (high[i] + low[i]), 1));
+    let (nodes, tets) = (brake.nodes.n_global(), comm.sum(brake.own_tets().count() as f64));
     let _ = writeln!(text, "mesh: {nodes} nodes, {tets} tetrahedra, {} mm", size.join(" x "));
     let width = mesh.parts.iter().map(String::len).max().unwrap_or(4).max(4);
     let _ = writeln!(
@@ -37,28 +43,36 @@ fn parts(text: &mut String, brake: &Brake) {
         "{:width$}  {:>8}  {:>9}  {:>26}  {:>32}  {:>17}",
         "part", "tets", "mass kg", "centre mm", "inertia kg mm2 (xx yy zz)", "quality min / med"
     );
-    let quality = quality::quality(mesh);
     for (i, name) in mesh.parts.iter().enumerate() {
         let part = brake.model.parts.iter().find(|part| part.name == *name).expect("checked against the mesh");
-        let mut properties = MassProperties::default();
-        let own = mesh.tets.iter().zip(&mesh.tet_part).filter(|(_, p)| **p as usize == i);
-        for (tet, _) in own.clone() {
-            properties += mass_properties(&tet.map(|n| mesh.nodes[n as usize]), part.material.density);
-        }
+        let own = || brake.own_tets().filter(|&e| mesh.tet_part[e] as usize == i).map(|e| mesh.tet_nodes(e));
+        let properties = mass(comm, own(), part.material.density);
+        let quality = Ranked::new(comm, own().map(|x| scaled_jacobian(&x)).collect());
         let centre = properties.centre();
         let inertia = properties.inertia_about(centre);
         let millimetres = centre.map(|x| fixed(1e3 * x, 2)).join(" ");
         let moments = [0, 1, 2].map(|k| fixed(1e6 * inertia[k][k], 2)).join(" ");
+        let n = quality.len();
         let _ = writeln!(
             text,
-            "{name:width$}  {:>8}  {:>9.4}  {millimetres:>26}  {moments:>32}  {:>8.3} {:>8.3}",
-            own.count(),
+            "{name:width$}  {n:>8}  {:>9.4}  {millimetres:>26}  {moments:>32}  {:>8.3} {:>8.3}",
             properties.mass,
-            quality[i].min,
-            quality[i].median
+            quality.nth(0),
+            quality.nth(n / 2)
         );
     }
     text.push('\n');
+}
+
+/// Mass and moments of the tetrahedra of all ranks. Collective.
+fn mass(comm: &Comm, tets: impl Iterator<Item = [[f64; 3]; 10]>, density: f64) -> MassProperties {
+    let mut own = MassProperties::default();
+    tets.for_each(|x| own += mass_properties(&x, density));
+    let MassProperties { mass, first_moment, second_moment: [x, y, z] } = own;
+    let mut sums = [[mass, 0.0, 0.0], first_moment, x, y, z];
+    comm.sum_all(sums.as_flattened_mut());
+    let [[mass, ..], first_moment, x, y, z] = sums;
+    MassProperties { mass, first_moment, second_moment: [x, y, z] }
 }
 
 /// Contact pairs with points, areas, gaps.

@@ -3,10 +3,12 @@
 mod check;
 mod friction;
 mod progress;
+mod ranked;
 mod results;
 mod stability;
 mod statics;
 mod study;
+mod volume;
 
 use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};

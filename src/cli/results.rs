@@ -3,13 +3,15 @@
 use std::io::Write;
 
 use crate::equilibrium::{Balance, Equilibrium};
-use crate::petsc::Vector;
-use crate::report::contact_surface::ContactSurface;
+use crate::petsc::{Comm, Vector};
+use crate::report::contact_surface::{ContactSurface, Fields};
 use crate::report::folder::Folder;
 use crate::report::tables::PairRow;
 use crate::report::vtu::{Cells, Grid, Values};
 use crate::stability::Mode;
 use crate::{Error, Result};
+
+use super::volume::Drawing;
 
 use crate::assembly::System;
 use crate::contact::Response;
@@ -17,7 +19,7 @@ use crate::sweep::{Brake, Families};
 
 /// An equilibrium with its balance, ready to be written.
 pub struct State {
-    /// Nodal displacements, m.
+    /// Displacements of the nodes that this rank has, m.
     pub u: Vec<[f64; 3]>,
     pub balance: Balance,
     pub friction: f64,
@@ -28,11 +30,11 @@ impl State {
     pub fn new(brake: &Brake, families: &Families, system: &System, equilibrium: &Equilibrium) -> Result<State> {
         let u = system.nodal(&[&equilibrium.u])?.remove(0);
         let balance = Balance::new(
+            system,
             &brake.mesh.nodes,
             &families.list(),
             &brake.loads,
             &brake.interface,
-            &system.dofs,
             &u,
             &equilibrium.responses,
         );
@@ -46,8 +48,8 @@ impl State {
             .collect()
     }
 
-    /// The checks in words: balance of forces and moments, torque of each rotation.
-    pub fn checks(&self, brake: &Brake) -> String {
+    /// The checks in words: balance of forces and moments, torque of each rotation. Collective.
+    pub fn checks(&self, comm: &Comm, brake: &Brake) -> String {
         let [force, moment] = self.balance.residual();
         let clamp = self.balance.pairs.iter().map(|pair| pair.normal.abs()).fold(0.0, f64::max);
         let mut text = format!(
@@ -58,7 +60,7 @@ impl State {
         for rotation in &brake.model.rotations {
             let nodes = part_nodes(brake, &rotation.part);
             let of = |node: u32| nodes[node as usize];
-            let held = self.balance.support_torque(&brake.mesh.nodes, of, rotation.through, rotation.axis);
+            let held = self.balance.support_torque(comm, &brake.mesh.nodes, of, rotation.through, rotation.axis);
             let friction = -self.friction_torque(brake, rotation);
             text +=
                 &format!("torque that holds {}: {held:.3} N m; of friction on it: {friction:.3} N m\n", rotation.part);
@@ -74,21 +76,26 @@ impl State {
         -own.map(|(_, forces)| forces.on_slave.about(rotation.through, rotation.axis)).sum::<f64>()
     }
 
-    /// Writes volume and contact surface as VTU.
-    pub fn write(&self, folder: &Folder, brake: &Brake, responses: &[Response]) -> Result<()> {
+    /// Writes volume and contact surface as VTU. Collective; the root has the folder.
+    pub fn write(&self, comm: &Comm, folder: Option<&Folder>, brake: &Brake, responses: &[Response]) -> Result<()> {
         let contact = ContactSurface::new(&brake.mesh, &brake.interface, responses);
-        let on_mesh = contact.on_mesh(brake.mesh.nodes.len());
-        let at = friction_name(self.friction);
-        let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
-        let von_mises = brake.families()?.tets.von_mises(&self.u);
-        let displacement = [("displacement", Values::Vectors(&self.u))];
-        let grid = Grid {
-            points: &brake.mesh.nodes,
-            cells: Cells::Tets(&brake.mesh.tets),
-            point_data: displacement.into_iter().chain(on_mesh.arrays()).collect(),
-            cell_data: vec![("part", Values::Integers(&parts)), ("von_mises", Values::Scalars(&von_mises))],
-        };
-        folder.write(&format!("equilibrium_mu{at}.vtu"), |mut out| grid.write(&mut out))?;
+        self.write_volume(comm, folder, brake, &contact.on_mesh(brake.mesh.nodes.len()))?;
+        comm.agree(folder.map_or(Ok(()), |folder| self.write_surface(folder, brake, &contact)))
+    }
+
+    fn write_volume(&self, comm: &Comm, folder: Option<&Folder>, brake: &Brake, contact: &Fields) -> Result<()> {
+        let (drawing, tets) = (Drawing::new(brake), brake.families()?.tets);
+        let contact = contact.at(drawing.nodes());
+        let u = drawing.at_nodes(&self.u);
+        let von_mises = drawing.at_tets(|e| tets.von_mises(e, &self.u));
+        let parts = drawing.at_tets(|e| brake.mesh.tet_part[e] as i32);
+        let point_data = [("displacement", Values::Vectors(&u))].into_iter().chain(contact.arrays()).collect();
+        let cell_data = vec![("part", Values::Integers(&parts)), ("von_mises", Values::Scalars(&von_mises))];
+        let name = format!("equilibrium_mu{}", friction_name(self.friction));
+        drawing.write(comm, folder, &name, point_data, cell_data)
+    }
+
+    fn write_surface(&self, folder: &Folder, brake: &Brake, contact: &ContactSurface) -> Result<()> {
         let of = |values: &[[f64; 3]]| contact.nodes.iter().map(|&n| values[n as usize]).collect::<Vec<_>>();
         let (points, u) = (of(&brake.mesh.nodes), of(&self.u));
         let displacement = [("displacement", Values::Vectors(&u))];
@@ -98,7 +105,8 @@ impl State {
             point_data: displacement.into_iter().chain(contact.fields.arrays()).collect(),
             cell_data: vec![("pair", Values::Integers(&contact.pairs))],
         };
-        folder.write(&format!("contact_mu{at}.vtu"), |mut out| grid.write(&mut out))
+        let name = format!("contact_mu{}.vtu", friction_name(self.friction));
+        folder.write(&name, |mut out| grid.write(&mut out))
     }
 }
 
@@ -124,7 +132,7 @@ fn friction_name(friction: f64) -> String {
     if short.parse() == Ok(friction) { short } else { friction.to_string() }
 }
 
-/// Writes the shape of a mode, real and imaginary part, under its number (from 1). Collective; the root writes.
+/// Writes the shape of a mode, real and imaginary part, under its number (from 1). Collective; the root has the folder.
 pub fn write_mode(
     folder: Option<&Folder>,
     brake: &Brake,
@@ -132,34 +140,23 @@ pub fn write_mode(
     friction: f64,
     (number, mode): (usize, &Mode),
 ) -> Result<()> {
-    let shape = system.nodal(&[&mode.re, &mode.im])?;
-    let Some(folder) = folder else { return Ok(()) };
-    let parts: Vec<i32> = brake.mesh.tet_part.iter().map(|&p| p as i32).collect();
-    let grid = Grid {
-        points: &brake.mesh.nodes,
-        cells: Cells::Tets(&brake.mesh.tets),
-        point_data: vec![("real", Values::Vectors(&shape[0])), ("imaginary", Values::Vectors(&shape[1]))],
-        cell_data: vec![("part", Values::Integers(&parts))],
-    };
+    let (shape, drawing) = (system.nodal(&[&mode.re, &mode.im])?, Drawing::new(brake));
+    let [re, im] = [0, 1].map(|i| drawing.at_nodes(&shape[i]));
+    let parts = drawing.at_tets(|e| brake.mesh.tet_part[e] as i32);
+    let point_data = vec![("real", Values::Vectors(&re)), ("imaginary", Values::Vectors(&im))];
     // The number keeps modes apart whose frequencies are nearly the same.
-    let name = format!("mode_mu{}_{number:03}_{:.0}Hz.vtu", friction_name(friction), mode.frequency());
-    folder.write(&name, |mut out| grid.write(&mut out))
+    let name = format!("mode_mu{}_{number:03}_{:.0}Hz", friction_name(friction), mode.frequency());
+    drawing.write(system.k.comm(), folder, &name, point_data, vec![("part", Values::Integers(&parts))])
 }
 
-/// File of the displacement at which a solve gave up.
-pub const LAST_STATE: &str = "last_state.vtu";
+/// Name, without its ending, of the file of the displacement at which a solve gave up.
+pub const LAST_STATE: &str = "last_state";
 
-/// Writes the displacement at which a solve gave up. Collective; the root writes.
+/// Writes the displacement at which a solve gave up. Collective; the root has the folder.
 pub fn write_last(folder: Option<&Folder>, brake: &Brake, system: &System, u: &Vector) -> Result<()> {
-    let u = system.nodal(&[u])?.remove(0);
-    let Some(folder) = folder else { return Ok(()) };
-    let grid = Grid {
-        points: &brake.mesh.nodes,
-        cells: Cells::Tets(&brake.mesh.tets),
-        point_data: vec![("displacement", Values::Vectors(&u))],
-        cell_data: vec![],
-    };
-    folder.write(LAST_STATE, |mut out| grid.write(&mut out))
+    let drawing = Drawing::new(brake);
+    let u = drawing.at_nodes(&system.nodal(&[u])?[0]);
+    drawing.write(system.k.comm(), folder, LAST_STATE, vec![("displacement", Values::Vectors(&u))], vec![])
 }
 
 /// Writes the summary, which ends with what went wrong; the screen has that as the program's last word.
@@ -174,7 +171,7 @@ pub fn csv_table(folder: &Folder, name: &str, body: impl FnOnce(&mut dyn Write) 
 }
 
 /// The folder on the root; the refusal on all ranks alike.
-pub fn folder(comm: &crate::petsc::Comm, run: &super::Run, command: &str) -> Result<Option<Folder>> {
+pub fn folder(comm: &Comm, run: &super::Run, command: &str) -> Result<Option<Folder>> {
     let made = if comm.is_root() { Folder::create(&run.folder(command), run.force).map(Some) } else { Ok(None) };
     comm.agree(made)
 }

@@ -38,7 +38,7 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
     }
     summary += &costs_text(&outcome.costs, start.elapsed().as_secs_f64(), comm.size());
     let any_unstable = modes.iter().any(|row| row.unstable);
-    summary += &files_text(&study.place.display().to_string(), !counts.is_empty(), any_unstable);
+    summary += &files_text(&study.place.display().to_string(), comm.size(), !counts.is_empty(), any_unstable);
     if let Some(folder) = &study.folder {
         folder.write("modes.csv", |out| tables::modes(out, &modes))?;
         folder.write("details.txt", |out| out.write_all(outcome.record.text.as_bytes()))?;
@@ -100,7 +100,7 @@ fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
     text
 }
 
-fn files_text(place: &str, any_equilibrium: bool, any_unstable: bool) -> String {
+fn files_text(place: &str, ranks: usize, any_equilibrium: bool, any_unstable: bool) -> String {
     const TABLES: [(&str, &str); 5] = [
         ("summary.txt", "this text"),
         ("modes.csv", "all modes"),
@@ -108,9 +108,13 @@ fn files_text(place: &str, any_equilibrium: bool, any_unstable: bool) -> String 
         ("convergence.csv", "Newton iterations"),
         ("details.txt", "equilibria and modes in words"),
     ];
-    let states = [("equilibrium_*.vtu, contact_*.vtu", "displacements and contact, for ParaView")];
-    let shapes = [("mode_*.vtu", "shapes of the unstable modes, for ParaView")];
+    let [state, shape] = match ranks {
+        1 => ["equilibrium_*.vtu, contact_*.vtu", "mode_*.vtu"],
+        _ => ["equilibrium_*.pvtu, contact_*.vtu", "mode_*.pvtu"],
+    };
+    let states = [(state, "displacements and contact, for ParaView")];
+    let shapes = [(shape, "shapes of the unstable modes, for ParaView")];
     let pictures = states.iter().filter(|_| any_equilibrium).chain(shapes.iter().filter(|_| any_unstable));
-    let lines = TABLES.iter().chain(pictures).map(|(name, what)| format!("  {name:34}{what}\n"));
+    let lines = TABLES.iter().chain(pictures).map(|(name, what)| format!("  {name:36}{what}\n"));
     format!("\nresults in {place}:\n{}", lines.collect::<String>())
 }

@@ -45,7 +45,7 @@ impl Study {
     /// Reads and checks everything before anything is computed. Collective.
     pub fn new(comm: &Comm, run: &Run, command: &str) -> Result<Study> {
         let brake = Brake::read(comm, &run.model)?;
-        brake.require_held()?;
+        brake.require_held(comm)?;
         let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
         let folder = results::folder(comm, run, command)?;
         let progress = Progress::new(comm, frictions.len(), run.verbose);
@@ -106,9 +106,10 @@ impl Study {
     fn save_last(&self, error: Error, comm: &Comm, system: &System, sweep: &Sweep) -> Result<Error> {
         let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return Err(error) };
         let folder = self.folder.as_ref();
-        comm.agree(results::write_last(folder, &self.brake, system, u))?;
-        let place =
-            folder.map_or_else(String::new, |folder| folder.target().join(results::LAST_STATE).display().to_string());
+        results::write_last(folder, &self.brake, system, u)?;
+        let ending = if comm.size() == 1 { "vtu" } else { "pvtu" };
+        let file = self.place.join(results::LAST_STATE).with_extension(ending);
+        let place = file.display();
         Ok(Error::NotConverged(format!("{reason}. The last state is in {place}")))
     }
 }
@@ -132,10 +133,11 @@ impl Record {
     ) -> Result<()> {
         let brake = &study.brake;
         let state = State::new(brake, families, system, equilibrium)?;
-        self.text += &equilibrium_text(brake, &state, &equilibrium.steps);
+        let comm = system.k.comm();
+        self.text += &equilibrium_text(comm, brake, &state, &equilibrium.steps);
         self.rows.extend(state.pair_rows(brake));
         self.steps.extend(equilibrium.steps.drain(..).map(|step| (state.friction, step)));
-        study.folder.as_ref().map_or(Ok(()), |folder| state.write(folder, brake, &equilibrium.responses))
+        state.write(comm, study.folder.as_ref(), brake, &equilibrium.responses)
     }
 
     /// Keeps the steps towards an equilibrium that was not reached.
@@ -150,8 +152,8 @@ impl Record {
     }
 }
 
-/// The report of one equilibrium.
-fn equilibrium_text(brake: &Brake, state: &State, steps: &[Step]) -> String {
+/// The report of one equilibrium. Collective.
+fn equilibrium_text(comm: &Comm, brake: &Brake, state: &State, steps: &[Step]) -> String {
     let mut text = format!("\nfriction {:.3}\n", state.friction);
     for step in steps {
         let last = step.iterations.last().expect("a step has its start");
@@ -183,6 +185,6 @@ fn equilibrium_text(brake: &Brake, state: &State, steps: &[Step]) -> String {
             1e-6 * forces.peak_pressure
         );
     }
-    let checks: Vec<String> = state.checks(brake).lines().map(|line| format!("  {line}\n")).collect();
+    let checks: Vec<String> = state.checks(comm, brake).lines().map(|line| format!("  {line}\n")).collect();
     text + &checks.concat()
 }

@@ -1,6 +1,7 @@
 //! The interface: all contact pairs of a model on its mesh, ready to be evaluated point by point.
 
 use super::law::{self, Response, Status};
+use super::search::Team;
 use super::trace::Trace;
 use crate::error::Result;
 use crate::mesh::Mesh;
@@ -102,7 +103,7 @@ pub enum Stage {
 }
 
 impl Interface {
-    /// Finds the contact points of every pair of a model that [`Model::check_against`] accepts.
+    /// Finds the contact points of every pair of a model that [`Model::check_against`] accepts; all of the team find the same.
     ///
     /// A pair slides where its master turns; t is the direction of the master's velocity `omega x (x - through)`.
     ///
@@ -111,11 +112,11 @@ impl Interface {
     ///
     /// # Panics
     /// Where a surface is not in the mesh.
-    pub fn build(model: &Model, mesh: &Mesh) -> Result<Interface> {
+    pub fn build(model: &Model, mesh: &Mesh, team: &dyn Team) -> Result<Interface> {
         let mut interface = Interface::default();
         let swept = model.swept_contacts(mesh);
         for (i, contact) in model.contacts.iter().enumerate() {
-            super::pairing::add_pair(&mut interface, model, mesh, contact, swept.contains(&i))?;
+            super::pairing::add_pair(&mut interface, model, mesh, contact, swept.contains(&i), team)?;
         }
         Ok(interface)
     }

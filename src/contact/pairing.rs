@@ -3,7 +3,7 @@
 use super::interface::{ContactPoint, Interface, Kind, Pair, Statistics};
 use super::law::{self, Tangential};
 use super::motion::sliding;
-use super::search::{Found, FoundPoint, Options, find};
+use super::search::{Found, FoundPoint, Options, Team, find};
 use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Surface};
 use crate::model::{Contact, Model, Rotation, located};
@@ -20,9 +20,10 @@ pub(super) fn add_pair(
     mesh: &Mesh,
     contact: &Contact,
     swept: bool,
+    team: &dyn Team,
 ) -> Result<()> {
     let (slave, master) = (&mesh.surfaces[&contact.slave], &mesh.surfaces[&contact.master]);
-    let site = Site { model, mesh, contact, slave, master };
+    let site = Site { model, mesh, contact, slave, master, team };
     let found = site.search()?;
     let rotation = model.sliding(contact, mesh);
     let first = interface.points.len();
@@ -61,6 +62,7 @@ struct Site<'a> {
     contact: &'a Contact,
     slave: &'a Surface,
     master: &'a Surface,
+    team: &'a dyn Team,
 }
 
 impl Site<'_> {
@@ -74,7 +76,7 @@ impl Site<'_> {
     fn search(&self) -> Result<Found> {
         let search = |search_distance| {
             let options = Options { search_distance };
-            find(self.slave, self.master, &self.mesh.nodes, &options)
+            find(self.slave, self.master, &self.mesh.nodes, &options, self.team)
         };
         let found = search(self.contact.search_distance);
         if found.points.is_empty() {

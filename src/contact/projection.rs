@@ -35,7 +35,15 @@ pub(super) fn project(facet: &Facet, p: &Vector3<f64>) -> Projection {
     let inside = TRIANGLE_7.iter().map(|point| point.at);
     let ends = std::iter::once(boundary).chain(inside);
     let at = lowest(&local, ends.map(|start| descend(&local, start)));
-    Projection { at, position: facet.position(at), distance: local.position(at).norm() }
+    Projection::at(facet, p, at)
+}
+
+impl Projection {
+    /// The projection of `p` that lies at the coordinates `at` of a facet.
+    pub fn at(facet: &Facet, p: &Vector3<f64>, at: [f64; 2]) -> Projection {
+        let local = Facet { nodes: facet.nodes.map(|x| x - p) };
+        Projection { at, position: facet.position(at), distance: local.position(at).norm() }
+    }
 }
 
 /// The candidate with the smallest f; the first of equals.

@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Facets face each other where the product of their unit normals is below this.
 const FACING: f64 = -0.5;
@@ -69,22 +70,57 @@ pub struct Found {
     pub area: f64,
 }
 
-/// Finds the contact points of `slave` on `master`. Both refer to `nodes`, m.
+/// Those who search together: each looks for a share of the points and tells all others what it found.
+pub trait Team {
+    /// This member's share of n things.
+    fn share(&self, n: usize) -> Range<usize>;
+    /// Everyone's values, in the order of the shares.
+    fn join(&self, own: Vec<f64>) -> Vec<f64>;
+}
+
+/// One who searches alone.
+pub struct Alone;
+
+impl Team for Alone {
+    fn share(&self, n: usize) -> Range<usize> {
+        0..n
+    }
+
+    fn join(&self, own: Vec<f64>) -> Vec<f64> {
+        own
+    }
+}
+
+/// Finds the contact points of `slave` on `master`. Both refer to `nodes`, m. All of the team find the same.
 ///
 /// A degenerate facet of the master (no normal) faces nothing and is passed over.
-pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Options) -> Found {
+pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Options, team: &dyn Team) -> Found {
     let target = Target::new(master, nodes);
     let (candidates, area) = midside_nodes(slave, nodes);
-    let mut found = Found { area, ..Found::default() };
-    for (node, point) in candidates {
+    let candidates: Vec<(u32, Midside)> = candidates.into_iter().collect();
+    let position = |node: u32| Vector3::from(nodes[node as usize]);
+    let search = |&(node, point): &(u32, Midside)| {
         let reach = options.search_distance.unwrap_or(0.5 * point.size());
-        match target.closest(&Vector3::from(nodes[node as usize]), &point, reach) {
-            Some(hit) => found.points.push(found_point(node, nodes, &point, &hit)),
-            None => found.dropped.push(node),
+        let hit = target.closest(&position(node), &point, reach);
+        hit.map_or(NOTHING, |hit| [hit.facet as f64, hit.projection.at[0], hit.projection.at[1]])
+    };
+    let hits = team.join(candidates[team.share(candidates.len())].iter().flat_map(search).collect());
+    let mut found = Found { area, ..Found::default() };
+    for ((node, point), &hit) in candidates.into_iter().zip(hits.as_chunks().0) {
+        match hit {
+            NOTHING => found.dropped.push(node),
+            [facet, r, s] => {
+                let hit =
+                    target.hit(facet as usize, Projection::at(&target.facets[facet as usize], &position(node), [r, s]));
+                found.points.push(found_point(node, nodes, &point, &hit));
+            }
         }
     }
     found
 }
+
+/// What a search without a hit says in place of a facet and the coordinates on it.
+const NOTHING: [f64; 3] = [-1.0, 0.0, 0.0];
 
 /// What the slave's facets around a midside node add up to.
 #[derive(Debug, Clone, Copy, Default)]
@@ -173,9 +209,12 @@ impl Target {
 
     /// Projects on a facet, unless its normal there does not face the slave's.
     fn facing(&self, facet: usize, x: &Vector3<f64>, slave: &Vector3<f64>) -> Option<Hit> {
-        let projection = project(&self.facets[facet], x);
-        let normal = self.facets[facet].normal(projection.at);
-        (normal.dot(&slave.normalize()) < FACING).then_some(Hit { facet, projection, normal })
+        let hit = self.hit(facet, project(&self.facets[facet], x));
+        (hit.normal.dot(&slave.normalize()) < FACING).then_some(hit)
+    }
+
+    fn hit(&self, facet: usize, projection: Projection) -> Hit {
+        Hit { facet, projection, normal: self.facets[facet].normal(projection.at) }
     }
 }
 

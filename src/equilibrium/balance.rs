@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::algebra::{cross, dot, norm, sub};
-use crate::assembly::{DofMap, ElementMatrices, Elements};
+use crate::assembly::{DofMap, ElementMatrices, Elements, System};
 use crate::contact::interface::{Interface, Pair};
 use crate::contact::law::{Response, Status};
+use crate::petsc::Comm;
 
 use super::Counts;
 
@@ -26,6 +27,15 @@ impl Wrench {
             self.force[i] += force[i];
             self.moment[i] += moment[i];
         }
+    }
+
+    /// The sum of forces at points over all ranks. Collective.
+    fn sum(comm: &Comm, forces: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Wrench {
+        let mut own = Wrench::default();
+        forces.for_each(|(point, force)| own.add(point, force));
+        let mut all = [own.force, own.moment];
+        comm.sum_all(all.as_flattened_mut());
+        Wrench { force: all[0], moment: all[1] }
     }
 
     /// Moment about the axis through a point, N m.
@@ -64,23 +74,24 @@ pub struct Balance {
     /// What contact forces add: the force on the slave and its opposite on the master cancel, but they act on either side of the
     /// initial gap, so that their moments cancel only where the surfaces touch at the start.
     pub across_gaps: Wrench,
-    /// Support of each body of nodes asked for.
+    /// Supports at the nodes that this rank owns.
     pub reactions: Vec<(u32, [f64; 3])>,
     /// The pairs, in the interface's order.
     pub pairs: Vec<PairForces>,
 }
 
 impl Balance {
-    /// Adds up an equilibrium. `u` are nodal displacements, `points` nodal coordinates. Not collective: every rank computes all.
+    /// Adds up an equilibrium. `u` are displacements of the nodes that this rank has, `points` their coordinates. Collective.
     pub fn new(
+        system: &System,
         points: &[[f64; 3]],
         families: &[&dyn Elements],
         loads: &[(u32, [f64; 3])],
         interface: &Interface,
-        dofs: &DofMap,
         u: &[[f64; 3]],
         responses: &[Response],
     ) -> Balance {
+        let (comm, dofs) = (system.k.comm(), &system.dofs);
         let mut internal = internal_forces_at_supports(families, dofs, u);
         let mut subtract = |node: u32, f: [f64; 3]| {
             if let Some(sum) = internal.get_mut(&node) {
@@ -99,29 +110,27 @@ impl Balance {
                 subtract(node, force);
             });
         }
-        let mut support = Wrench::default();
         let held = |node: u32, f: [f64; 3]| {
             let equations = dofs.equations(node);
             [0, 1, 2].map(|i| if equations[i] < 0 { f[i] } else { 0.0 })
         };
         let reactions: Vec<_> = internal.into_iter().map(|(node, f)| (node, held(node, f))).collect();
-        reactions.iter().for_each(|&(node, f)| support.add(points[node as usize], f));
+        let support = Wrench::sum(comm, reactions.iter().map(|&(node, f)| (points[node as usize], f)));
         let pairs = interface.pairs.iter().map(|pair| PairForces::new(interface, pair, responses)).collect();
         Balance { applied, support, across_gaps, reactions, pairs }
     }
 
-    /// Moment of some nodes' supports about an axis, N m.
+    /// Moment of some nodes' supports about an axis, N m. Collective.
     pub fn support_torque(
         &self,
+        comm: &Comm,
         points: &[[f64; 3]],
         of: impl Fn(u32) -> bool,
         through: [f64; 3],
         axis: [f64; 3],
     ) -> f64 {
-        let mut wrench = Wrench::default();
         let nodes = self.reactions.iter().filter(|(node, _)| of(*node));
-        nodes.for_each(|&(node, f)| wrench.add(points[node as usize], f));
-        wrench.about(through, axis)
+        Wrench::sum(comm, nodes.map(|&(node, f)| (points[node as usize], f))).about(through, axis)
     }
 
     /// What is left of all forces (N) and moments (N m): round-off.
@@ -132,9 +141,9 @@ impl Balance {
     }
 }
 
-/// `f = sum_e K_e u_e` at the nodes that have a held displacement.
+/// `f = sum_e K_e u_e` at the nodes of this rank that have a held displacement.
 fn internal_forces_at_supports(families: &[&dyn Elements], dofs: &DofMap, u: &[[f64; 3]]) -> BTreeMap<u32, [f64; 3]> {
-    let is_held = |n: u32| dofs.equations(n).iter().any(|&e| e < 0);
+    let is_held = |n: u32| dofs.owns(n) && dofs.equations(n).iter().any(|&e| e < 0);
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     let mut element = ElementMatrices::default();
     for family in families {

@@ -11,7 +11,8 @@ use crate::algebra::cross;
 use crate::assembly::Link;
 use crate::contact::interface::Interface;
 use crate::contact::law::Tangential;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Numbering};
+use crate::petsc::Comm;
 
 /// A motion that nothing resists.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,26 +46,24 @@ struct Bodies {
 }
 
 impl Bodies {
-    fn new(mesh: &Mesh) -> Bodies {
-        let mut root: Vec<usize> = (0..mesh.parts.len()).collect();
-        let mut part_of = vec![usize::MAX; mesh.nodes.len()];
-        for (tet, &part) in mesh.tets.iter().zip(&mesh.tet_part) {
-            for &n in tet {
-                let known = std::mem::replace(&mut part_of[n as usize], part as usize);
-                if known != usize::MAX {
-                    join(&mut root, known, part as usize);
-                }
-            }
+    /// The bodies of a mesh of which this rank has a piece. Collective.
+    fn new(comm: &Comm, mesh: &Mesh, nodes: &Numbering) -> Bodies {
+        let (part_of, meet) = parts_of_nodes(comm, mesh);
+        let n_parts = mesh.parts.len();
+        let mut root: Vec<usize> = (0..n_parts).collect();
+        for pair in (0..meet.len()).filter(|&pair| meet[pair] > 0.0) {
+            join(&mut root, pair / n_parts, pair % n_parts);
         }
-        let roots: Vec<usize> = (0..root.len()).map(|p| find(&root, p)).collect();
+        let roots: Vec<usize> = (0..n_parts).map(|p| find(&root, p)).collect();
         let mut distinct = roots.clone();
         distinct.sort_unstable();
         distinct.dedup();
         let body = |part: usize| distinct.binary_search(&roots[part]).expect("every root is listed");
         let of_node: Vec<usize> = part_of.iter().map(|&p| body(p)).collect();
         let mut parts = vec![Vec::new(); distinct.len()];
-        (0..mesh.parts.len()).for_each(|p| parts[body(p)].push(mesh.parts[p].clone()));
-        let (centroid, size) = extents(mesh, &of_node, distinct.len());
+        (0..n_parts).for_each(|p| parts[body(p)].push(mesh.parts[p].clone()));
+        let own = nodes.owned().map(|n| (mesh.nodes[n as usize], of_node[n as usize]));
+        let (centroid, size) = extents(comm, own, distinct.len());
         Bodies { of_node, parts, centroid, size }
     }
 
@@ -94,22 +93,57 @@ fn join(root: &mut [usize], a: usize, b: usize) {
     root[a.max(b)] = a.min(b);
 }
 
-fn extents(mesh: &Mesh, of_node: &[usize], n: usize) -> (Vec<[f64; 3]>, Vec<f64>) {
-    let (mut sum, mut count, mut square) = (vec![[0.0; 3]; n], vec![0.0; n], vec![0.0; n]);
-    for (x, &body) in mesh.nodes.iter().zip(of_node) {
-        (0..3).for_each(|i| sum[body][i] += x[i]);
-        count[body] += 1.0;
+/// A part of each node, and for each two parts a number above zero where they share nodes. Collective.
+fn parts_of_nodes(comm: &Comm, mesh: &Mesh) -> (Vec<usize>, Vec<f64>) {
+    let n_parts = mesh.parts.len();
+    // 0 where no tetrahedron of this rank's tells: nodes that have a name are on ranks without their tetrahedra.
+    let (mut part_of, mut meet) = (vec![0_usize; mesh.nodes.len()], vec![0.0; n_parts * n_parts]);
+    for (tet, &part) in mesh.tets.iter().zip(&mesh.tet_part) {
+        for &n in tet {
+            let known = std::mem::replace(&mut part_of[n as usize], part as usize + 1);
+            if known > 0 {
+                meet[n_parts * (known - 1) + part as usize] = 1.0;
+            }
+        }
     }
-    let centroid: Vec<[f64; 3]> = sum.iter().zip(&count).map(|(s, n)| s.map(|s| s / n)).collect();
-    for (x, &body) in mesh.nodes.iter().zip(of_node) {
-        square[body] += (0..3).map(|i| (x[i] - centroid[body][i]).powi(2)).sum::<f64>();
-    }
-    (centroid, square.iter().zip(&count).map(|(s, n)| (s / n).sqrt()).collect())
+    comm.max_all(&mut meet);
+    let mut named: Vec<u32> = mesh.named_nodes().collect();
+    named.sort_unstable();
+    named.dedup();
+    let mut parts: Vec<f64> = named.iter().map(|&n| part_of[n as usize] as f64).collect();
+    comm.max_all(&mut parts);
+    named.iter().zip(parts).for_each(|(&n, part)| part_of[n as usize] = part as usize);
+    (part_of.into_iter().map(|part| part - 1).collect(), meet)
 }
 
-/// The free motions of a model; none where every body is held. `held` says which displacements are zero.
-pub fn free_motions(mesh: &Mesh, interface: &Interface, held: &[[bool; 3]], links: &[Link]) -> Vec<FreeMotion> {
-    let bodies = Bodies::new(mesh);
+/// Centroid and radius of gyration of the nodes of n bodies; each rank tells of the nodes that it owns. Collective.
+fn extents(comm: &Comm, own: impl Iterator<Item = ([f64; 3], usize)> + Clone, n: usize) -> (Vec<[f64; 3]>, Vec<f64>) {
+    let mut sums = vec![[0.0; 4]; n];
+    for (x, body) in own.clone() {
+        (0..3).for_each(|i| sums[body][i] += x[i]);
+        sums[body][3] += 1.0;
+    }
+    comm.sum_all(sums.as_flattened_mut());
+    let centroid: Vec<[f64; 3]> = sums.iter().map(|&[x, y, z, n]| [x / n, y / n, z / n]).collect();
+    let mut squares = vec![0.0; n];
+    for (x, body) in own {
+        squares[body] += (0..3).map(|i| (x[i] - centroid[body][i]).powi(2)).sum::<f64>();
+    }
+    comm.sum_all(&mut squares);
+    (centroid, squares.iter().zip(&sums).map(|(square, sum)| (square / sum[3]).sqrt()).collect())
+}
+
+/// The free motions of a model; none where every body is held. `held` says which displacements are zero. Collective: each rank has a
+/// piece of the mesh, with all nodes of contacts, supports and connectors.
+pub fn free_motions(
+    comm: &Comm,
+    mesh: &Mesh,
+    nodes: &Numbering,
+    interface: &Interface,
+    held: &[[bool; 3]],
+    links: &[Link],
+) -> Vec<FreeMotion> {
+    let bodies = Bodies::new(comm, mesh, nodes);
     let width = 6 * bodies.parts.len();
     let mut gram = DMatrix::<f64>::zeros(width, width);
     let mut row = vec![0.0; width];

@@ -3,6 +3,7 @@
 //! ```text
 //!  .msh --gmsh::sections--> tags, blocks, groups --gmsh::convert--> Mesh --check--> Model and Mesh agree
 //!                                                  (jacobian: none inverted; skin: facets outward)
+//!  Mesh --numbering::order--> nodes rank by rank --Piece--> each rank's own part
 //! ```
 //!
 //! Physical volumes become parts, physical surfaces become [`Surface`]s, physical curves and points become node sets. The names are
@@ -19,14 +20,17 @@
 //!   0 ------- 4 ------- 1
 //! ```
 
+mod bytes;
 mod check;
 mod gmsh;
 pub mod jacobian;
 mod numbering;
+mod piece;
 pub mod quality;
 mod skin;
 mod types;
 
 pub use gmsh::read;
 pub use numbering::{Numbering, order};
+pub use piece::Piece;
 pub use types::{Mesh, Surface};

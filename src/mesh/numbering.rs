@@ -8,19 +8,29 @@ use std::ops::Range;
 /// the rank owns follow one another; every node has one owner.
 #[derive(Debug, Clone)]
 pub struct Numbering {
-    global: Vec<u32>,
-    owned: Range<u32>,
-    n_global: usize,
+    pub(super) global: Vec<u32>,
+    pub(super) owned: Range<u32>,
+    pub(super) n_global: usize,
 }
 
 impl Numbering {
+    /// From the global numbers of the nodes that the rank has, rising, and of those that it owns.
+    ///
+    /// # Panics
+    /// Where the rank has not all of its own.
+    pub fn new(global: Vec<u32>, owned: Range<u32>, n_global: usize) -> Numbering {
+        let place = |node: u32| global.partition_point(|&n| n < node) as u32;
+        let local = place(owned.start)..place(owned.end);
+        assert_eq!(local.len(), owned.len(), "a rank has all nodes that it owns");
+        Numbering { global, owned: local, n_global }
+    }
+
     /// Every rank has all nodes; this one owns a range of them.
     ///
     /// # Panics
     /// Where the range goes beyond the nodes.
     pub fn whole(n_nodes: usize, owned: Range<u32>) -> Numbering {
-        assert!(owned.end as usize <= n_nodes);
-        Numbering { global: (0..n_nodes as u32).collect(), owned, n_global: n_nodes }
+        Numbering::new((0..n_nodes as u32).collect(), owned, n_nodes)
     }
 
     /// Every rank has all nodes and owns an equal share: for models small enough to be everywhere.

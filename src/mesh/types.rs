@@ -46,6 +46,12 @@ impl Mesh {
         Some(nodes)
     }
 
+    /// The nodes of all surfaces and node sets, as often as they are there.
+    pub fn named_nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        let on_surfaces = self.surfaces.values().flat_map(|surface| surface.facets.as_flattened());
+        on_surfaces.chain(self.node_sets.values().flatten()).copied()
+    }
+
     /// The parts that a surface lies on (indices, ascending); none where no surface has this name.
     pub fn parts_of_surface(&self, name: &str) -> Option<Vec<u32>> {
         let mut parts = self.surfaces.get(name)?.parts.clone();
@@ -87,5 +93,36 @@ impl Mesh {
     /// Coordinates of a tetrahedron's nodes, m.
     pub fn tet_nodes(&self, tet: usize) -> [[f64; 3]; 10] {
         self.tets[tet].map(|node| self.nodes[node as usize])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_order_changes_numbers_and_nothing_else() {
+        let node = |n: u32| [f64::from(n), 0.0, 1.0];
+        let surface = Surface { facets: vec![[0, 1, 2, 3, 4, 5]], parts: vec![1], inner: vec![] };
+        let mut mesh = Mesh {
+            nodes: (0..14).map(node).collect(),
+            tets: vec![[4, 5, 6, 7, 8, 9, 10, 11, 12, 13], [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]],
+            tet_part: vec![0, 1],
+            surfaces: [("face".to_owned(), surface)].into(),
+            node_sets: [("two".to_owned(), vec![3, 9])].into(),
+            ..Mesh::default()
+        };
+        let before = mesh.clone();
+        let order: Vec<u32> = (0..14).map(|n| (5 * n + 3) % 14).collect();
+        mesh.reorder(&order);
+        let place = |n: &u32| mesh.nodes[*n as usize][0] as u32;
+        assert_eq!(mesh.surfaces["face"].facets[0].each_ref().map(place), [0, 1, 2, 3, 4, 5]);
+        let mut set: Vec<u32> = mesh.node_sets["two"].iter().map(place).collect();
+        set.sort_unstable();
+        assert_eq!(set, [3, 9]);
+        let tets: Vec<_> =
+            mesh.tets.iter().zip(&mesh.tet_part).map(|(tet, &part)| (tet.each_ref().map(place), part)).collect();
+        assert!((0..2).all(|e| tets.contains(&(before.tets[e], before.tet_part[e]))));
+        assert!(mesh.tets.is_sorted_by_key(|tet| tet.iter().min().copied()));
     }
 }

@@ -67,6 +67,9 @@ fn set_option(name: &str, value: &str) -> Result<()> {
     check(unsafe { sys::PetscOptionsSetValue(ptr::null_mut(), name.as_ptr(), value.as_ptr()) })
 }
 
+/// Bytes of a message at most: MPI counts with 32 bits.
+const MESSAGE: usize = 1 << 30;
+
 /// A communicator that keeps the session alive.
 #[derive(Clone)]
 pub struct Comm {
@@ -135,6 +138,12 @@ impl Comm {
         result
     }
 
+    /// Elementwise largest value of any rank, in place.
+    pub fn max_all(&self, values: &mut [f64]) {
+        // SAFETY: MPI_MAX is a constant handle.
+        self.reduce_all(values, unsafe { sys::squeal_op_max() });
+    }
+
     /// Elementwise sum of an array over the ranks, in place.
     pub fn sum_all(&self, values: &mut [f64]) {
         // SAFETY: MPI_SUM is a constant handle.
@@ -172,6 +181,61 @@ impl Comm {
         values
     }
 
+    /// The values of all ranks, one rank's after the other's.
+    pub fn join(&self, own: &[f64]) -> Vec<f64> {
+        let mut counts = vec![0.0; self.size];
+        counts[self.rank] = own.len() as f64;
+        self.sum_all(&mut counts);
+        let counts: Vec<i32> = counts.iter().map(|&n| n as i32).collect();
+        let starts: Vec<i32> = (0..self.size).map(|rank| counts[..rank].iter().sum()).collect();
+        let mut all = vec![0.0; counts.iter().sum::<i32>() as usize];
+        // SAFETY: every rank sends as many values as all know of.
+        unsafe {
+            let double = sys::squeal_type_double();
+            sys::MPI_Allgatherv(
+                own.as_ptr().cast(),
+                own.len() as i32,
+                double,
+                all.as_mut_ptr().cast(),
+                counts.as_ptr(),
+                starts.as_ptr(),
+                double,
+                self.raw,
+            );
+        }
+        all
+    }
+
+    /// Sends bytes to a rank, which must be receiving them. Not collective.
+    pub fn send(&self, bytes: &[u8], to: usize) {
+        let length = (bytes.len() as u64).to_le_bytes();
+        for part in std::iter::once(&length[..]).chain(bytes.chunks(MESSAGE)) {
+            // SAFETY: the bytes stay where they are until they are sent.
+            unsafe {
+                let byte = sys::squeal_type_byte();
+                sys::MPI_Send(part.as_ptr().cast(), part.len() as i32, byte, to as i32, 0, self.raw);
+            }
+        }
+    }
+
+    /// The bytes that a rank sends. Not collective.
+    pub fn receive(&self, from: usize) -> Vec<u8> {
+        let mut length = [0; 8];
+        self.receive_into(&mut length, from);
+        let mut bytes = vec![0; u64::from_le_bytes(length) as usize];
+        bytes.chunks_mut(MESSAGE).for_each(|part| self.receive_into(part, from));
+        bytes
+    }
+
+    fn receive_into(&self, part: &mut [u8], from: usize) {
+        let mut status = sys::MPI_Status::default();
+        // SAFETY: the sender sends as many bytes as there is room for.
+        unsafe {
+            let byte = sys::squeal_type_byte();
+            sys::MPI_Recv(part.as_mut_ptr().cast(), part.len() as i32, byte, from as i32, 0, self.raw, &mut status);
+        }
+    }
+
     /// Waits for all ranks.
     pub fn barrier(&self) {
         // SAFETY: a valid communicator.
@@ -198,7 +262,7 @@ impl Comm {
     }
 
     /// The bytes of one rank, on every rank.
-    fn broadcast(&self, from: usize, mut bytes: Vec<u8>) -> Vec<u8> {
+    pub fn broadcast(&self, from: usize, mut bytes: Vec<u8>) -> Vec<u8> {
         let length = if self.rank == from { bytes.len() as f64 } else { 0.0 };
         bytes.resize(self.max(length) as usize, 0);
         // SAFETY: the array has the same length on all ranks.

@@ -43,6 +43,16 @@ impl Fields {
         self.status.push(status);
     }
 
+    /// The values at some of the nodes.
+    pub fn at(&self, nodes: &[u32]) -> Fields {
+        let of = |n: &u32| *n as usize;
+        Fields {
+            pressure: nodes.iter().map(|n| self.pressure[of(n)]).collect(),
+            traction: nodes.iter().map(|n| self.traction[of(n)]).collect(),
+            status: nodes.iter().map(|n| self.status[of(n)]).collect(),
+        }
+    }
+
     /// The fields as arrays of a grid.
     pub fn arrays(&self) -> [Array<'_>; 3] {
         [

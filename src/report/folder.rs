@@ -79,18 +79,23 @@ impl Folder {
         &self.target
     }
 
+    /// Where files are until the folder has its name.
+    pub fn draft(&self) -> &Path {
+        &self.draft
+    }
+
+    /// Counts files as the folder's that others have written to its draft.
+    pub fn adopt(&self, names: &[String]) {
+        self.files.borrow_mut().extend_from_slice(names);
+    }
+
     /// Writes one file of the folder.
     ///
     /// # Errors
     /// The system's, with the file's path.
     pub fn write(&self, name: &str, body: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
         self.files.borrow_mut().push(name.to_owned());
-        let path = self.draft.join(name);
-        if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).map_err(Error::io(parent))?;
-        }
-        let mut out = BufWriter::new(File::create(&path).map_err(Error::io(&path))?);
-        body(&mut out).and_then(|()| out.flush()).map_err(Error::io(&path))
+        write_file(&self.draft.join(name), body)
     }
 
     /// Gives the folder its name, in place of an earlier run's.
@@ -108,6 +113,18 @@ impl Folder {
         self.done = true;
         Ok(())
     }
+}
+
+/// Writes a file, and the folders to it where they are missing.
+///
+/// # Errors
+/// The system's, with the file's path.
+pub fn write_file(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
+    if let Some(parent) = path.parent() {
+        fs::create_dir_all(parent).map_err(Error::io(parent))?;
+    }
+    let mut out = BufWriter::new(File::create(path).map_err(Error::io(path))?);
+    body(&mut out).and_then(|()| out.flush()).map_err(Error::io(path))
 }
 
 /// Removes the drafts of runs that were killed: their processes are gone. Best effort; a draft in the way of nobody may stay.

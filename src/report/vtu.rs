@@ -88,17 +88,61 @@ impl Grid<'_> {
     }
 }
 
-fn array(out: &mut impl Write, name: &str, values: &Values) -> io::Result<()> {
-    let single = |values: &[f64]| values.iter().flat_map(|&v| (v as f32).to_le_bytes()).collect();
-    match values {
-        Values::Vectors(v) => raw(out, name, "Float32", 3, single(v.as_flattened())),
-        Values::Scalars(v) => raw(out, name, "Float32", 1, single(v)),
-        Values::Integers(v) => raw(out, name, "Int32", 1, v.iter().flat_map(|i| i.to_le_bytes()).collect()),
+impl Grid<'_> {
+    /// Writes the file (`.pvtu`) that names the pieces of a grid that several ranks have written, each with arrays like this grid's.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn write_list(&self, pieces: &[String], out: &mut impl Write) -> io::Result<()> {
+        writeln!(out, r#"<?xml version="1.0"?>"#)?;
+        let attributes = r#"type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64""#;
+        writeln!(out, "<VTKFile {attributes}>\n<PUnstructuredGrid GhostLevel=\"0\">")?;
+        let mut list = |group: &str, arrays: &[Array]| {
+            writeln!(out, "<P{group}>")?;
+            for (name, values) in arrays {
+                let (kind, components) = values.shape();
+                let name = escaped(name);
+                writeln!(out, r#"<PDataArray type="{kind}" Name="{name}" NumberOfComponents="{components}"/>"#)?;
+            }
+            writeln!(out, "</P{group}>")
+        };
+        list("Points", &[("Points", Values::Vectors(&[]))])?;
+        list("PointData", &self.point_data)?;
+        list("CellData", &self.cell_data)?;
+        pieces.iter().try_for_each(|piece| writeln!(out, r#"<Piece Source="{}"/>"#, escaped(piece)))?;
+        writeln!(out, "</PUnstructuredGrid>\n</VTKFile>")
     }
 }
 
+impl Values<'_> {
+    /// VTK's name of the type, and the number of components.
+    fn shape(&self) -> (&'static str, usize) {
+        match self {
+            Values::Vectors(_) => ("Float32", 3),
+            Values::Scalars(_) => ("Float32", 1),
+            Values::Integers(_) => ("Int32", 1),
+        }
+    }
+}
+
+fn array(out: &mut impl Write, name: &str, values: &Values) -> io::Result<()> {
+    let single = |values: &[f64]| values.iter().flat_map(|&v| (v as f32).to_le_bytes()).collect();
+    let (kind, components) = values.shape();
+    let bytes = match values {
+        Values::Vectors(v) => single(v.as_flattened()),
+        Values::Scalars(v) => single(v),
+        Values::Integers(v) => v.iter().flat_map(|i| i.to_le_bytes()).collect(),
+    };
+    raw(out, name, kind, components, bytes)
+}
+
+/// A name inside an attribute.
+fn escaped(name: &str) -> String {
+    name.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;")
+}
+
 fn raw(out: &mut impl Write, name: &str, kind: &str, components: usize, bytes: Vec<u8>) -> io::Result<()> {
-    let name = name.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;");
+    let name = escaped(name);
     let mut data = (bytes.len() as u64).to_le_bytes().to_vec();
     data.extend(bytes);
     write!(out, r#"<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="binary">"#)?;
@@ -121,6 +165,27 @@ mod tests {
         assert_eq!(bytes[..8], 8_u64.to_le_bytes());
         assert_eq!(bytes[8..12], 1.0_f32.to_le_bytes());
         assert_eq!(bytes[12..], (-2.5_f32).to_le_bytes());
+    }
+
+    #[test]
+    fn a_list_of_pieces_names_files_and_arrays() {
+        let grid = Grid {
+            points: &[],
+            cells: Cells::Tets(&[]),
+            point_data: vec![("u", Values::Vectors(&[]))],
+            cell_data: vec![("part", Values::Integers(&[]))],
+        };
+        let mut out = Vec::new();
+        grid.write_list(&["pieces/u.0.vtu".into(), "pieces/u.1.vtu".into()], &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        let xml = roxmltree::Document::parse(&text).unwrap();
+        let all = |tag: &str, attribute: &str| -> Vec<String> {
+            let tags = xml.descendants().filter(|node| node.has_tag_name(tag));
+            tags.map(|node| node.attribute(attribute).unwrap().to_owned()).collect()
+        };
+        assert_eq!(all("Piece", "Source"), ["pieces/u.0.vtu", "pieces/u.1.vtu"]);
+        assert_eq!(all("PDataArray", "Name"), ["Points", "u", "part"]);
+        assert_eq!(all("PDataArray", "type"), ["Float32", "Float32", "Int32"]);
     }
 
     #[test]

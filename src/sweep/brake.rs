@@ -5,19 +5,23 @@ use std::path::Path;
 
 use crate::assembly::{self, Connectivity, Elements, Link, System, Tets};
 use crate::contact::Interface;
+use crate::contact::search::Team;
 use crate::equilibrium::free_motions;
-use crate::mesh::{self, Mesh, Numbering};
+use crate::mesh::{self, Mesh, Numbering, Piece};
 use crate::model::{self, Model, located};
-use crate::petsc::{Comm, partition};
+use crate::petsc::Comm;
 use crate::{Error, Result};
 
-/// A model with its mesh and contact interface, the same on every rank.
+use super::distribution::distribute;
+
+/// A model with its mesh and contact interface. Each rank has its piece of the mesh ([`Piece`]), and all that is on surfaces: contact, loads
+/// and supports, in the numbers of its own piece.
 pub struct Brake {
     /// What the user wrote.
     pub model: Model,
-    /// The mesh, m.
+    /// This rank's piece of the mesh, m.
     pub mesh: Mesh,
-    /// Which of its nodes this rank owns.
+    /// The numbers of its nodes among all, and which of them the rank owns.
     pub nodes: Numbering,
     /// Contact points of all pairs.
     pub interface: Interface,
@@ -45,20 +49,37 @@ impl Families<'_> {
 }
 
 impl Brake {
-    /// Reads and checks model and mesh and finds the contact points. Collective: all ranks fail together.
+    /// Reads and checks model and mesh and finds the contact points; each rank has its piece of the mesh. Collective: all ranks
+    /// fail together.
     ///
     /// # Errors
     /// [`Error::Input`] with file and line, whatever is wrong.
     pub fn read(comm: &Comm, path: &Path) -> Result<Brake> {
-        comm.agree(Brake::read_alone(comm, path))
+        let model = comm.agree(model::read(path))?;
+        let piece = distribute(comm, || read_mesh(&model))?;
+        comm.agree(Brake::new(model, piece, comm))
     }
 
-    /// Refuses a brake of which a part is held by nothing.
+    /// A brake of a model and this rank's piece of its mesh, the contact points found by all of the team.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the two do not go together, or a contact has no points.
+    pub fn new(model: Model, piece: Piece, team: &dyn Team) -> Result<Brake> {
+        let Piece { mesh, nodes } = piece;
+        model.check_against(&mesh)?;
+        let interface = Interface::build(&model, &mesh, team)?;
+        let loads = assembly::loads(&model, &mesh)?;
+        let held = assembly::held(&model, &mesh)?;
+        let links = assembly::links(&model, &mesh)?;
+        Ok(Brake { model, mesh, nodes, interface, loads, held, links })
+    }
+
+    /// Refuses a brake of which a part is held by nothing. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] that names the parts and their free motions.
-    pub fn require_held(&self) -> Result<()> {
-        let free = free_motions(&self.mesh, &self.interface, &self.held, &self.links);
+    pub fn require_held(&self, comm: &Comm) -> Result<()> {
+        let free = free_motions(comm, &self.mesh, &self.nodes, &self.interface, &self.held, &self.links);
         if free.is_empty() {
             return Ok(());
         }
@@ -79,21 +100,9 @@ impl Brake {
         )))
     }
 
-    fn read_alone(comm: &Comm, path: &Path) -> Result<Brake> {
-        let model = model::read(path)?;
-        if let Err(reason) = File::open(&model.mesh_file) {
-            let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
-            let advice = "Give its path in [mesh] file, relative to the model file";
-            return Err(Error::Input(located(&model.file, model.mesh_line, format!("{what}. {advice}"))));
-        }
-        let mut mesh = mesh::read(&model.mesh_file, model.mesh_unit)?;
-        model.check_against(&mesh)?;
-        let nodes = share_out(comm, &mut mesh)?;
-        let interface = Interface::build(&model, &mesh)?;
-        let loads = assembly::loads(&model, &mesh)?;
-        let held = assembly::held(&model, &mesh)?;
-        let links = assembly::links(&model, &mesh)?;
-        Ok(Brake { model, mesh, nodes, interface, loads, held, links })
+    /// The tetrahedra that this rank counts where each is to be counted once: those of whose first node it is the owner.
+    pub fn own_tets(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+        (0..self.mesh.tets.len()).filter(|&e| self.nodes.owns(self.mesh.tets[e][0]))
     }
 
     /// The families of elements.
@@ -144,11 +153,12 @@ impl Brake {
     }
 }
 
-/// Puts the nodes into an order in which each rank's own are together.
-fn share_out(comm: &Comm, mesh: &mut Mesh) -> Result<Numbering> {
-    let owner = partition(&mesh.tets, mesh.nodes.len(), comm.size())?;
-    mesh.reorder(&mesh::order(&mesh.nodes, &owner));
-    let n_of = |ranks: std::ops::Range<u32>| owner.iter().filter(|&&rank| ranks.contains(&rank)).count() as u32;
-    let rank = comm.rank() as u32;
-    Ok(Numbering::whole(mesh.nodes.len(), n_of(0..rank)..n_of(0..rank + 1)))
+/// The mesh of a model.
+fn read_mesh(model: &Model) -> Result<Mesh> {
+    if let Err(reason) = File::open(&model.mesh_file) {
+        let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
+        let advice = "Give its path in [mesh] file, relative to the model file";
+        return Err(Error::Input(located(&model.file, model.mesh_line, format!("{what}. {advice}"))));
+    }
+    mesh::read(&model.mesh_file, model.mesh_unit)
 }

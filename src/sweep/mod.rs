@@ -4,6 +4,7 @@
 //! call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
 
 mod brake;
+mod distribution;
 
 pub use brake::{Brake, Families};
 

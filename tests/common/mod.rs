@@ -4,9 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use squeal::assembly;
-use squeal::contact::Interface;
-use squeal::mesh::{Mesh, Numbering, Surface, jacobian};
+use squeal::contact::search::Alone;
+use squeal::mesh::{Mesh, Numbering, Piece, Surface, jacobian};
 use squeal::model;
 use squeal::sweep::Brake;
 
@@ -27,13 +26,8 @@ pub fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
 pub fn brake(text: &str, mesh: Mesh) -> Brake {
     let text = format!("[mesh]\nfile = \"none.msh\"\nunit = \"m\"\n{text}");
     let model = model::parse(&text, Path::new("test.toml")).unwrap();
-    model.check_against(&mesh).unwrap();
-    let interface = Interface::build(&model, &mesh).unwrap();
-    let loads = assembly::loads(&model, &mesh).unwrap();
-    let held = assembly::held(&model, &mesh).unwrap();
-    let links = assembly::links(&model, &mesh).unwrap();
     let nodes = Numbering::even(mesh.nodes.len(), 0, 1);
-    Brake { model, mesh, nodes, interface, loads, held, links }
+    Brake::new(model, Piece { mesh, nodes }, &Alone).unwrap()
 }
 
 /// A block of `cells` cells of six tetrahedra each (Kuhn's), the unit cube mapped by `map`.

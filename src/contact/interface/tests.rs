@@ -1,6 +1,7 @@
 //! Interfaces of the test brake and of plates, and what is refused.
 
 use super::*;
+use crate::contact::search::Alone;
 use crate::contact::testing::{contact, flipped, model, pads_on_disc, patch, skin};
 use crate::model::Contact;
 use nalgebra::Vector3;
@@ -12,7 +13,7 @@ fn brake() -> (Interface, Mesh) {
         contact("inner", "lining_inner_face", "disc_inner_face"),
         contact("outer", "lining_outer_face", "disc_outer_face"),
     ];
-    let interface = Interface::build(&model(pads, true), &mesh).unwrap();
+    let interface = Interface::build(&model(pads, true), &mesh, &Alone).unwrap();
     (interface, mesh)
 }
 
@@ -29,7 +30,7 @@ fn pad() -> Contact {
 }
 
 fn refused(contact: Contact, turning: bool, mesh: &Mesh) -> String {
-    Interface::build(&model(vec![contact], turning), mesh).unwrap_err().to_string()
+    Interface::build(&model(vec![contact], turning), mesh, &Alone).unwrap_err().to_string()
 }
 
 #[test]
@@ -122,7 +123,7 @@ fn pairs_at_rest_stick_and_each_pair_has_its_own_friction() {
     let stuck = Contact { stick: Some(1e13), ..pad() };
     let mut other = stuck.clone();
     other.name = "other".into();
-    let interface = Interface::build(&model(vec![stuck, other], false), &plates(0.0)).unwrap();
+    let interface = Interface::build(&model(vec![stuck, other], false), &plates(0.0), &Alone).unwrap();
     assert!(interface.pairs.iter().all(|p| p.kind == Kind::StickSlip && !p.swept));
     assert_eq!(interface.frictions(), [0.5, 0.5]);
     let stage = Stage::Solve { friction: vec![0.5, 0.1] };
@@ -141,7 +142,7 @@ fn pairs_at_rest_stick_and_each_pair_has_its_own_friction() {
 #[test]
 fn points_at_a_distance_do_not_touch() {
     let wide = Contact { search_distance: Some(1.0), ..pad() };
-    let interface = Interface::build(&model(vec![wide], true), &plates(0.01)).unwrap();
+    let interface = Interface::build(&model(vec![wide], true), &plates(0.01), &Alone).unwrap();
     let found = &interface.pairs[0].statistics;
     assert_eq!(found.touching, 0);
     assert!((found.gap[0] - 0.01).abs() < 1e-15 && (found.gap[1] - 0.01).abs() < 1e-15);
@@ -155,7 +156,7 @@ fn a_named_sweep_takes_only_the_pairs_it_names() {
     second.name = "second".into();
     let mut brake = model(vec![pad(), second], true);
     brake.swept = vec!["second".into()];
-    let interface = Interface::build(&brake, &plates(0.0)).unwrap();
+    let interface = Interface::build(&brake, &plates(0.0), &Alone).unwrap();
     let swept: Vec<_> = interface.pairs.iter().map(|p| p.swept).collect();
     assert_eq!(swept, [false, true]);
 }
@@ -189,6 +190,6 @@ fn merged_surfaces_are_refused() {
 #[test]
 fn a_pair_at_rest_without_stick_has_no_friction() {
     let free = Contact { friction: 0.0, ..pad() };
-    let interface = Interface::build(&model(vec![free], false), &plates(0.0)).unwrap();
+    let interface = Interface::build(&model(vec![free], false), &plates(0.0), &Alone).unwrap();
     assert_eq!(interface.pairs[0].kind, Kind::Frictionless);
 }

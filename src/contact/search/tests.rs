@@ -26,7 +26,7 @@ fn plane_on_plane_is_exact() {
     let mut nodes = Vec::new();
     let slave = flipped(&floor(&mut nodes, 3, 1e-3));
     let master = floor(&mut nodes, 4, 0.0);
-    let found = find(&slave, &master, &nodes, &Options::default());
+    let found = find(&slave, &master, &nodes, &Options::default(), &Alone);
     // 3 edges a facet, those inside counted twice: (3 * 18 + 12)/2
     assert_eq!(found.points.len(), 33);
     assert!(found.dropped.is_empty());
@@ -43,7 +43,7 @@ fn overlap_is_a_negative_gap() {
     let mut nodes = Vec::new();
     let slave = flipped(&floor(&mut nodes, 2, -1e-3));
     let master = floor(&mut nodes, 2, 0.0);
-    let found = find(&slave, &master, &nodes, &Options::default());
+    let found = find(&slave, &master, &nodes, &Options::default(), &Alone);
     assert!(found.points.iter().all(|p| (p.gap + 1e-3).abs() < 1e-16));
 }
 
@@ -63,7 +63,7 @@ fn a_piston_meets_its_bore_and_not_a_closer_wall_that_looks_away() {
     let mut master = bore.clone();
     master.facets.extend(&away.facets);
 
-    let found = find(&piston, &master, &nodes, &Options::default());
+    let found = find(&piston, &master, &nodes, &Options::default(), &Alone);
     assert!(found.dropped.is_empty());
     assert!((weights(&found) / (TAU * radius * 0.03) - 1.0).abs() < 1e-4);
     // A quadratic arc of angle a leaves its circle by less than R a^4/100.
@@ -91,7 +91,7 @@ fn a_sphere_over_a_plane_has_its_heights_for_gaps() {
     let mut nodes = Vec::new();
     let sphere = cap(&mut nodes, 4);
     let ceiling = flipped(&patch(&mut nodes, [3, 3], |u, v| [2.0 * u - 1.0, 2.0 * v - 1.0, 1.0]));
-    let found = find(&sphere, &ceiling, &nodes, &ALL);
+    let found = find(&sphere, &ceiling, &nodes, &ALL, &Alone);
     assert!(found.dropped.is_empty());
     for point in &found.points {
         assert!((point.gap - (1.0 - point.position[2])).abs() < 1e-15);
@@ -105,7 +105,7 @@ fn a_plane_over_a_sphere_has_radial_gaps_that_converge_with_the_mesh() {
         let mut nodes = Vec::new();
         let sphere = cap(&mut nodes, n);
         let plane = flipped(&patch(&mut nodes, [5, 5], |u, v| [0.5 * u - 0.25, 0.5 * v - 0.25, 1.05]));
-        let found = find(&plane, &sphere, &nodes, &ALL);
+        let found = find(&plane, &sphere, &nodes, &ALL, &Alone);
         let error = |p: &FoundPoint| (p.gap - (length(p.position) - 1.0)).abs();
         errors.push(found.points.iter().map(error).fold(0.0, f64::max));
     }
@@ -120,7 +120,7 @@ fn points_beyond_an_edge_clamp_to_it_within_the_search_distance() {
     let master = patch(&mut nodes, [3, 3], |u, v| [0.52 * u, v, 0.0]);
     let beyond = |p: &FoundPoint| p.position[0] - 0.52;
 
-    let all = find(&slave, &master, &nodes, &ALL);
+    let all = find(&slave, &master, &nodes, &ALL, &Alone);
     assert!(all.dropped.is_empty());
     for point in &all.points {
         assert!((point.distance - beyond(point).max(0.0)).abs() < 1e-14);
@@ -129,12 +129,12 @@ fn points_beyond_an_edge_clamp_to_it_within_the_search_distance() {
 
     // Half the mean edge of the squares' triangles.
     let reach = 0.5 * 0.1 * (2.0 + 2.0_f64.sqrt()) / 3.0;
-    let near = find(&slave, &master, &nodes, &Options::default());
+    let near = find(&slave, &master, &nodes, &Options::default(), &Alone);
     assert!(near.points.iter().all(|p| beyond(p) <= reach));
     assert_eq!(near.points.len(), all.points.iter().filter(|p| beyond(p) <= reach).count());
     assert_eq!(near.points.len() + near.dropped.len(), all.points.len());
     let own = Options { search_distance: Some(0.2) };
-    let wide = find(&slave, &master, &nodes, &own);
+    let wide = find(&slave, &master, &nodes, &own, &Alone);
     assert!(wide.points.len() > near.points.len());
     assert!(weights(&wide) < wide.area);
 }
@@ -144,9 +144,9 @@ fn a_tie_goes_to_the_lowest_facet_whatever_its_place_in_the_tree() {
     let mut nodes = Vec::new();
     let slave = flipped(&floor(&mut nodes, 6, 0.0));
     let mut master = floor(&mut nodes, 3, 0.0);
-    let before = find(&slave, &master, &nodes, &Options::default());
+    let before = find(&slave, &master, &nodes, &Options::default(), &Alone);
     master.facets.reverse();
-    let after = find(&slave, &master, &nodes, &Options::default());
+    let after = find(&slave, &master, &nodes, &Options::default(), &Alone);
     let last = master.facets.len() - 1;
     let mut ties = 0;
     for (a, b) in before.points.iter().zip(&after.points) {
@@ -163,7 +163,7 @@ fn nothing_faces_a_surface_of_the_same_side() {
     let mut nodes = Vec::new();
     let slave = floor(&mut nodes, 2, 0.0);
     let master = floor(&mut nodes, 2, 0.0);
-    let found = find(&slave, &master, &nodes, &ALL);
+    let found = find(&slave, &master, &nodes, &ALL, &Alone);
     assert!(found.points.is_empty());
     assert_eq!(found.dropped.len(), 16);
 }
@@ -173,7 +173,7 @@ fn pads_on_a_disc_have_the_reference_points_and_areas() {
     let mesh = pads_on_disc();
     for side in ["inner", "outer"] {
         let surface = |part: &str| &mesh.surfaces[&format!("{part}_{side}_face")];
-        let found = find(surface("lining"), surface("disc"), &mesh.nodes, &Options::default());
+        let found = find(surface("lining"), surface("disc"), &mesh.nodes, &Options::default(), &Alone);
         assert_eq!((found.points.len(), found.dropped.len()), (118, 0));
         assert!((found.area / 4.495969950628393e-3 - 1.0).abs() < 1e-12);
         assert!((weights(&found) / found.area - 1.0).abs() < 1e-13);
@@ -186,7 +186,7 @@ fn traced(gap: f64) -> (Vec<[f64; 3]>, Found, Trace) {
     let mut nodes = Vec::new();
     let slave = flipped(&floor(&mut nodes, 3, gap));
     let master = floor(&mut nodes, 4, 0.0);
-    let found = find(&slave, &master, &nodes, &ALL);
+    let found = find(&slave, &master, &nodes, &ALL, &Alone);
     let mut trace = Trace::new();
     for point in &found.points {
         trace.push_projection(point.node, &master.facets[point.facet], &point.shape);
@@ -219,7 +219,7 @@ fn weights_are_the_exact_quadrature_of_a_uniform_pressure() {
     let mut nodes = Vec::new();
     let half = patch(&mut nodes, [20, 3], |u, v| [(PI * u).cos(), (PI * u).sin(), v]);
     let shell = flipped(&patch(&mut nodes, [20, 3], |u, v| [(PI * u).cos(), (PI * u).sin(), v]));
-    let found = find(&half, &shell, &nodes, &Options::default());
+    let found = find(&half, &shell, &nodes, &Options::default(), &Alone);
     let resultant: Vector3<f64> = found.points.iter().map(|p| -p.weight * Vector3::from(p.normal)).sum();
     assert!((resultant - Vector3::new(0.0, 2.0, 0.0)).norm() < 1e-3, "{resultant}");
 }

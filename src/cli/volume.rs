@@ -1,0 +1,79 @@
+//! Fields on the tetrahedra as files: one alone, or a piece from each rank and a file that names them.
+
+use std::ffi::OsString;
+use std::os::unix::ffi::OsStringExt;
+use std::path::PathBuf;
+
+use crate::Result;
+use crate::petsc::Comm;
+use crate::report::folder::{self, Folder};
+use crate::report::vtu::{Array, Cells, Grid};
+use crate::sweep::Brake;
+
+/// What this rank draws: the tetrahedra that it counts, and their nodes.
+pub struct Drawing {
+    tets: Vec<usize>,
+    nodes: Vec<u32>,
+    points: Vec<[f64; 3]>,
+    cells: Vec<[u32; 10]>,
+}
+
+impl Drawing {
+    /// The rank's share of a brake. Not collective.
+    pub fn new(brake: &Brake) -> Drawing {
+        let mesh = &brake.mesh;
+        let tets: Vec<usize> = brake.own_tets().collect();
+        let mut nodes: Vec<u32> = tets.iter().flat_map(|&e| mesh.tets[e]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut place = vec![0; mesh.nodes.len()];
+        nodes.iter().enumerate().for_each(|(i, &n)| place[n as usize] = i as u32);
+        let cells = tets.iter().map(|&e| mesh.tets[e].map(|n| place[n as usize])).collect();
+        let points = nodes.iter().map(|&n| mesh.nodes[n as usize]).collect();
+        Drawing { tets, nodes, points, cells }
+    }
+
+    /// The nodes of this rank's mesh that are drawn.
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
+    /// Of values at all nodes of this rank's mesh those that are drawn.
+    pub fn at_nodes<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        self.nodes.iter().map(|&n| values[n as usize]).collect()
+    }
+
+    /// A value for each tetrahedron that is drawn.
+    pub fn at_tets<T>(&self, value: impl FnMut(usize) -> T) -> Vec<T> {
+        self.tets.iter().copied().map(value).collect()
+    }
+
+    /// Writes `name.vtu` on one rank, else `name.pvtu` with a piece from each. Collective; the root has the folder.
+    ///
+    /// # Errors
+    /// The system's, with the file's path.
+    pub fn write(
+        &self,
+        comm: &Comm,
+        folder: Option<&Folder>,
+        name: &str,
+        point_data: Vec<Array>,
+        cell_data: Vec<Array>,
+    ) -> Result<()> {
+        let grid = Grid { points: &self.points, cells: Cells::Tets(&self.cells), point_data, cell_data };
+        if comm.size() == 1 {
+            let file = format!("{name}.vtu");
+            return folder.map_or(Ok(()), |folder| folder.write(&file, |mut out| grid.write(&mut out)));
+        }
+        let draft = folder.map_or_else(Vec::new, |folder| folder.draft().as_os_str().as_encoded_bytes().to_vec());
+        let draft = PathBuf::from(OsString::from_vec(comm.broadcast(0, draft)));
+        let piece = |rank: usize| format!("pieces/{name}.{rank}.vtu");
+        comm.agree(folder::write_file(&draft.join(piece(comm.rank())), |mut out| grid.write(&mut out)))?;
+        let pieces: Vec<String> = (0..comm.size()).map(piece).collect();
+        let list = folder.map_or(Ok(()), |folder| {
+            folder.adopt(&pieces);
+            folder.write(&format!("{name}.pvtu"), |mut out| grid.write_list(&pieces, &mut out))
+        });
+        comm.agree(list)
+    }
+}

@@ -1,0 +1,135 @@
+//! What a rank has of a mesh.
+//!
+//! Its own nodes, all tetrahedra that touch one of them, those tetrahedra's nodes, and everything that has a name: surfaces and node sets with
+//! their nodes are on every rank, as contact, loads and supports are. They grow with the surface of the bodies, the rest with their
+//! volume.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::bytes::{Reader, Writer};
+use super::{Mesh, Numbering, Surface};
+
+/// A part of a mesh, in local numbers.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// Nodes and tetrahedra that the rank has; all surfaces and node sets.
+    pub mesh: Mesh,
+    /// The global numbers of its nodes.
+    pub nodes: Numbering,
+}
+
+impl Piece {
+    /// The piece of a rank that owns these nodes of a whole mesh.
+    ///
+    /// # Panics
+    /// Where the range goes beyond the nodes.
+    pub fn of(whole: &Mesh, owned: Range<u32>) -> Piece {
+        let touches = |tet: &[u32; 10]| tet.iter().any(|n| owned.contains(n));
+        let tets: Vec<usize> = (0..whole.tets.len()).filter(|&e| touches(&whole.tets[e])).collect();
+        let mut place = vec![u32::MAX; whole.nodes.len()];
+        let here = owned.clone().chain(tets.iter().flat_map(|&e| whole.tets[e])).chain(whole.named_nodes());
+        here.for_each(|n| place[n as usize] = 0);
+        let global: Vec<u32> = (0..whole.nodes.len() as u32).filter(|&n| place[n as usize] == 0).collect();
+        global.iter().enumerate().for_each(|(local, &n)| place[n as usize] = local as u32);
+        let local = |n: u32| place[n as usize];
+        let surface = |(name, surface): (&String, &Surface)| {
+            let facets = surface.facets.iter().map(|facet| facet.map(local)).collect();
+            (name.clone(), Surface { facets, ..surface.clone() })
+        };
+        let set = |(name, nodes): (&String, &Vec<u32>)| (name.clone(), nodes.iter().map(|&n| local(n)).collect());
+        let mesh = Mesh {
+            nodes: global.iter().map(|&n| whole.nodes[n as usize]).collect(),
+            tets: tets.iter().map(|&e| whole.tets[e].map(local)).collect(),
+            tet_part: tets.iter().map(|&e| whole.tet_part[e]).collect(),
+            parts: whole.parts.clone(),
+            surfaces: whole.surfaces.iter().map(surface).collect(),
+            node_sets: whole.node_sets.iter().map(set).collect(),
+        };
+        Piece { mesh, nodes: Numbering::new(global, owned, whole.nodes.len()) }
+    }
+
+    /// The piece as bytes, for another rank.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let (mesh, nodes) = (&self.mesh, &self.nodes);
+        let mut out = Writer::default();
+        out.integers(&[nodes.n_global as u32, nodes.owned.start, nodes.owned.end]);
+        out.integers(&nodes.global);
+        out.numbers(mesh.nodes.as_flattened());
+        out.integers(mesh.tets.as_flattened());
+        out.integers(&mesh.tet_part);
+        out.texts(mesh.parts.iter());
+        out.texts(mesh.surfaces.keys());
+        for surface in mesh.surfaces.values() {
+            out.integers(surface.facets.as_flattened());
+            out.integers(&surface.parts);
+            out.integers(&surface.inner);
+        }
+        out.texts(mesh.node_sets.keys());
+        mesh.node_sets.values().for_each(|set| out.integers(set));
+        out.bytes
+    }
+
+    /// The piece of [`Piece::to_bytes`].
+    ///
+    /// # Panics
+    /// Where these are other bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Piece {
+        let mut from = Reader { bytes };
+        let head = from.integers();
+        let nodes = Numbering { global: from.integers(), owned: head[1]..head[2], n_global: head[0] as usize };
+        let coordinates = from.numbers().as_chunks().0.to_vec();
+        let tets = from.integers().as_chunks().0.to_vec();
+        let (tet_part, parts) = (from.integers(), from.texts());
+        let mut surfaces = BTreeMap::new();
+        for name in from.texts() {
+            let facets = from.integers().as_chunks().0.to_vec();
+            surfaces.insert(name, Surface { facets, parts: from.integers(), inner: from.integers() });
+        }
+        let node_sets = from.texts().into_iter().map(|name| (name, from.integers())).collect();
+        Piece { mesh: Mesh { nodes: coordinates, tets, tet_part, parts, surfaces, node_sets }, nodes }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of tetrahedra with four new nodes each, a surface at its first end and a node set at its last.
+    fn chain() -> Mesh {
+        let tets: Vec<[u32; 10]> = (0..6).map(|e| std::array::from_fn(|a| 4 * e + a as u32)).collect();
+        let surface = Surface { facets: vec![[0, 1, 2, 3, 4, 5]], parts: vec![1], inner: vec![] };
+        Mesh {
+            nodes: (0..30).map(|n| [f64::from(n), 0.5, -0.25]).collect(),
+            tets,
+            tet_part: vec![1, 1, 1, 0, 0, 0],
+            parts: vec!["a".into(), "b c".into()],
+            surfaces: [("end".to_owned(), surface)].into(),
+            node_sets: [("last".to_owned(), vec![28, 29])].into(),
+        }
+    }
+
+    #[test]
+    fn a_piece_has_its_nodes_tetrahedra_and_all_that_has_a_name() {
+        let piece = Piece::of(&chain(), 12..16);
+        let global = piece.nodes.global();
+        // Nodes 0..6 of the surface, 4..22 of the tetrahedra 1 to 3, and 28, 29 of the set.
+        assert_eq!(global, [(0..22).collect::<Vec<_>>(), vec![28, 29]].concat());
+        let back = |local: u32| global[local as usize];
+        let tets: Vec<_> = piece.mesh.tets.iter().map(|tet| tet.map(back)).collect();
+        assert_eq!(tets, chain().tets[1..4]);
+        assert_eq!(piece.mesh.tet_part, [1, 1, 0]);
+        assert_eq!(piece.mesh.node_sets["last"].iter().map(|&n| back(n)).collect::<Vec<_>>(), [28, 29]);
+        assert!(piece.mesh.nodes.iter().zip(global).all(|(x, &n)| x[0] == f64::from(n)));
+        assert_eq!((piece.nodes.owned(), piece.nodes.n_global()), (12..16, 30));
+    }
+
+    #[test]
+    fn a_piece_survives_the_way_to_another_rank() {
+        for owned in [0..30, 12..16, 5..5] {
+            let piece = Piece::of(&chain(), owned);
+            let copy = Piece::from_bytes(&piece.to_bytes());
+            assert_eq!(format!("{copy:?}"), format!("{piece:?}"));
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! From one file to every rank its piece of the mesh, and work that ranks divide.
+
+use std::ops::Range;
+
+use crate::Result;
+use crate::contact::search::Team;
+use crate::mesh::{Mesh, Piece, order};
+use crate::petsc::{Comm, partition};
+
+/// Gives every rank its piece of a mesh that the root alone has read: METIS shares out the nodes, which are numbered rank by rank,
+/// and near each other within a rank. Collective.
+///
+/// # Errors
+/// What befell the root when it read; METIS's.
+pub fn distribute(comm: &Comm, read: impl FnOnce() -> Result<Mesh>) -> Result<Piece> {
+    let whole = || {
+        let mut mesh = read()?;
+        let owner = partition(&mesh.tets, mesh.nodes.len(), comm.size())?;
+        mesh.reorder(&order(&mesh.nodes, &owner));
+        Ok(Some((mesh, owner)))
+    };
+    let whole = comm.agree(if comm.is_root() { whole() } else { Ok(None) })?;
+    let Some((mesh, owner)) = whole else { return Ok(Piece::from_bytes(&comm.receive(0))) };
+    for rank in 1..comm.size() {
+        comm.send(&Piece::of(&mesh, owned(&owner, rank)).to_bytes(), rank);
+    }
+    Ok(Piece::of(&mesh, owned(&owner, 0)))
+}
+
+/// The nodes of a rank, where nodes are numbered rank by rank.
+fn owned(owner: &[u32], rank: usize) -> Range<u32> {
+    let below = |rank: usize| owner.iter().filter(|&&owner| (owner as usize) < rank).count() as u32;
+    below(rank)..below(rank + 1)
+}
+
+/// Ranks search for contact points together.
+impl Team for Comm {
+    fn share(&self, n: usize) -> Range<usize> {
+        self.rank() * n / self.size()..(self.rank() + 1) * n / self.size()
+    }
+
+    fn join(&self, own: Vec<f64>) -> Vec<f64> {
+        Comm::join(self, &own)
+    }
+}
