@@ -10,6 +10,8 @@ use crate::mesh::Numbering;
 #[derive(Debug, Clone)]
 pub struct DofMap {
     equations: Vec<[i32; 3]>,
+    /// Numbers of the nodes that do not depend on the number of ranks.
+    labels: Vec<u32>,
     owned_nodes: Range<u32>,
     owned: Range<i32>,
     n_global: usize,
@@ -34,7 +36,7 @@ impl DofMap {
         }
         let n_global = 3 * nodes.n_global() - n_held as usize;
         let owned = range(&equations, nodes.owned());
-        DofMap { equations, owned_nodes: nodes.owned(), owned, n_global }
+        DofMap { equations, labels: nodes.labels().to_vec(), owned_nodes: nodes.owned(), owned, n_global }
     }
 
     /// Equation numbers of a node's three displacements, -1 where held.
@@ -49,11 +51,12 @@ impl DofMap {
         self.owned_nodes.contains(&node)
     }
 
-    /// A number for each of this rank's equations that does not depend on the number of ranks: `3 node + axis`.
+    /// A number for each of this rank's equations that does not depend on the number of ranks: `3 label + axis` with the node's
+    /// label ([`Numbering::labels`]).
     pub fn labels(&self) -> Vec<u64> {
         let of = |node: u32| {
             let free = (0..3).filter(move |&i| self.equations(node)[i] >= 0);
-            free.map(move |i| 3 * u64::from(node) + i as u64)
+            free.map(move |i| 3 * u64::from(self.labels[node as usize]) + i as u64)
         };
         self.owned_nodes().flat_map(of).collect()
     }

@@ -11,18 +11,21 @@ pub struct Numbering {
     pub(super) global: Vec<u32>,
     pub(super) owned: Range<u32>,
     pub(super) n_global: usize,
+    pub(super) labels: Vec<u32>,
 }
 
 impl Numbering {
-    /// From the global numbers of the nodes that the rank has, rising, and of those that it owns.
+    /// From the global numbers of the nodes that the rank has, rising, and of those that it owns. `labels` has for every global number
+    /// one that does not depend on the number of ranks.
     ///
     /// # Panics
     /// Where the rank has not all of its own.
-    pub fn new(global: Vec<u32>, owned: Range<u32>, n_global: usize) -> Numbering {
+    pub fn new(global: Vec<u32>, owned: Range<u32>, labels: &[u32]) -> Numbering {
         let place = |node: u32| global.partition_point(|&n| n < node) as u32;
         let local = place(owned.start)..place(owned.end);
         assert_eq!(local.len(), owned.len(), "a rank has all nodes that it owns");
-        Numbering { global, owned: local, n_global }
+        let own = global.iter().map(|&n| labels[n as usize]).collect();
+        Numbering { global, owned: local, n_global: labels.len(), labels: own }
     }
 
     /// Every rank has all nodes; this one owns a range of them.
@@ -30,7 +33,8 @@ impl Numbering {
     /// # Panics
     /// Where the range goes beyond the nodes.
     pub fn whole(n_nodes: usize, owned: Range<u32>) -> Numbering {
-        Numbering::new((0..n_nodes as u32).collect(), owned, n_nodes)
+        let all: Vec<u32> = (0..n_nodes as u32).collect();
+        Numbering::new(all.clone(), owned, &all)
     }
 
     /// Every rank has all nodes and owns an equal share: for models small enough to be everywhere.
@@ -53,6 +57,11 @@ impl Numbering {
     /// Global numbers of the nodes that this rank has, rising.
     pub fn global(&self) -> &[u32] {
         &self.global
+    }
+
+    /// For each node that this rank has a number that is the same on any number of ranks: its place in the mesh's file.
+    pub fn labels(&self) -> &[u32] {
+        &self.labels
     }
 
     /// Number of nodes that this rank has.

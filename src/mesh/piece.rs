@@ -20,11 +20,11 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// The piece of a rank that owns these nodes of a whole mesh.
+    /// The piece of a rank that owns these nodes of a whole mesh; `labels` as [`Numbering::new`] takes them.
     ///
     /// # Panics
     /// Where the range goes beyond the nodes.
-    pub fn of(whole: &Mesh, owned: Range<u32>) -> Piece {
+    pub fn of(whole: &Mesh, owned: Range<u32>, labels: &[u32]) -> Piece {
         let touches = |tet: &[u32; 10]| tet.iter().any(|n| owned.contains(n));
         let tets: Vec<usize> = (0..whole.tets.len()).filter(|&e| touches(&whole.tets[e])).collect();
         let mut place = vec![u32::MAX; whole.nodes.len()];
@@ -46,7 +46,7 @@ impl Piece {
             surfaces: whole.surfaces.iter().map(surface).collect(),
             node_sets: whole.node_sets.iter().map(set).collect(),
         };
-        Piece { mesh, nodes: Numbering::new(global, owned, whole.nodes.len()) }
+        Piece { mesh, nodes: Numbering::new(global, owned, labels) }
     }
 
     /// The piece as bytes, for another rank.
@@ -55,6 +55,7 @@ impl Piece {
         let mut out = Writer::default();
         out.integers(&[nodes.n_global as u32, nodes.owned.start, nodes.owned.end]);
         out.integers(&nodes.global);
+        out.integers(&nodes.labels);
         out.numbers(mesh.nodes.as_flattened());
         out.integers(mesh.tets.as_flattened());
         out.integers(&mesh.tet_part);
@@ -77,7 +78,8 @@ impl Piece {
     pub fn from_bytes(bytes: &[u8]) -> Piece {
         let mut from = Reader { bytes };
         let head = from.integers();
-        let nodes = Numbering { global: from.integers(), owned: head[1]..head[2], n_global: head[0] as usize };
+        let (global, labels) = (from.integers(), from.integers());
+        let nodes = Numbering { global, owned: head[1]..head[2], n_global: head[0] as usize, labels };
         let coordinates = from.numbers().as_chunks().0.to_vec();
         let tets = from.integers().as_chunks().0.to_vec();
         let (tet_part, parts) = (from.integers(), from.texts());
@@ -109,9 +111,13 @@ mod tests {
         }
     }
 
+    fn labels() -> Vec<u32> {
+        (100..130).collect()
+    }
+
     #[test]
     fn a_piece_has_its_nodes_tetrahedra_and_all_that_has_a_name() {
-        let piece = Piece::of(&chain(), 12..16);
+        let piece = Piece::of(&chain(), 12..16, &labels());
         let global = piece.nodes.global();
         // Nodes 0..6 of the surface, 4..22 of the tetrahedra 1 to 3, and 28, 29 of the set.
         assert_eq!(global, [(0..22).collect::<Vec<_>>(), vec![28, 29]].concat());
@@ -121,13 +127,14 @@ mod tests {
         assert_eq!(piece.mesh.tet_part, [1, 1, 0]);
         assert_eq!(piece.mesh.node_sets["last"].iter().map(|&n| back(n)).collect::<Vec<_>>(), [28, 29]);
         assert!(piece.mesh.nodes.iter().zip(global).all(|(x, &n)| x[0] == f64::from(n)));
+        assert!(piece.nodes.labels().iter().zip(global).all(|(&label, &n)| label == 100 + n));
         assert_eq!((piece.nodes.owned(), piece.nodes.n_global()), (12..16, 30));
     }
 
     #[test]
     fn a_piece_survives_the_way_to_another_rank() {
         for owned in [0..30, 12..16, 5..5] {
-            let piece = Piece::of(&chain(), owned);
+            let piece = Piece::of(&chain(), owned, &labels());
             let copy = Piece::from_bytes(&piece.to_bytes());
             assert_eq!(format!("{copy:?}"), format!("{piece:?}"));
         }

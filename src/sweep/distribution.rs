@@ -16,15 +16,16 @@ pub fn distribute(comm: &Comm, read: impl FnOnce() -> Result<Mesh>) -> Result<Pi
     let whole = || {
         let mut mesh = read()?;
         let owner = partition(&mesh.tets, mesh.nodes.len(), comm.size())?;
-        mesh.reorder(&order(&mesh.nodes, &owner));
-        Ok(Some((mesh, owner)))
+        let labels = order(&mesh.nodes, &owner);
+        mesh.reorder(&labels);
+        Ok(Some((mesh, owner, labels)))
     };
     let whole = comm.agree(if comm.is_root() { whole() } else { Ok(None) })?;
-    let Some((mesh, owner)) = whole else { return Ok(Piece::from_bytes(&comm.receive(0))) };
+    let Some((mesh, owner, labels)) = whole else { return Ok(Piece::from_bytes(&comm.receive(0))) };
     for rank in 1..comm.size() {
-        comm.send(&Piece::of(&mesh, owned(&owner, rank)).to_bytes(), rank);
+        comm.send(&Piece::of(&mesh, owned(&owner, rank), &labels).to_bytes(), rank);
     }
-    Ok(Piece::of(&mesh, owned(&owner, 0)))
+    Ok(Piece::of(&mesh, owned(&owner, 0), &labels))
 }
 
 /// The nodes of a rank, where nodes are numbered rank by rank.
