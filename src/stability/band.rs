@@ -230,7 +230,8 @@ impl Solver {
         end: f64,
         progress: &mut dyn FnMut(usize, usize, usize),
     ) -> Result<Option<Search>> {
-        if let Some(labels) = self.labels.as_ref().filter(|_| self.shift == 0.0) {
+        let room = memory::available_mb(pencil.k.comm()) / subspace::needs_mb(n_modes, n_equations(pencil));
+        if let Some(labels) = self.labels.as_ref().filter(|_| self.shift == 0.0 && room > 1.0) {
             let problem = Problem { pencil, factor: &self.lu, labels };
             let reach = BEYOND * end;
             let outcome = subspace::solve(&problem, TAU * reach, n_modes, progress);

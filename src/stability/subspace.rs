@@ -72,6 +72,17 @@ pub struct Problem<'a> {
     pub labels: &'a [u64],
 }
 
+/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis and its image under K, with room for ten rounds.
+pub fn needs_mb(n_modes: usize, n_equations: usize) -> f64 {
+    let n_columns = n_krylov(n_modes) + 10 * SKETCH;
+    2.0 * 8.0 * (n_columns * n_equations) as f64 / (1024.0 * 1024.0)
+}
+
+/// Columns of the Krylov space.
+fn n_krylov(n_modes: usize) -> usize {
+    (KRYLOV * n_modes as f64) as usize + 2 * KRYLOV_BLOCK
+}
+
 /// All eigenpairs of the closed upper half plane with `|lambda| <= radius` (1/s), given about how many modes to expect there.
 /// With their backward errors. `progress` hears of (at rest, wanted, solves). Collective.
 ///
@@ -118,7 +129,7 @@ impl<'a> Subspace<'a> {
         let (v, kv) = (empty(), empty());
         let mut space = Subspace { problem, v, kv, m: none(), c: none(), k: none(), noise, n_solves: 0 };
         let n_total = comm.sum(n_local as f64) as usize;
-        let n_columns = ((KRYLOV * n_expected as f64) as usize + 2 * KRYLOV_BLOCK).min(n_total);
+        let n_columns = n_krylov(n_expected).min(n_total);
         let mut last = Block::zeros(comm, n_local, KRYLOV_BLOCK.min(n_total));
         (0..last.n_columns()).for_each(|j| space.noise.fill(last.column_mut(j)));
         let mut image = last.multiplied_by(problem.pencil.m)?;
