@@ -37,6 +37,8 @@ pub struct Path<'a> {
     /// The equilibrium before `state`, for extrapolation.
     before: Option<(f64, Vector)>,
     steps: Vec<Step>,
+    /// Whether no step has followed the settling.
+    is_settled_only: bool,
     /// Pairs that may open and are pulled apart where all that touches holds, with the force, N.
     pulled: Vec<(String, f64)>,
 }
@@ -50,7 +52,8 @@ impl<'a> Path<'a> {
         let contacts = Contacts::new(interface, system)?;
         let (tangent, factor) = (system.k.duplicate()?, StepFactor::new());
         let (steps, pulled) = (Vec::new(), Vec::new());
-        Ok(Path { system, contacts, tangent, factor, state: None, before: None, steps, pulled })
+        let (state, before, is_settled_only) = (None, None, true);
+        Ok(Path { system, contacts, tangent, factor, state, before, steps, is_settled_only, pulled })
     }
 
     /// The evaluator of the contact points.
@@ -113,25 +116,31 @@ impl<'a> Path<'a> {
         Ok(trial)
     }
 
-    /// Rest to the frictionless equilibrium of the true laws.
+    /// Rest to where the brake is brought together.
     fn settle(&mut self, progress: &mut dyn FnMut(&str, usize, &Iteration)) -> Result<()> {
         let mut u = self.system.zeros()?;
-        for (stage, label) in
-            [(Stage::Settle, "settle"), (self.contacts.interface().stage(0.0), "contact without friction at the disc")]
-        {
-            let (step, responses) = self.newton(&stage, label.into(), &mut u, progress)?;
-            if stage == Stage::Settle && step.converged {
-                self.pulled = pulled_apart(self.contacts.interface(), &responses);
-            }
-            let converged = step.converged;
-            self.steps.push(step);
-            if !converged {
-                self.state = Some((0.0, u));
-                return Err(self.failure(0.0));
-            }
-        }
+        let (step, responses) = self.newton(&Stage::Settle, "settle".into(), &mut u, progress)?;
+        let converged = step.converged;
+        self.steps.push(step);
         self.state = Some((0.0, u));
+        if !converged {
+            return Err(self.failure(0.0));
+        }
+        self.pulled = pulled_apart(self.contacts.interface(), &responses);
         Ok(())
+    }
+
+    /// The true laws without friction at the disc, from where the brake is brought together: a stop on the way for a brake that does not
+    /// reach its first friction at once.
+    fn stop_without_friction(&mut self, progress: &mut dyn FnMut(&str, usize, &Iteration)) -> Result<()> {
+        let mut u = self.state.as_ref().expect("settled").1.duplicate()?;
+        let stage = self.contacts.interface().stage(0.0);
+        let (step, _) = self.newton(&stage, "contact without friction at the disc".into(), &mut u, progress)?;
+        let converged = step.converged;
+        self.steps.push(step);
+        self.state = Some((0.0, u));
+        self.is_settled_only = false;
+        if converged { Ok(()) } else { Err(self.failure(0.0)) }
     }
 
     fn next_goal(&self, reached: f64, friction: f64) -> f64 {
@@ -154,7 +163,15 @@ impl<'a> Path<'a> {
             let converged = step.converged;
             self.steps.push(step);
             if converged {
+                if std::mem::take(&mut self.is_settled_only) {
+                    // No equilibrium of the true laws: nothing to extrapolate from.
+                    self.state = None;
+                }
                 return Ok((goal, trial, responses));
+            }
+            if self.is_settled_only {
+                self.stop_without_friction(progress)?;
+                continue;
             }
             if (goal - reached).abs() <= SMALLEST_RISE {
                 return Err(self.failure(goal));
