@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
+use super::inertia::Inertia;
 use super::mode::backward_errors;
 use super::subspace::{self, Problem};
 use super::{Mode, Pencil};
@@ -16,8 +17,8 @@ use crate::{Error, Result};
 pub struct Solver {
     /// LU of the unsymmetric stiffness; the equilibrium uses the same.
     pub lu: Factor,
-    /// Symmetric factor that counts.
-    pub ldl: Factor,
+    /// What counts the modes.
+    pub inertia: Inertia,
     /// Real shift of the inverted problem, 1/s: 0, unless the structure has rigid motions.
     shift: f64,
     /// For the blocked search, where it pays: a number for each of this rank's equations that does not depend on the ranks.
@@ -30,8 +31,8 @@ const BLOCKED_FROM: usize = 50_000;
 impl Default for Solver {
     /// Searches with TOAR.
     fn default() -> Self {
-        let (lu, ldl) = (Factor::new(FactorKind::Unsymmetric), Factor::new(FactorKind::Symmetric));
-        Solver { lu, ldl, shift: 0.0, labels: None }
+        let lu = Factor::new(FactorKind::Unsymmetric);
+        Solver { lu, inertia: Inertia::default(), shift: 0.0, labels: None }
     }
 }
 
@@ -114,10 +115,10 @@ pub fn solve(
     band: [f64; 2],
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Band> {
-    let expected = solver.n_below(pencil, band[1])?;
-    let lu = LU_OVER_SYMMETRIC * solver.ldl.stats().used_mb;
+    let expected = solver.inertia.n_below(pencil, band[1])?;
+    let lu = LU_OVER_SYMMETRIC * solver.inertia.stats().used_mb;
     if !solver.lu.is_made() && lu > memory::available_mb(pencil.k.comm()) {
-        solver.ldl.release();
+        solver.inertia.release();
     }
     solver.factorise_shifted(pencil)?;
     let (mut n_solves, mut last) = (0, None);
@@ -164,7 +165,7 @@ fn count(pencil: &Pencil, solver: &mut Solver, search: &Search, end: f64, expect
     let below = |f: f64| search.pairs.iter().map(|pair| weight(pair, f)).sum::<f64>().round() as usize;
     let count = Count { below: end, expected, found: below(end) };
     match widest_gap(&moduli, end).filter(|_| !count.agrees()) {
-        Some(gap) => Ok(Some(Count { below: gap, expected: solver.n_below(pencil, gap)?, found: below(gap) })),
+        Some(gap) => Ok(Some(Count { below: gap, expected: solver.inertia.n_below(pencil, gap)?, found: below(gap) })),
         None => Ok(Some(count)),
     }
 }
@@ -259,18 +260,8 @@ impl Solver {
     /// Memory (MB) that the next solution takes beyond what is held, as far as a factor of the same pattern tells: an LU, and
     /// its symmetric counterpart of half the size.
     pub fn still_needs_mb(&self, like: &FactorStats) -> f64 {
-        let missing = |factor: &Factor, share: f64| if factor.is_made() { 0.0 } else { share * like.used_mb };
-        missing(&self.lu, 1.0) + missing(&self.ldl, 0.6)
-    }
-
-    /// Number of modes of the symmetric problem below a frequency (Hz): negative pivots of `K_symmetric - omega^2 M`.
-    fn n_below(&mut self, pencil: &Pencil, frequency: f64) -> Result<usize> {
-        let omega = TAU * frequency;
-        let mut shifted = pencil.k_symmetric.duplicate()?;
-        shifted.axpy(-omega * omega, pencil.m)?;
-        shifted.declare_symmetric()?;
-        self.ldl.factorise(&shifted)?;
-        self.ldl.n_negative()
+        let missing = |is_made: bool, share: f64| if is_made { 0.0 } else { share * like.used_mb };
+        missing(self.lu.is_made(), 1.0) + missing(self.inertia.is_made(), 0.6)
     }
 
     /// LU of `sigma^2 M + sigma C + K`.

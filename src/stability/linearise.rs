@@ -5,7 +5,7 @@ use crate::assembly::System;
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::petsc::Matrix;
 
-use super::Pencil;
+use super::{Pencil, Points};
 
 /// The matrices linearised about an equilibrium with the status of every point frozen.
 pub struct Linearised {
@@ -15,6 +15,8 @@ pub struct Linearised {
     pub k_symmetric: Matrix,
     /// `C`, with friction damping where it is asked for.
     pub c: Option<Matrix>,
+    /// What each contact point has in `k_symmetric`.
+    tangents: Vec<[[f64; 3]; 3]>,
 }
 
 impl Linearised {
@@ -23,7 +25,7 @@ impl Linearised {
     /// # Errors
     /// PETSc's.
     pub fn new(system: &System) -> Result<Linearised> {
-        Ok(Linearised { k: system.k.duplicate()?, k_symmetric: system.k.duplicate()?, c: None })
+        Ok(Linearised { k: system.k.duplicate()?, k_symmetric: system.k.duplicate()?, c: None, tangents: Vec::new() })
     }
 
     /// Linearises about `equilibrium`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`, all
@@ -51,14 +53,17 @@ impl Linearised {
         }
         for (matrix, frictions) in [(&mut self.k, &frictions), (&mut self.k_symmetric, &none)] {
             let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, frictions);
+            self.tangents = (0..gaps.len()).map(block).collect();
             matrix.copy_from(&system.k)?;
-            contacts.add_blocks((0..gaps.len()).map(block), matrix)?;
+            contacts.add_blocks(self.tangents.iter().copied(), matrix)?;
         }
         Ok(())
     }
 
     /// The pencil.
-    pub fn pencil<'a>(&'a self, system: &'a System) -> Pencil<'a> {
-        Pencil { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k: &self.k, k_symmetric: &self.k_symmetric }
+    pub fn pencil<'a>(&'a self, system: &'a System, contacts: &'a Contacts<'a>) -> Pencil<'a> {
+        let (c, tangents) = (self.c.as_ref().unwrap_or(&system.c), self.tangents.as_slice());
+        let points = Some(Points { contacts, tangents });
+        Pencil { m: &system.m, c, k: &self.k, k_symmetric: &self.k_symmetric, points }
     }
 }

@@ -5,6 +5,7 @@
 //! checks their number against the inertia of the symmetric problem, so that none is missed.
 
 mod band;
+mod inertia;
 mod linearise;
 mod mode;
 mod noise;
@@ -12,4 +13,4 @@ mod subspace;
 
 pub use band::{Band, Count, Solver, solve};
 pub use linearise::Linearised;
-pub use mode::{Mode, Pencil, UNSTABLE_RATIO};
+pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO};

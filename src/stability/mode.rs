@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 
 use crate::Result;
+use crate::equilibrium::Contacts;
 use crate::petsc::{Block, Matrix, Vector};
 
 /// A mode is called unstable where its growth rate exceeds this fraction of its angular frequency: below is noise.
@@ -21,6 +22,17 @@ pub struct Pencil<'a> {
     pub k: &'a Matrix,
     /// Stiffness with the tangent of contact without friction's coupling: symmetric, for counting.
     pub k_symmetric: &'a Matrix,
+    /// The contact points whose tangents are in `k_symmetric`, where the count may follow their changes.
+    pub points: Option<Points<'a>>,
+}
+
+/// Contact points with what each has in a pencil's symmetric stiffness.
+#[derive(Clone, Copy)]
+pub struct Points<'a> {
+    /// Where the points stand among the equations.
+    pub contacts: &'a Contacts<'a>,
+    /// Tangent without friction's coupling of each point, N/m.
+    pub tangents: &'a [[[f64; 3]; 3]],
 }
 
 /// An eigenvalue with non-negative frequency, its vector, and how well the two solve the problem.

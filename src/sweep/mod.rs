@@ -95,12 +95,12 @@ impl<'a> Sweep<'a> {
         }
         let linearised = self.linearised.as_mut().expect("made above");
         linearised.update(self.system, self.path.contacts(), equilibrium, self.friction_damping)?;
-        let pencil = linearised.pencil(self.system);
         if SHARE_OF_MEMORY * memory::available_mb(self.system.k.comm())
             < self.solver.still_needs_mb(&self.path.factor())
         {
             self.path.release_factor();
         }
+        let pencil = linearised.pencil(self.system, self.path.contacts());
         let outcome = stability::solve(&pencil, &mut self.solver, band, &mut |converged, wanted, solves| {
             hear(Event::Modes(converged, wanted, solves));
         });
@@ -127,7 +127,7 @@ impl<'a> Sweep<'a> {
             tangent,
             n_iterations,
             stiffness: self.solver.lu.stats(),
-            symmetric: self.solver.ldl.stats(),
+            symmetric: self.solver.inertia.stats(),
         }
     }
 }

@@ -1,0 +1,186 @@
+//! How many modes the symmetric problem has below a frequency.
+//!
+//! By Sylvester's law of inertia that is the number of negative pivots of `A = S - omega^2 M`, S the stiffness with the contact tangent
+//! without friction's coupling. From one friction to the next only the points that opened or closed change S, by a low rank:
+//! `A' = A + U D U^T`. The bordered matrix `[A U; U^T -D^-1]` has two Schur complements (Haynsworth, Linear Algebra and its
+//! Applications 1, 1968), so that
+//!
+//! ```text
+//! n(A') = n(A) + n(-D^-1 - U^T A^-1 U) - n(-D^-1)       n: number of negative eigenvalues
+//! ```
+//!
+//! and a factor of A serves for A' with one solve a column of U. The count is exact either way.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
+
+use super::Pencil;
+use crate::Result;
+use crate::petsc::{Block, Factor, FactorKind, FactorStats};
+
+/// Columns from which a new factor is cheaper: a right-hand side among many takes 0.09 s, the factor 8 s (full demo brake, two ranks).
+const MAX_COLUMNS: usize = 60;
+/// A change of a point's tangent this much smaller than the tangent itself is none.
+const NEGLIGIBLE: f64 = 1e-12;
+/// An eigenvalue of the small matrix this close to zero, relative to the largest, leaves its sign open.
+const OPEN: f64 = 1e-9;
+
+/// Counts modes, with the last factor for as long as it serves.
+pub struct Inertia {
+    factor: Factor,
+    last: Option<Last>,
+}
+
+/// What the factor was made for.
+struct Last {
+    omega: f64,
+    tangents: Vec<[[f64; 3]; 3]>,
+    n_negative: usize,
+}
+
+impl Default for Inertia {
+    fn default() -> Self {
+        Inertia { factor: Factor::new(FactorKind::Symmetric), last: None }
+    }
+}
+
+impl Inertia {
+    /// Number of modes below a frequency, Hz. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and MUMPS's.
+    pub fn n_below(&mut self, pencil: &Pencil, frequency: f64) -> Result<usize> {
+        let omega = TAU * frequency;
+        if let Some(n) = self.updated(pencil, omega)? {
+            return Ok(n);
+        }
+        let mut shifted = pencil.k_symmetric.duplicate()?;
+        shifted.axpy(-omega * omega, pencil.m)?;
+        shifted.declare_symmetric()?;
+        self.factor.factorise(&shifted)?;
+        let n_negative = self.factor.n_negative()?;
+        let tangents = pencil.points.map(|points| points.tangents.to_vec());
+        self.last = tangents.map(|tangents| Last { omega, tangents, n_negative });
+        Ok(n_negative)
+    }
+
+    /// The count by the last factor; none where it was made for something too different.
+    fn updated(&self, pencil: &Pencil, omega: f64) -> Result<Option<usize>> {
+        let (Some(last), Some(points)) = (&self.last, pencil.points) else { return Ok(None) };
+        if last.omega != omega || last.tangents.len() != points.tangents.len() {
+            return Ok(None);
+        }
+        let pairs = last.tangents.iter().zip(points.tangents).enumerate();
+        let changes: Vec<Change> = pairs.flat_map(|(a, (old, new))| changes(a, old, new)).collect();
+        if changes.len() > MAX_COLUMNS {
+            return Ok(None);
+        }
+        if changes.is_empty() {
+            return Ok(Some(last.n_negative));
+        }
+        let mut u = Block::zeros(pencil.k.comm(), pencil.k.n_local(), changes.len());
+        for (j, change) in changes.iter().enumerate() {
+            points.contacts.spread_into(change.point, change.direction, 1.0, u.column_mut(j));
+        }
+        let flexibility = u.gram(&u.solved_by(&self.factor)?);
+        Ok(n_negative_after(last.n_negative, &changes, &flexibility))
+    }
+
+    /// Gives the memory of the factor back. Collective.
+    pub fn release(&mut self) {
+        self.factor.release();
+        self.last = None;
+    }
+
+    /// Whether there is a factor. Not collective.
+    pub fn is_made(&self) -> bool {
+        self.factor.is_made()
+    }
+
+    /// What the factor has cost. Not collective.
+    pub fn stats(&self) -> FactorStats {
+        self.factor.stats()
+    }
+}
+
+/// `stiffness direction direction^T` has joined a point's tangent.
+struct Change {
+    point: usize,
+    direction: [f64; 3],
+    stiffness: f64,
+}
+
+/// The change of a symmetric tangent along its principal directions.
+fn changes(point: usize, old: &[[f64; 3]; 3], new: &[[f64; 3]; 3]) -> Vec<Change> {
+    if old == new {
+        return Vec::new();
+    }
+    let (old, new) = (Matrix3::from(*old), Matrix3::from(*new));
+    let smallest = NEGLIGIBLE * old.norm().max(new.norm());
+    let eigen = SymmetricEigen::new(0.5 * ((new - old) + (new - old).transpose()));
+    let change = |k: usize| Change {
+        point,
+        direction: eigen.eigenvectors.column(k).into_owned().into(),
+        stiffness: eigen.eigenvalues[k],
+    };
+    (0..3).map(change).filter(|change| change.stiffness.abs() > smallest).collect()
+}
+
+/// `n(A) + n(-D^-1 - U^T A^-1 U) - n(-D^-1)`, with `U^T A^-1 U` by columns; none where an eigenvalue is too small for its sign.
+fn n_negative_after(before: usize, changes: &[Change], flexibility: &[f64]) -> Option<usize> {
+    let n = changes.len();
+    // D scaled out, so that the entries are of one size: T (-D^-1 - G) T with T = sqrt|D| keeps the inertia.
+    let scale = |i: usize| changes[i].stiffness.abs().sqrt();
+    let entry = |i: usize, j: usize| {
+        let own = if i == j { changes[i].stiffness.signum() } else { 0.0 };
+        -own - scale(i) * 0.5 * (flexibility[i + n * j] + flexibility[j + n * i]) * scale(j)
+    };
+    let eigenvalues = DMatrix::from_fn(n, n, entry).symmetric_eigenvalues();
+    if eigenvalues.iter().any(|x| x.abs() < OPEN * eigenvalues.amax()) {
+        return None;
+    }
+    let negative = eigenvalues.iter().filter(|&&x| x < 0.0).count();
+    let stiffened = changes.iter().filter(|change| change.stiffness > 0.0).count();
+    (before + negative).checked_sub(stiffened)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn n_negative(a: &DMatrix<f64>) -> usize {
+        a.clone().symmetric_eigenvalues().iter().filter(|&&x| x < 0.0).count()
+    }
+
+    proptest! {
+        #[test]
+        fn an_update_counts_like_the_changed_matrix(
+            diagonal in prop::collection::vec(-1.0..1.0, 9),
+            stiffnesses in prop::collection::vec(prop_oneof![-3.0..-0.1, 0.1..3.0], 3),
+            directions in prop::collection::vec(-1.0..1.0, 27),
+        ) {
+            let a = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(diagonal));
+            prop_assume!(a.iter().all(|x| *x == 0.0 || x.abs() > 1e-6));
+            let u = DMatrix::from_vec(9, 3, directions);
+            let changes: Vec<Change> =
+                stiffnesses.iter().map(|&stiffness| Change { point: 0, direction: [0.0; 3], stiffness }).collect();
+            let d = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(stiffnesses));
+            let flexibility = u.transpose() * a.clone().lu().solve(&u).unwrap();
+            let changed = &a + &u * d * u.transpose();
+            if let Some(n) = n_negative_after(n_negative(&a), &changes, flexibility.as_slice()) {
+                prop_assert_eq!(n, n_negative(&changed));
+            }
+        }
+    }
+
+    #[test]
+    fn a_point_that_opens_is_one_change_along_its_normal() {
+        let closed = [[0.0; 3], [0.0; 3], [0.0, 0.0, 5.0]];
+        let changes = changes(4, &closed, &[[0.0; 3]; 3]);
+        assert_eq!(changes.len(), 1);
+        assert_eq!((changes[0].point, changes[0].stiffness), (4, -5.0));
+        assert!((changes[0].direction[2].abs() - 1.0).abs() < 1e-15);
+    }
+}
