@@ -12,7 +12,7 @@ const REAL: &str = "/usr/lib/slepcdir/slepc-real/lib/pkgconfig:/usr/lib/petscdir
 const FUNCTIONS: &[&str] = &[
     "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Bcast|Send|Recv|Barrier|Abort)",
     "Petsc(InitializeNoArguments|OptionsSetValue|OptionsClearValue|PushErrorHandler|PopErrorHandler|Error|GetVersion)",
-    "PetscObject(SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
+    "PetscObject(TypeCompare|SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
     "Slepc(Initialize|InitializeNoArguments|Finalize|GetVersion)",
     "Vec(Create|CreateMPI|CreateSeq|CreateMPIWithArray|CreateSeqWithArray|Destroy|Duplicate|Copy|Set|Scale|AXPY|AYPX|WAXPY|Dot|Norm|MDot|PointwiseMult)",
     "Vec(GetArray|RestoreArray|GetArrayRead|RestoreArrayRead|GetLocalSize|GetSize|GetOwnershipRange|SetValues|AssemblyBegin|AssemblyEnd)",
@@ -20,7 +20,7 @@ const FUNCTIONS: &[&str] = &[
     "IS(CreateGeneral|CreateStride|Destroy)",
     "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
     "Mat(CreateSeqAIJWithArrays|CreateMPIAIJWithSplitArrays|MPIAIJGetSeqAIJ|SeqAIJGetArray|SeqAIJRestoreArray|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|ConvertIfNeeded)",
-    "Mat(MatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
+    "Mat(MatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseGetArrayRead|DenseRestoreArrayRead|Convert|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
     "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
     "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",
     "KSP(Create|Destroy|Solve|GMRESSetRestart|SetPCSide|SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
@@ -30,7 +30,7 @@ const FUNCTIONS: &[&str] = &[
     "PEP(Create|Destroy|SetOperators|SetProblemType|SetType|SetDimensions|SetTarget|SetWhichEigenpairs|SetTolerances|SetScale|SetRefine|SetExtract|SetFromOptions|SetOptionsPrefix)",
     "PEP(Solve|GetST|GetConverged|GetEigenpair|GetIterationNumber|GetConvergedReason|MonitorSet|SetStoppingTestFunction|StoppingBasic|SetInitialSpace|SetConvergenceTest|TOARSetRestart|TOARSetLocking|GetDimensions)",
     "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
-    "d(gemm|geev)_",
+    "d(gemm|geev|syev|getrf|getrs|sytrf|sytrs|trsv)_",
     "METIS_PartMeshDual",
     "squeal_.*",
 ];
@@ -50,6 +50,7 @@ fn main() {
     bindings(&includes);
     println!("cargo:rerun-if-changed=wrapper.h");
     println!("cargo:rerun-if-changed=shim.c");
+    println!("cargo:rerun-if-changed=shim.h");
 }
 
 fn probe(name: &str, package: &str) -> pkg_config::Library {

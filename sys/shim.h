@@ -9,3 +9,6 @@ MPI_Datatype squeal_type_double(void);
 MPI_Datatype squeal_type_int(void);
 MPI_Datatype squeal_type_byte(void);
 PetscErrorCode squeal_raise(const char *function, const char *message);
+/* BLAS that PETSc's headers leave out. */
+void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
+            double *x, const int *incx);

@@ -153,6 +153,10 @@ impl Block {
     /// PETSc's, and MUMPS's with its code.
     pub fn solved_by(&self, factor: &Factor) -> Result<Block> {
         let mut solution = self.clone();
+        if let Some(dense) = factor.dense() {
+            dense.solve(&mut solution.values);
+            return Ok(solution);
+        }
         let b = View::new(self, self.values.as_ptr().cast_mut())?;
         let pointer = solution.values.as_mut_ptr();
         let x = View::new(&solution, pointer)?;
@@ -194,6 +198,55 @@ impl Block {
         let entry = |(i, j): (usize, usize)| scale[i] * eigen.eigenvectors[(i, j)] / eigen.eigenvalues[j].sqrt();
         let entries = kept.iter().flat_map(|&j| (0..n).map(move |i| (i, j)));
         (entries.map(entry).collect(), kept.len())
+    }
+
+    /// Overwrites the columns from `first` on. Not collective.
+    ///
+    /// # Panics
+    /// Where there are fewer.
+    pub fn set_columns(&mut self, first: usize, columns: &Block) {
+        self.values[first * self.n_local..][..columns.values.len()].copy_from_slice(&columns.values);
+    }
+
+    /// The first `n` columns of `self`, transposed, times `other`: column-major, the same on every rank.
+    pub fn leading_gram(&self, n: usize, other: &Block) -> Vec<f64> {
+        let mut product = vec![0.0; n * other.n_columns];
+        let sizes = [n, self.n_local, other.n_columns];
+        dense::multiply(true, sizes, &self.values[..n * self.n_local], &other.values, &mut product);
+        self.comm.sum_all(&mut product);
+        product
+    }
+
+    /// The first `n` columns of `self` times column-major coefficients of n rows. Not collective.
+    ///
+    /// # Panics
+    /// Where the coefficients do not fill whole columns.
+    pub fn leading_combined(&self, n: usize, coefficients: &[f64], n_columns: usize) -> Block {
+        let mut product = self.like(n_columns);
+        let sizes = [self.n_local, n, n_columns];
+        dense::multiply(false, sizes, &self.values[..n * self.n_local], coefficients, &mut product.values);
+        product
+    }
+
+    /// `self = self coefficients` with a column-major square matrix, a strip of rows at a time, so that no second block is needed.
+    /// Not collective.
+    ///
+    /// # Panics
+    /// Where the matrix is not square of as many rows as this block has columns.
+    pub fn transform(&mut self, coefficients: &[f64]) {
+        const STRIP: usize = 1024;
+        let (n, columns) = (self.n_local, self.n_columns);
+        let (mut strip, mut product) = (Vec::new(), Vec::new());
+        for first in (0..n).step_by(STRIP) {
+            let rows = first..(first + STRIP).min(n);
+            strip.clear();
+            (0..columns).for_each(|j| strip.extend_from_slice(&self.values[j * n..][rows.clone()]));
+            product.resize(strip.len(), 0.0);
+            dense::multiply(false, [rows.len(), columns, columns], &strip, coefficients, &mut product);
+            for j in 0..columns {
+                self.values[j * n..][rows.clone()].copy_from_slice(&product[j * rows.len()..][..rows.len()]);
+            }
+        }
     }
 
     /// Zeros in the same layout.

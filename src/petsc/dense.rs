@@ -39,6 +39,38 @@ pub fn multiply(transposed: bool, [rows, inner, columns]: [usize; 3], a: &[f64],
     }
 }
 
+/// Eigenvalues, ascending, of a symmetric `n x n` matrix, which its orthonormal eigenvectors replace column by column. Not collective.
+///
+/// # Errors
+/// [`Error::NotConverged`] where LAPACK's QR iteration fails.
+///
+/// # Panics
+/// Where the slice is not `n x n`.
+pub fn symmetric_eigen(n: usize, a: &mut [f64]) -> Result<Vec<f64>> {
+    assert_eq!(a.len(), n * n);
+    let (size, mut info) = (n as i32, 0);
+    let (mut values, mut work) = (vec![0.0; n], vec![0.0; 40 * n.max(1)]);
+    let length = work.len() as i32;
+    // SAFETY: sizes are those of the arrays.
+    unsafe {
+        sys::dsyev_(
+            c"V".as_ptr(),
+            c"U".as_ptr(),
+            &size,
+            a.as_mut_ptr(),
+            &size.max(1),
+            values.as_mut_ptr(),
+            work.as_mut_ptr(),
+            &length,
+            &mut info,
+        );
+    }
+    match info {
+        0 => Ok(values),
+        _ => Err(Error::NotConverged(format!("LAPACK's dsyev failed with code {info} on {n} rows"))),
+    }
+}
+
 /// An eigenvalue with non-negative imaginary part, and its right eigenvector.
 pub type EigenPair = (Complex64, Vec<Complex64>);
 
@@ -104,6 +136,15 @@ mod tests {
         let mut d = [0.0; 2];
         multiply(true, [2, 3, 1], &a, &[1.0, 1.0, 1.0], &mut d);
         assert_eq!(d, [8.0, 13.0]);
+    }
+
+    #[test]
+    fn symmetric_eigenvalues_ascend_with_their_vectors() {
+        // [2 1; 1 2] has 1 with (1, -1) and 3 with (1, 1)
+        let mut a = [2.0, 1.0, 1.0, 2.0];
+        let values = symmetric_eigen(2, &mut a).unwrap();
+        assert!((values[0] - 1.0).abs() < 1e-15 && (values[1] - 3.0).abs() < 1e-15);
+        assert!((a[0] + a[1]).abs() < 1e-15 && (a[2] - a[3]).abs() < 1e-15);
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Sparse direct factors by MUMPS: analysed once for a pattern, factorised again as often as values change.
+//! Direct factors: of sparse matrices by MUMPS, analysed once for a pattern and factorised again as often as values change; of
+//! densely stored ones by LAPACK.
 
 use std::cell::Cell;
 use std::ptr;
@@ -6,6 +7,7 @@ use std::time::Instant;
 
 use squeal_sys as sys;
 
+use super::dense_factor::DenseFactor;
 use super::error::check;
 use super::{Comm, Matrix, Vector, memory};
 use crate::{Error, Result};
@@ -60,6 +62,8 @@ pub struct Factor {
     /// Keeps the session alive as long as the factor.
     comm: Option<Comm>,
     stats: FactorStats,
+    /// The factor of a densely stored matrix, instead of MUMPS's.
+    dense: Option<DenseFactor>,
     /// Passes, right-hand sides and seconds, counted by solves that leave the factor as it is.
     solves: Cell<(usize, usize, f64)>,
 }
@@ -80,7 +84,8 @@ const WORKSPACE_TRIES: usize = 4;
 impl Factor {
     /// A factor to be; nothing is computed yet.
     pub fn new(kind: FactorKind) -> Factor {
-        Factor { kind, raw: ptr::null_mut(), comm: None, stats: FactorStats::default(), solves: Cell::default() }
+        let (comm, stats, solves) = (None, FactorStats::default(), Cell::default());
+        Factor { kind, raw: ptr::null_mut(), comm, stats, dense: None, solves }
     }
 
     /// Orders the equations and makes the symbolic factorisation, unless that is done. No values are used.
@@ -150,6 +155,9 @@ impl Factor {
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
     pub fn factorise(&mut self, a: &Matrix) -> Result<()> {
+        if let Some(values) = a.dense_values()? {
+            return self.factorise_dense(a.n_local(), values);
+        }
         self.analyse(a)?;
         let start = Instant::now();
         let mut workspace = WORKSPACE;
@@ -168,6 +176,22 @@ impl Factor {
         self.stats.n_factorisations += 1;
         self.stats.factorisation_seconds += start.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    fn factorise_dense(&mut self, n: usize, values: Vec<f64>) -> Result<()> {
+        let start = Instant::now();
+        let factor = self.dense.insert(DenseFactor::new(self.kind, n, values)?);
+        self.stats.entries = factor.n_entries() as f64;
+        self.stats.used_mb = self.stats.entries * 8.0 / (1024.0 * 1024.0);
+        self.stats.flops = factor.flops();
+        self.stats.n_factorisations += 1;
+        self.stats.factorisation_seconds += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// The factor of a densely stored matrix.
+    pub(super) fn dense(&self) -> Option<&DenseFactor> {
+        self.dense.as_ref()
     }
 
     fn numeric(&self, a: &Matrix) -> Result<()> {
@@ -226,6 +250,12 @@ impl Factor {
     /// PETSc's, and MUMPS's with its code.
     pub fn solve(&self, b: &Vector, x: &mut Vector) -> Result<()> {
         let start = Instant::now();
+        if let Some(dense) = &self.dense {
+            x.copy_from(b)?;
+            x.local_mut(|x| dense.solve(x))?;
+            self.count(1, start);
+            return Ok(());
+        }
         // SAFETY: all handles are alive.
         check(unsafe { sys::MatSolve(self.raw, b.raw(), x.raw()) })?;
         self.count(1, start);
@@ -252,6 +282,9 @@ impl Factor {
     /// PETSc's.
     pub fn n_negative(&self) -> Result<usize> {
         debug_assert_eq!(self.kind, FactorKind::Symmetric);
+        if let Some(dense) = &self.dense {
+            return Ok(dense.n_negative());
+        }
         Ok(self.infog(12)? as usize)
     }
 

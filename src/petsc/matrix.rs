@@ -154,7 +154,38 @@ impl Matrix {
         (0..n).for_each(|_| rows.push(&columns, &[]));
         let mut matrix = Matrix::zeros(comm, rows)?;
         Matrix::change_values(&mut [&mut matrix], |all| all[0][0].copy_from_slice(values))?;
+        matrix.store_dense()?;
         Ok(matrix)
+    }
+
+    /// Stores all entries, also zeros, without column numbers: worth it where most are not zero. On one rank; on several nothing changes.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn store_dense(&mut self) -> Result<()> {
+        if self.comm.size() > 1 {
+            return Ok(());
+        }
+        // SAFETY: the handle is alive, and PETSc replaces what it stands for.
+        check(unsafe {
+            sys::MatConvert(self.raw, c"seqdense".as_ptr(), sys::MatReuse::MAT_INPLACE_MATRIX, &mut self.raw)
+        })
+    }
+
+    /// The entries by columns where they are stored densely. Not collective.
+    pub(super) fn dense_values(&self) -> Result<Option<Vec<f64>>> {
+        let (mut is_dense, mut pointer) = (sys::PetscBool::PETSC_FALSE, ptr::null());
+        // SAFETY: the array is valid between Get and Restore, for `n_local` columns of as many rows.
+        unsafe {
+            check(sys::PetscObjectTypeCompare(self.raw.cast(), c"seqdense".as_ptr(), &mut is_dense))?;
+            if is_dense == sys::PetscBool::PETSC_FALSE {
+                return Ok(None);
+            }
+            check(sys::MatDenseGetArrayRead(self.raw, &mut pointer))?;
+            let values = std::slice::from_raw_parts(pointer, self.n_local * self.n_local).to_vec();
+            check(sys::MatDenseRestoreArrayRead(self.raw, &mut pointer))?;
+            Ok(Some(values))
+        }
     }
 
     fn set_option(&self, option: sys::MatOption, on: bool) -> Result<()> {

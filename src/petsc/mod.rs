@@ -11,6 +11,7 @@
 
 mod block;
 pub mod dense;
+mod dense_factor;
 pub mod eigen;
 pub mod error;
 mod factor;

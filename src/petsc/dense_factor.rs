@@ -1,0 +1,141 @@
+//! Factors of matrices that are stored densely, by LAPACK.
+
+use squeal_sys as sys;
+
+use super::FactorKind;
+use crate::{Error, Result};
+
+/// `P L U` or `P L D L^T P^T` of a matrix, column-major.
+pub(super) struct DenseFactor {
+    kind: FactorKind,
+    n: usize,
+    values: Vec<f64>,
+    pivots: Vec<i32>,
+}
+
+impl DenseFactor {
+    /// Factorises an `n x n` matrix.
+    pub(super) fn new(kind: FactorKind, n: usize, mut values: Vec<f64>) -> Result<DenseFactor> {
+        assert_eq!(values.len(), n * n);
+        let (size, mut pivots, mut info) = (n as i32, vec![0; n], 0);
+        let leading = size.max(1);
+        // SAFETY: sizes are those of the arrays.
+        unsafe {
+            match kind {
+                FactorKind::Unsymmetric => {
+                    sys::dgetrf_(&size, &size, values.as_mut_ptr(), &leading, pivots.as_mut_ptr(), &mut info);
+                }
+                FactorKind::Symmetric => {
+                    let mut work = vec![0.0; 64 * n.max(1)];
+                    let (lower, length) = (c"L".as_ptr(), work.len() as i32);
+                    let (a, w) = (values.as_mut_ptr(), work.as_mut_ptr());
+                    sys::dsytrf_(lower, &size, a, &leading, pivots.as_mut_ptr(), w, &length, &mut info);
+                }
+            }
+        }
+        match info {
+            0 => Ok(DenseFactor { kind, n, values, pivots }),
+            _ => Err(Error::Library(format!(
+                "LAPACK's factorisation failed with code {info}: the matrix is singular: a part is held by nothing, or the load has \
+                 reached a limit point"
+            ))),
+        }
+    }
+
+    /// Overwrites right-hand sides, column by column, with the solutions.
+    pub(super) fn solve(&self, columns: &mut [f64]) {
+        match self.kind {
+            FactorKind::Unsymmetric if columns.len() == self.n => self.solve_one(columns),
+            _ => self.solve_many(columns),
+        }
+    }
+
+    /// One right-hand side: LAPACK's own solver would copy the factor to make it ready for many.
+    fn solve_one(&self, x: &mut [f64]) {
+        for (i, &pivot) in self.pivots.iter().enumerate() {
+            x.swap(i, pivot as usize - 1);
+        }
+        let (n, leading) = (self.n as i32, (self.n as i32).max(1));
+        // SAFETY: sizes are those of the arrays.
+        unsafe {
+            for (triangle, diagonal) in [(c"L", c"U"), (c"U", c"N")] {
+                let (uplo, diag, a) = (triangle.as_ptr(), diagonal.as_ptr(), self.values.as_ptr());
+                sys::dtrsv_(uplo, c"N".as_ptr(), diag, &n, a, &leading, x.as_mut_ptr(), &1);
+            }
+        }
+    }
+
+    fn solve_many(&self, columns: &mut [f64]) {
+        let (n, leading, mut info) = (self.n as i32, (self.n as i32).max(1), 0);
+        let count = (columns.len() / self.n.max(1)) as i32;
+        let (a, pivots, b) = (self.values.as_ptr(), self.pivots.as_ptr(), columns.as_mut_ptr());
+        // SAFETY: sizes are those of the arrays.
+        unsafe {
+            match self.kind {
+                FactorKind::Unsymmetric => {
+                    sys::dgetrs_(c"N".as_ptr(), &n, &count, a, &leading, pivots, b, &leading, &mut info);
+                }
+                FactorKind::Symmetric => {
+                    sys::dsytrs_(c"L".as_ptr(), &n, &count, a, &leading, pivots, b, &leading, &mut info);
+                }
+            }
+        }
+        debug_assert_eq!(info, 0, "all arguments are good");
+    }
+
+    /// Number of negative eigenvalues, by Sylvester's law of inertia: of D, whose 2 x 2 blocks have one each.
+    pub(super) fn n_negative(&self) -> usize {
+        let (mut i, mut count) = (0, 0);
+        while i < self.n {
+            let is_pair = self.pivots[i] < 0;
+            count += usize::from(is_pair || self.values[i * self.n + i] < 0.0);
+            i += 1 + usize::from(is_pair);
+        }
+        count
+    }
+
+    /// Operations of the factorisation.
+    pub(super) fn flops(&self) -> f64 {
+        let cube = (self.n as f64).powi(3);
+        cube / if self.kind == FactorKind::Symmetric { 3.0 } else { 1.5 }
+    }
+
+    /// Entries that are kept.
+    pub(super) fn n_entries(&self) -> usize {
+        self.values.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Symmetric with the eigenvalues -1, 1 and 3: one 2 x 2 pivot.
+    const SYMMETRIC: [f64; 9] = [0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 3.0];
+
+    #[test]
+    fn one_and_many_right_hand_sides_are_solved() {
+        // [0 1 0; 2 0 0; 0 0 4] by columns
+        let lu =
+            DenseFactor::new(FactorKind::Unsymmetric, 3, vec![0.0, 2.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 4.0]).unwrap();
+        let mut x = [3.0, 4.0, 8.0];
+        lu.solve(&mut x);
+        assert_eq!(x, [2.0, 3.0, 2.0]);
+        let mut x = [3.0, 4.0, 8.0, 0.0, 2.0, 0.0];
+        lu.solve(&mut x);
+        assert_eq!(x, [2.0, 3.0, 2.0, 1.0, 0.0, 0.0]);
+        let ldl = DenseFactor::new(FactorKind::Symmetric, 3, SYMMETRIC.to_vec()).unwrap();
+        let mut x = [5.0, 7.0, 6.0];
+        ldl.solve(&mut x);
+        assert_eq!(x, [7.0, 5.0, 2.0]);
+    }
+
+    #[test]
+    fn negative_eigenvalues_are_counted_and_singular_matrices_refused() {
+        assert_eq!(DenseFactor::new(FactorKind::Symmetric, 3, SYMMETRIC.to_vec()).unwrap().n_negative(), 1);
+        let minus: Vec<f64> = SYMMETRIC.iter().map(|x| -x).collect();
+        assert_eq!(DenseFactor::new(FactorKind::Symmetric, 3, minus).unwrap().n_negative(), 2);
+        let singular = DenseFactor::new(FactorKind::Unsymmetric, 2, vec![1.0, 1.0, 1.0, 1.0]).err().unwrap();
+        assert!(singular.to_string().contains("singular"), "{singular}");
+    }
+}
