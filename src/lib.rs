@@ -30,6 +30,7 @@
 //! | [`assembly`] | equations, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
 //! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
 //! | [`stability`] | linearisation, modes of a band, none missed | [`stability::solve`] |
+//! | [`reduction`] | reference nodes for contacts, super-elements and their files | [`reduction::craig_bampton::reduce`] |
 //! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
 //! | [`report`] | tables, CSV, VTU | |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
@@ -66,6 +67,8 @@
 //! | d | `penetration` | `-(gap0 + n.g)`, m |
 //! | p | `normal_force` | normal force of a point, N |
 //! | mu | `friction` | coefficient of friction |
+//! | xi | `correction` | what a reduced contact's penetration gets, m |
+//! | Psi, Phi, E | `basis` | constraint, fixed-interface and inertia modes of a super-element |
 //! | w | `weight` | area of a contact point, m2 |
 //! | k_n, k_t | `stiffness`, `stick` | penalty of contact and of sticking, N/m3 |
 //! | D | `tangent` | `-df/dg` of a contact point, N/m |
@@ -82,6 +85,7 @@ pub mod error;
 pub mod mesh;
 pub mod model;
 pub mod petsc;
+pub mod reduction;
 pub mod report;
 pub mod stability;
 pub mod sweep;

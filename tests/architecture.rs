@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each room with what it may import. `element` takes from `mesh` a test for good shapes, in its own tests.
-const ROOMS: [(&str, &[&str]); 13] = [
+const ROOMS: [(&str, &[&str]); 14] = [
     ("error", &[]),
     ("algebra", &[]),
     ("model", &["error"]),
@@ -18,8 +18,9 @@ const ROOMS: [(&str, &[&str]); 13] = [
     ("assembly", &["error", "algebra", "model", "mesh", "element", "contact", "petsc"]),
     ("equilibrium", &["error", "algebra", "model", "mesh", "contact", "petsc", "assembly"]),
     ("stability", &["error", "contact", "petsc", "assembly", "equilibrium"]),
-    ("sweep", &["error", "model", "mesh", "contact", "petsc", "assembly", "equilibrium", "stability"]),
-    ("report", &["error", "model", "mesh", "contact", "equilibrium", "stability", "sweep"]),
+    ("reduction", &["error", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"]),
+    ("sweep", &["error", "model", "mesh", "contact", "petsc", "assembly", "equilibrium", "stability", "reduction"]),
+    ("report", &["error", "model", "mesh", "element", "contact", "equilibrium", "stability", "sweep"]),
     (
         "cli",
         &[
@@ -33,6 +34,7 @@ const ROOMS: [(&str, &[&str]); 13] = [
             "assembly",
             "equilibrium",
             "stability",
+            "reduction",
             "sweep",
             "report",
         ],

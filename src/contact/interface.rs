@@ -63,7 +63,7 @@ pub enum Kind {
 }
 
 /// What the search found for a pair.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Statistics {
     /// Midside nodes of the slave that are too far from the master.
     pub dropped: Vec<u32>,
@@ -78,13 +78,13 @@ pub struct Statistics {
 }
 
 /// A contact point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ContactPoint {
     /// Index of its pair.
     pub pair: usize,
-    /// The slave's node.
-    pub node: u32,
-    /// Position of that node, m.
+    /// The slave's nodes that it stands for: its own, or the cell of a reference node. They come first in its trace.
+    pub nodes: Vec<u32>,
+    /// Position of the point, m.
     pub position: [f64; 3],
     /// Its law, with weight, normal and gap.
     pub law: law::Point,

@@ -36,9 +36,10 @@ mod pairing;
 mod projection;
 pub mod search;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 pub mod trace;
 
 pub use interface::{ContactPoint, Interface, Kind, Pair, Stage, Statistics};
 pub use law::{Point, Response, Status, Tangential};
+pub use motion::sliding;
 pub use trace::Trace;

@@ -12,7 +12,7 @@ const STILL: f64 = 1e-9;
 /// `|v| t = (I - n n^T) v` with `v = omega x (x - through)`
 ///
 /// or no friction where nothing moves, as on the axis. `size` is the length (m) that tells whether x lies on the axis.
-pub(super) fn sliding(master: &Rotation, x: [f64; 3], n: [f64; 3], size: f64) -> Tangential {
+pub fn sliding(master: &Rotation, x: [f64; 3], n: [f64; 3], size: f64) -> Tangential {
     let (x, n) = (Vector3::from(x), Vector3::from(n));
     let omega = master.speed * Vector3::from(master.axis);
     let v = omega.cross(&(x - Vector3::from(master.through)));

@@ -31,7 +31,7 @@ pub(super) fn add_pair(
         interface.trace.push_projection(point.node, &master.facets[point.facet], &point.shape);
         interface.points.push(ContactPoint {
             pair: interface.pairs.len(),
-            node: point.node,
+            nodes: vec![point.node],
             position: point.position,
             law: site.law(point, rotation),
         });
@@ -129,6 +129,7 @@ impl Site<'_> {
             weight: point.weight,
             normal: point.normal,
             gap: point.gap,
+            correction: 0.0,
             touching: point.gap <= TOUCH * point.size,
             separation: self.contact.separation,
             normal_law: self.contact.law,

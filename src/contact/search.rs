@@ -121,6 +121,32 @@ pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Opt
 
 /// What a search without a hit says in place of a facet and the coordinates on it.
 const NOTHING: [f64; 3] = [-1.0, 0.0, 0.0];
+/// Where a point of space comes down on a master.
+#[derive(Debug, Clone, Copy)]
+pub struct Landing {
+    /// Index of the master's facet in its surface.
+    pub facet: usize,
+    /// Shape functions of the facet's six nodes at the projection.
+    pub shape: [f64; 6],
+    /// The master's outward unit normal n at the projection.
+    pub normal: [f64; 3],
+    /// `(x - x_projection).n`, m.
+    pub gap: f64,
+}
+
+/// Projects points, each with the outward normal of the surface that it lies on (any length), on the closest facets of `master`
+/// that face them; none where no facet does.
+pub fn land(points: &[([f64; 3], [f64; 3])], master: &Surface, nodes: &[[f64; 3]]) -> Vec<Option<Landing>> {
+    let target = Target::new(master, nodes);
+    let of = |(x, outward): &([f64; 3], [f64; 3])| {
+        let x = Vector3::from(*x);
+        let point = Midside { weight: 0.0, normal: (*outward).into(), sizes: (0.0, 1.0) };
+        let Hit { facet, projection, normal } = target.closest(&x, &point, f64::INFINITY)?;
+        let gap = (x - projection.position).dot(&normal);
+        Some(Landing { facet, shape: shape(projection.at), normal: normal.into(), gap })
+    };
+    points.iter().map(of).collect()
+}
 
 /// What the slave's facets around a midside node add up to.
 #[derive(Debug, Clone, Copy, Default)]

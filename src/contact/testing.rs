@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use std::path::Path;
 
 /// A triangle of about unit size whose six nodes all lie a little off their places.
-pub fn bent_facet() -> impl Strategy<Value = Facet> {
+pub(in crate::contact) fn bent_facet() -> impl Strategy<Value = Facet> {
     let offsets = prop::array::uniform6(prop::array::uniform3(-0.08..0.08));
     offsets.prop_map(|offsets| Facet {
         nodes: std::array::from_fn(|j| Vector3::new(NODES[j][0], NODES[j][1], 0.0) + Vector3::from(offsets[j])),

@@ -116,7 +116,7 @@ impl Balance {
         };
         let reactions: Vec<_> = internal.into_iter().map(|(node, f)| (node, held(node, f))).collect();
         let support = Wrench::sum(comm, reactions.iter().map(|&(node, f)| (points[node as usize], f)));
-        let pairs = interface.pairs.iter().map(|pair| PairForces::new(interface, pair, responses)).collect();
+        let pairs = PairForces::all(interface, responses);
         Balance { applied, support, across_gaps, reactions, pairs }
     }
 
@@ -164,6 +164,11 @@ fn internal_forces_at_supports(families: &[&dyn Elements], dofs: &DofMap, u: &[[
 }
 
 impl PairForces {
+    /// What each pair carries under the responses of all points.
+    pub fn all(interface: &Interface, responses: &[Response]) -> Vec<PairForces> {
+        interface.pairs.iter().map(|pair| PairForces::new(interface, pair, responses)).collect()
+    }
+
     fn new(interface: &Interface, pair: &Pair, responses: &[Response]) -> PairForces {
         let own = &responses[pair.points.clone()];
         let mut forces = PairForces {

@@ -69,7 +69,11 @@ impl ContactSurface {
         let mut surface = ContactSurface::default();
         for (number, pair) in interface.pairs.iter().enumerate() {
             let own = interface.points[pair.points.clone()].iter().zip(&responses[pair.points.clone()]);
-            let values: HashMap<u32, _> = own.map(|(point, response)| (point.node, at(point, response))).collect();
+            let of_nodes = |(point, response)| {
+                let values = at(point, response);
+                point.nodes.iter().map(move |&node| (node, values))
+            };
+            let values: HashMap<u32, _> = own.flat_map(of_nodes).collect();
             surface.add(&mesh.surfaces[&pair.slave].facets, number as i32, &values);
         }
         surface

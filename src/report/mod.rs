@@ -1,5 +1,6 @@
 //! Results on disk and on screen: tables, CSV, VTU. Reads results, computes nothing of its own.
 
+pub mod contact_cells;
 pub mod contact_surface;
 pub mod folder;
 pub mod tables;

@@ -8,12 +8,14 @@ use std::io::{self, Write};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-/// Quadratic cells of one kind; VTK's node orders are those of [`crate::mesh::Mesh`].
+/// Cells of one kind; VTK's node orders are those of [`crate::mesh::Mesh`].
 pub enum Cells<'a> {
     /// 10-node tetrahedra.
     Tets(&'a [[u32; 10]]),
     /// 6-node triangles.
     Triangles(&'a [[u32; 6]]),
+    /// 3-node triangles.
+    Patches(&'a [[u32; 3]]),
 }
 
 /// Values of a named array.
@@ -42,6 +44,7 @@ pub struct Grid<'a> {
 }
 
 /// VTK's numbers of the cell types.
+const TRIANGLE: u8 = 5;
 const QUADRATIC_TRIANGLE: u8 = 22;
 const QUADRATIC_TETRA: u8 = 24;
 
@@ -50,6 +53,7 @@ impl Cells<'_> {
         match self {
             Cells::Tets(cells) => (cells.len(), 10, QUADRATIC_TETRA),
             Cells::Triangles(cells) => (cells.len(), 6, QUADRATIC_TRIANGLE),
+            Cells::Patches(cells) => (cells.len(), 3, TRIANGLE),
         }
     }
 
@@ -57,6 +61,7 @@ impl Cells<'_> {
         match self {
             Cells::Tets(cells) => cells.as_flattened(),
             Cells::Triangles(cells) => cells.as_flattened(),
+            Cells::Patches(cells) => cells.as_flattened(),
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::equilibrium::free_motions;
 use crate::mesh::{self, Mesh, Numbering, Piece};
 use crate::model::{self, Model, located};
 use crate::petsc::Comm;
+use crate::reduction;
 use crate::{Error, Result};
 
 use super::distribution::distribute;
@@ -58,6 +59,26 @@ impl Brake {
         let model = comm.agree(model::read(path))?;
         let piece = distribute(comm, || read_mesh(&model))?;
         comm.agree(Brake::new(model, piece, comm))
+    }
+
+    /// Reads a brake, with so many reference pairs in place of the contact points of the sliding pairs where `n_contacts` asks for them.
+    /// Collective.
+    ///
+    /// # Errors
+    /// See [`Brake::read`] and [`reduction::contacts::reduce`].
+    pub fn read_reduced(comm: &Comm, path: &Path, n_contacts: Option<usize>) -> Result<Brake> {
+        let mut brake = Brake::read(comm, path)?;
+        n_contacts.map_or(Ok(()), |n| brake.reduce_contacts(n))?;
+        Ok(brake)
+    }
+
+    /// Puts `n` reference pairs in place of the contact points of the sliding pairs.
+    ///
+    /// # Errors
+    /// See [`reduction::contacts::reduce`].
+    pub fn reduce_contacts(&mut self, n: usize) -> Result<()> {
+        self.interface = reduction::contacts::reduce(&self.model, &self.mesh, &self.interface, n)?;
+        Ok(())
     }
 
     /// A brake of a model and this rank's piece of its mesh, the contact points found by all of the team.
@@ -137,20 +158,28 @@ impl Brake {
     /// # Errors
     /// [`Error::Input`] where nothing slides.
     pub fn frictions(&self, asked: Option<&[f64]>) -> Result<Vec<f64>> {
-        if let Some(list) = asked {
-            return Ok(list.to_vec());
-        }
-        if !self.model.frictions.is_empty() {
-            return Ok(self.model.frictions.clone());
-        }
-        let mut own = self.interface.pairs.iter().filter(|pair| pair.swept).map(|pair| pair.friction);
-        own.next().map(|mu| vec![mu]).ok_or_else(|| {
-            Error::input(format!(
-                "{}: no contact pair slides, so there is no friction to sweep. Add the [[rotation]] of the disc, or give --friction 0",
-                self.model.file.display()
-            ))
-        })
+        frictions_of(asked, &self.model.frictions, &self.interface, &self.model.file)
     }
+}
+
+/// The friction values to analyse: those asked for, else the own ones of a file, else the swept pairs'.
+///
+/// # Errors
+/// [`Error::Input`] where nothing slides.
+pub fn frictions_of(asked: Option<&[f64]>, own: &[f64], interface: &Interface, file: &Path) -> Result<Vec<f64>> {
+    if let Some(list) = asked {
+        return Ok(list.to_vec());
+    }
+    if !own.is_empty() {
+        return Ok(own.to_vec());
+    }
+    let mut pairs = interface.pairs.iter().filter(|pair| pair.swept).map(|pair| pair.friction);
+    pairs.next().map(|mu| vec![mu]).ok_or_else(|| {
+        Error::input(format!(
+            "{}: no contact pair slides, so there is no friction to sweep. Add the [[rotation]] of the disc, or give --friction 0",
+            file.display()
+        ))
+    })
 }
 
 /// The mesh of a model.

@@ -5,8 +5,9 @@
 
 mod brake;
 mod distribution;
+mod reduced;
 
-pub use brake::{Brake, Families};
+pub use brake::{Brake, Families, frictions_of};
 
 use std::time::Instant;
 

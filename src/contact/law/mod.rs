@@ -5,7 +5,7 @@
 //! slave against the master,
 //!
 //! ```text
-//! d = -(gap0 + n.g)         penetration; gap0 counts as zero where the point may not open
+//! d = -(gap0 + n.g) + xi    penetration; gap0 counts as zero where the point may not open; xi only in reduced models
 //! f = p(d) n + f_t          force on the slave; the master takes the opposite
 //! D = -df/dg                so that K_contact = B^T D B, and the internal force is -B^T f
 //! ```
@@ -37,6 +37,8 @@ pub struct Point {
     pub normal: [f64; 3],
     /// Initial gap, m; negative where the surfaces overlap. Without meaning where the point may not open.
     pub gap: f64,
+    /// Added to the penetration, m: what makes a reduced model's law give the full model's force. Else 0.
+    pub correction: f64,
     /// Whether the surfaces touch before they are loaded: [`settle`] closes such points.
     pub touching: bool,
     /// Whether the point may open.
@@ -83,10 +85,10 @@ impl Point {
         self.normal.into()
     }
 
-    /// Penetration `d = -(gap0 + n.g)`, m, without the initial gap where the point may not open.
+    /// Penetration `d = -(gap0 + n.g) + xi`, m, with the correction xi and without the initial gap where the point may not open.
     pub fn penetration(&self, g: [f64; 3]) -> f64 {
         let gap = if self.separation { self.gap } else { 0.0 };
-        -(gap + self.n().dot(&Vector3::from(g)))
+        self.correction - (gap + self.n().dot(&Vector3::from(g)))
     }
 
     /// Projector on the tangent plane, `P = I - n n^T`.
@@ -143,7 +145,16 @@ mod testing {
             if let Tangential::Sliding { direction, .. } = &mut tangential {
                 *direction = t;
             }
-            Point { weight, normal: n, gap, touching: gap <= 0.0, separation, normal_law: law, tangential }
+            Point {
+                weight,
+                normal: n,
+                gap,
+                correction: 0.0,
+                touching: gap <= 0.0,
+                separation,
+                normal_law: law,
+                tangential,
+            }
         })
     }
 

@@ -26,6 +26,28 @@ pub(super) fn two_sided(point: &Point, d: f64) -> Normal {
     }
 }
 
+impl Point {
+    /// Slope `dp/dd` of the normal law at the penetration d, N/m, whether or not the point is closed there.
+    pub fn stiffness(&self, d: f64) -> f64 {
+        two_sided(self, d).stiffness
+    }
+
+    /// The penetration (m) at which the law gives the normal force `p` (N): the root of `w (k_1 d + k_3 d^3) = p`.
+    pub fn penetration_under(&self, p: f64) -> f64 {
+        let mut d = p / self.stiffness(0.0);
+        // |p(d)| grows ever faster with |d|, so that Newton comes down on the root from one side.
+        for _ in 0..100 {
+            let Normal { force, stiffness } = two_sided(self, d);
+            let step = (force - p) / stiffness;
+            d -= step;
+            if step.abs() <= 4.0 * f64::EPSILON * d.abs() {
+                break;
+            }
+        }
+        d
+    }
+}
+
 /// The law as the point has it: none where it is open, that is where it may open and `d <= 0`.
 pub(super) fn normal(point: &Point, d: f64) -> Option<Normal> {
     (d > 0.0 || !point.separation).then(|| two_sided(point, d))
@@ -43,6 +65,7 @@ mod tests {
             weight: 2.0,
             normal: [0.0, 0.0, 1.0],
             gap: 0.0,
+            correction: 0.0,
             touching: true,
             separation: true,
             normal_law: NormalLaw::Linear { stiffness: 3.0 },
@@ -64,6 +87,12 @@ mod tests {
             let h = 1e-5;
             let difference = two_sided(&point, d + h).force - two_sided(&point, d - h).force;
             prop_assert!((difference / (2.0 * h) - two_sided(&point, d).stiffness).abs() < 1e-8);
+        }
+
+        #[test]
+        fn the_penetration_under_a_force_gives_that_force(point in point(), p in -10.0..10.0) {
+            let d = point.penetration_under(p);
+            prop_assert!((two_sided(&point, d).force - p).abs() < 1e-13 * (1.0 + p.abs()));
         }
     }
 }

@@ -1,0 +1,247 @@
+//! Reduced contact: reference nodes in place of the contact points of the sliding pairs.
+//!
+//! A reference node follows the cell of contact points that it stands for as their mean rigid motion ([`coupling`]); its partner is the
+//! point of the master on which it projects. With the blocks `U_n` of the cell and the shape functions `N_j` of the master's facet
+//!
+//! ```text
+//! g = sum_n U_n u_n - sum_j N_j u_j          weight: the area of the cell
+//! ```
+//!
+//! so that reduced contact is another trace and nothing else. Source: Fazio, Nacivet, Sinou (ISMA 2014), section 3.
+
+use std::collections::HashMap;
+
+use crate::contact::interface::Pair;
+use crate::contact::search::{Landing, land};
+use crate::contact::{ContactPoint, Interface, Point, Statistics, sliding};
+use crate::element::coupling::{self, Cloud, mean_motion};
+use crate::mesh::{Mesh, Surface};
+use crate::model::{Model, located};
+use crate::{Error, Result};
+
+use super::layout::{self, Points};
+
+/// The interface with `n_contacts` reference pairs, shared by area among the sliding pairs; all other pairs stay as they are.
+///
+/// # Errors
+/// [`Error::Input`] with file, line and pair: nothing slides, fewer than three contact points a reference node, or a cell on a line.
+pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -> Result<Interface> {
+    let areas: Vec<f64> = full.pairs.iter().filter(|p| p.is_sliding()).map(|p| p.statistics.weight).collect();
+    let refuse = |what: String| Err(Error::input(format!("{}: {what}", model.file.display())));
+    if areas.is_empty() {
+        return refuse("no contact pair slides, so there is none to reduce. Add the [[rotation]] of the disc".into());
+    }
+    if n_contacts < areas.len() {
+        let n = areas.len();
+        return refuse(format!("{n_contacts} reference pairs for {n} sliding contacts. Give at least one each"));
+    }
+    let mut shares = layout::apportion(n_contacts, &areas).into_iter();
+    let mut reduced = Interface::default();
+    for (i, pair) in full.pairs.iter().enumerate() {
+        let first = reduced.points.len();
+        if pair.is_sliding() {
+            let site = Site { model, mesh, full, pair, line: model.contacts[i].line };
+            site.add(&mut reduced, shares.next().expect("a share for each sliding pair"))?;
+        } else {
+            for a in pair.points.clone() {
+                let (nodes, blocks) = full.trace.point(a);
+                reduced.trace.push(nodes, blocks);
+                reduced.points.push(full.points[a].clone());
+            }
+        }
+        let touching = reduced.points[first..].iter().filter(|point| point.law.touching).count();
+        let statistics = Statistics { touching, ..pair.statistics.clone() };
+        reduced.pairs.push(Pair { points: first..reduced.points.len(), statistics, ..pair.clone() });
+    }
+    Ok(reduced)
+}
+
+/// A sliding pair to be reduced.
+struct Site<'a> {
+    model: &'a Model,
+    mesh: &'a Mesh,
+    full: &'a Interface,
+    pair: &'a Pair,
+    line: usize,
+}
+
+impl Site<'_> {
+    fn refuse(&self, reason: &dyn std::fmt::Display) -> Error {
+        let advice = "Give a smaller number of contacts, or a finer mesh of the slave";
+        let what = format!("contact {:?}: {reason}. {advice}", self.pair.name);
+        Error::Input(located(&self.model.file, self.line, what))
+    }
+
+    /// Appends the pair's reference nodes.
+    fn add(&self, reduced: &mut Interface, n: usize) -> Result<()> {
+        let own = &self.full.points[self.pair.points.clone()];
+        let positions: Vec<[f64; 3]> = own.iter().map(|point| point.position).collect();
+        let areas: Vec<f64> = own.iter().map(|point| point.law.weight).collect();
+        let pieces = pieces(&self.mesh.surfaces[&self.pair.slave], own);
+        let points = Points { positions: &positions, areas: &areas, pieces: &pieces };
+        let cells = layout::cells(&points, n).map_err(|reason| self.refuse(&reason))?;
+        let cells: Vec<Vec<&ContactPoint>> = cells.iter().map(|cell| cell.iter().map(|&a| &own[a]).collect()).collect();
+        let centres: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|cell| (centre(cell), outward(cell))).collect();
+        let master = &self.mesh.surfaces[&self.pair.master];
+        for ((cell, (position, _)), landing) in cells.iter().zip(&centres).zip(land(&centres, master, &self.mesh.nodes))
+        {
+            let landing =
+                landing.ok_or_else(|| self.refuse(&"a reference node has no facet of the master before it"))?;
+            self.push(reduced, cell, *position, &landing)?;
+        }
+        Ok(())
+    }
+
+    /// Appends one reference node.
+    fn push(&self, reduced: &mut Interface, cell: &[&ContactPoint], x: [f64; 3], landing: &Landing) -> Result<()> {
+        let (nodes, weights) = cloud(cell);
+        let motion =
+            mean_motion(Cloud { nodes: &nodes, weights: &weights }, x).map_err(|reason| self.refuse(&reason))?;
+        let slaves: Vec<u32> = cell.iter().map(|point| point.nodes[0]).collect();
+        let facet = self.mesh.surfaces[&self.pair.master].facets[landing.facet];
+        let masters =
+            landing.shape.map(|n| std::array::from_fn(|i| std::array::from_fn(|j| if i == j { -n } else { 0.0 })));
+        reduced.trace.push(&[&slaves[..], &facet].concat(), &[&motion.displacement[..], &masters].concat());
+        reduced.points.push(ContactPoint {
+            pair: cell[0].pair,
+            nodes: slaves,
+            position: x,
+            law: self.law(cell, x, landing),
+        });
+        Ok(())
+    }
+
+    /// The cell's law with its whole area, at the reference node.
+    fn law(&self, cell: &[&ContactPoint], x: [f64; 3], landing: &Landing) -> Point {
+        let weight: f64 = cell.iter().map(|point| point.law.weight).sum();
+        let rotation = self.model.sliding(&self.model.contacts[cell[0].pair], self.mesh);
+        let rotation = rotation.expect("a sliding pair has a rotation");
+        Point {
+            weight,
+            normal: landing.normal,
+            gap: landing.gap,
+            touching: cell.iter().any(|point| point.law.touching),
+            tangential: sliding(rotation, x, landing.normal, weight.sqrt()),
+            ..cell[0].law
+        }
+    }
+}
+
+/// Positions and weights of a cell.
+fn cloud(cell: &[&ContactPoint]) -> (Vec<[f64; 3]>, Vec<f64>) {
+    cell.iter().map(|point| (point.position, point.law.weight)).unzip()
+}
+
+/// Where the reference node stands, m: on a plane face, in that plane.
+fn centre(cell: &[&ContactPoint]) -> [f64; 3] {
+    let (nodes, weights) = cloud(cell);
+    coupling::Cloud { nodes: &nodes, weights: &weights }.centroid()
+}
+
+/// The slave's mean outward normal: minus the master's.
+fn outward(cell: &[&ContactPoint]) -> [f64; 3] {
+    [0, 1, 2].map(|i| -cell.iter().map(|point| point.law.normal[i]).sum::<f64>())
+}
+
+/// The connected piece of the slave surface on which each point lies, numbered in the order of the points.
+fn pieces(surface: &Surface, points: &[ContactPoint]) -> Vec<usize> {
+    let mut root: HashMap<u32, u32> = HashMap::new();
+    fn find(root: &mut HashMap<u32, u32>, node: u32) -> u32 {
+        let above = *root.entry(node).or_insert(node);
+        if above == node {
+            return node;
+        }
+        let top = find(root, above);
+        root.insert(node, top);
+        top
+    }
+    for facet in &surface.facets {
+        let first = find(&mut root, facet[0]);
+        for &node in &facet[1..] {
+            let other = find(&mut root, node);
+            root.insert(other, first);
+        }
+    }
+    let mut number: HashMap<u32, usize> = HashMap::new();
+    let of = |point: &ContactPoint| {
+        let next = number.len();
+        *number.entry(find(&mut root, point.nodes[0])).or_insert(next)
+    };
+    points.iter().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::{cross, norm, sub};
+    use crate::contact::search::Alone;
+    use crate::contact::testing::{contact, model, pads_on_disc};
+
+    fn pads(n: usize) -> Result<(Interface, Interface, Mesh)> {
+        let mesh = pads_on_disc();
+        let names = ["inner", "outer"];
+        let pads = names.map(|name| contact(name, &format!("lining_{name}_face"), &format!("disc_{name}_face")));
+        let model = model(pads.to_vec(), true);
+        let full = Interface::build(&model, &mesh, &Alone).unwrap();
+        reduce(&model, &mesh, &full, n).map(|reduced| (full, reduced, mesh))
+    }
+
+    #[test]
+    fn every_contact_point_is_in_one_cell_and_areas_add_up() {
+        let (full, reduced, _) = pads(44).unwrap();
+        for (before, after) in full.pairs.iter().zip(&reduced.pairs) {
+            assert_eq!(after.points.len(), 22);
+            let own = &reduced.points[after.points.clone()];
+            let mut nodes: Vec<u32> = own.iter().flat_map(|point| point.nodes.clone()).collect();
+            nodes.sort_unstable();
+            let all: Vec<u32> = full.points[before.points.clone()].iter().map(|point| point.nodes[0]).collect();
+            assert_eq!(nodes, all);
+            let area: f64 = own.iter().map(|point| point.law.weight).sum();
+            assert!((area / before.statistics.weight - 1.0).abs() < 1e-12);
+        }
+    }
+
+    /// A rigid motion of everything moves no reference node against the disc; one of the pads alone moves it as its place in them moves.
+    #[test]
+    fn rigid_motions_are_exact() {
+        let (_, reduced, mesh) = pads(44).unwrap();
+        let (shift, turn) = ([1e-3, -2e-3, 5e-4], [0.01, 0.02, -0.03]);
+        let rigid = |x: [f64; 3]| [0, 1, 2].map(|i| shift[i] + cross(turn, x)[i]);
+        for (a, point) in reduced.points.iter().enumerate() {
+            let all = reduced.trace.gap(a, |n| rigid(mesh.nodes[n as usize]));
+            assert!(norm(all) < 1e-15, "{all:?}");
+            let pad = |n: u32| if point.nodes.contains(&n) { rigid(mesh.nodes[n as usize]) } else { [0.0; 3] };
+            assert!(norm(sub(reduced.trace.gap(a, pad), rigid(point.position))) < 1e-15);
+        }
+    }
+
+    /// What a cell's nodes get is the force at the reference node, without another moment; the disc gets its opposite at the same point.
+    #[test]
+    fn force_and_moment_are_preserved() {
+        let (_, reduced, mesh) = pads(12).unwrap();
+        let force = [3.0, -1.0, 2.0];
+        for (a, point) in reduced.points.iter().enumerate() {
+            let mut sums = [[0.0; 3]; 4];
+            reduced.trace.spread(a, force, |n, f| {
+                let side = if point.nodes.contains(&n) { 0 } else { 2 };
+                let moment = cross(sub(mesh.nodes[n as usize], point.position), f);
+                (0..3).for_each(|i| {
+                    sums[side][i] += f[i];
+                    sums[side + 1][i] += moment[i];
+                });
+            });
+            assert!(norm(sub(sums[0], force)) < 1e-13 && norm(sub(sums[2], force.map(|f| -f))) < 1e-13);
+            assert!(norm(sums[1]) < 1e-15 && norm(sums[3]) < 1e-15, "{sums:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_laid_out_is_refused_with_file_line_and_pair() {
+        let fine = pads(104).unwrap_err().to_string();
+        assert!(fine.contains("brake.toml:12") && fine.contains("\"inner\""), "{fine}");
+        assert!(fine.contains("156 contact points") && fine.contains("there are 118"), "{fine}");
+        assert!(pads(1).unwrap_err().to_string().contains("at least one each"));
+        let still = reduce(&model(vec![], false), &Mesh::default(), &Interface::default(), 6).unwrap_err();
+        assert!(still.to_string().contains("no contact pair slides"));
+    }
+}

@@ -1,0 +1,317 @@
+//! Craig-Bampton reduction of a structure with sliding contacts.
+//!
+//! Without its sliding contacts, and with all others linearised about an equilibrium (closed points stick), the structure is linear:
+//!
+//! ```text
+//! K = K_elements + sum_other B_a^T D_a B_a          F = F_ext + sum_other B_a^T (f_a + D_a g_a)
+//! ```
+//!
+//! Retained are the linear functionals `q_b = B u` of [`retained`]. Constraint modes and fixed-interface modes span the displacements,
+//!
+//! ```text
+//! u = Psi q_b + Phi q_m        B Psi = I,  K Psi = B^T L        K Phi = M Phi omega^2 + B^T N,  B Phi = 0
+//! ```
+//!
+//! Both come from one symmetric factor, of `K_s = K + B^T diag(k) B` with the contacts' own stiffness for k: for any k
+//!
+//! ```text
+//! Psi = K_s^-1 B^T S^-1,  S = B K_s^-1 B^T          A r = (I - Psi B) K_s^-1 r       solves K u + B^T n = r,  B u = 0
+//! ```
+//!
+//! so that no stiff spring enters, and no second factor. Static forces on the retained coordinates are answered exactly.
+//!
+//! What the modes left out would answer to the inertia of the constraint modes is, to first order in `(omega/omega_limit)^2`, what they answer
+//! statically. So the basis gets the static answer to the inertia of those motions `Psi Y` that matter, the modes Y of the reduced brake
+//! up to somewhat above half the limit: the *inertia modes* `E = A M Psi Y`, one for each. They take the error of a frequency at half the limit from
+//! some 1e-3 to some 1e-5.
+//!
+//! Sources: R. R. Craig, M. C. C. Bampton, *Coupling of substructures for dynamic analyses*, AIAA Journal 6 (1968), eq. 5-14; J.-G. Kim,
+//! P.-S. Lee, *An enhanced Craig-Bampton method*, Int. J. Numer. Meth. Engng 103 (2015) (the residual term; here as vectors of the basis).
+
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+use nalgebra::DMatrix;
+
+use crate::assembly::System;
+use crate::contact::{Interface, Trace};
+use crate::equilibrium::Equilibrium;
+use crate::petsc::{Block, Factor, FactorKind, FactorStats, Matrix, Vector, dense};
+use crate::{Error, Result};
+
+use super::functionals::{Functionals, retained};
+use super::linear::Linear;
+use super::modes::{self, Modes};
+
+/// Right-hand sides in one pass over a factor or matrix.
+const PANEL: usize = 64;
+
+/// Motions up to this part of the limit get inertia modes: half of it, up to which a super-element is meant to be used, and a margin, as
+/// the brake without inertia modes is too stiff.
+const REACH: f64 = 0.6;
+
+/// A structure to be reduced.
+pub struct Structure<'a> {
+    /// M, C, K and the load.
+    pub system: &'a System,
+    /// Its contacts.
+    pub interface: &'a Interface,
+    /// The equilibrium about which all contacts but the sliding ones are linearised.
+    pub equilibrium: &'a Equilibrium,
+    /// Lists of nodes whose mean motions are retained.
+    pub loaded: &'a [Vec<u32>],
+}
+
+/// What a reduction is doing.
+#[derive(Debug, Clone, Copy)]
+pub enum Event {
+    /// Factorises the structure's stiffness.
+    Factor,
+    /// So many constraint modes of so many are done.
+    Constraint(usize, usize),
+    /// The search space of the fixed-interface modes has so many vectors.
+    Fixed(usize),
+    /// Projects the matrices.
+    Project,
+}
+
+/// What a reduction has cost.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Costs {
+    /// The one factor.
+    pub factor: FactorStats,
+    /// Constraint modes, s.
+    pub constraint_seconds: f64,
+    /// Fixed-interface modes, s.
+    pub fixed_seconds: f64,
+    /// Their solves.
+    pub n_solves: usize,
+    /// Inertia modes and projection of M, C and K, s.
+    pub projection_seconds: f64,
+}
+
+/// The reduced structure. Coordinates: three for each retained point, then one for each fixed-interface mode and each inertia mode.
+pub struct Reduced {
+    /// The retained points, as a trace.
+    pub retained: Trace,
+    /// The contact points that they belong to.
+    pub contacts: Vec<usize>,
+    /// Frequencies of the fixed-interface modes, Hz.
+    pub frequencies: Vec<f64>,
+    /// The basis `[Psi Phi E]`.
+    pub basis: Block,
+    /// `T^T M T`.
+    pub mass: DMatrix<f64>,
+    /// `T^T C T`.
+    pub damping: DMatrix<f64>,
+    /// `T^T K T`, without the sliding contacts.
+    pub stiffness: DMatrix<f64>,
+    /// `T^T F_ext`, N.
+    pub load: Vec<f64>,
+    /// `T^T (F - F_ext)`: what the other contacts' forces are beside their linear part, N.
+    pub preload: Vec<f64>,
+    /// What it cost.
+    pub costs: Costs,
+}
+
+/// Reduces a structure to its sliding contacts and its fixed-interface modes below `limit` (Hz, may be infinite). Collective.
+///
+/// # Errors
+/// [`Error::Input`] where nothing slides or retained points are not independent; [`Error::NotConverged`]; PETSc's and MUMPS's.
+pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)) -> Result<Reduced> {
+    let system = structure.system;
+    let (retained, contacts) = retained(structure.interface, structure.loaded);
+    let functionals = Functionals::new(&retained, system);
+    let linear = Linear::new(structure, &retained, &contacts)?;
+    let mut costs = Costs::default();
+
+    progress(Event::Factor);
+    let mut factor = Factor::new(FactorKind::Symmetric);
+    factor.factorise(&linear.supported)?;
+    costs.factor = factor.stats();
+    let interior = Interior { functionals: &functionals, factor: &factor, system };
+
+    let start = Instant::now();
+    let mut basis = interior.constraint_modes(progress)?;
+    costs.constraint_seconds = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let modes = interior.modes(&basis, limit, progress)?;
+    basis.append(&modes.shapes);
+    costs.fixed_seconds = start.elapsed().as_secs_f64();
+    costs.n_solves = modes.n_solves;
+
+    progress(Event::Project);
+    let start = Instant::now();
+    let none = || DMatrix::zeros(0, 0);
+    let coarse = [project(none(), &basis, &system.m)?, project(none(), &basis, &linear.stiffness)?];
+    let motions = motions(&coarse[0], &coarse[1], &linear.contacts, REACH * limit, functionals.len())?;
+    basis.append(&interior.inertia_modes(&basis, &motions, &modes)?);
+    let [mass, stiffness] = coarse;
+    let (mass, stiffness) = (project(mass, &basis, &system.m)?, project(stiffness, &basis, &linear.stiffness)?);
+    let damping = project(none(), &basis, &system.c)?;
+    costs.projection_seconds = start.elapsed().as_secs_f64();
+    let load = shadow(&basis, &system.load)?;
+    let preload = shadow(&basis, &linear.preload)?;
+    let frequencies = modes.frequencies;
+    Ok(Reduced { retained, contacts, frequencies, basis, mass, damping, stiffness, load, preload, costs })
+}
+
+/// The static problem with all retained points held.
+struct Interior<'a> {
+    functionals: &'a Functionals,
+    factor: &'a Factor,
+    system: &'a System,
+}
+
+impl Interior<'_> {
+    /// `Psi = K_s^-1 B^T S^-1`
+    fn constraint_modes(&self, progress: &mut dyn FnMut(Event)) -> Result<Block> {
+        let n = self.functionals.len();
+        let mut psi = Block::zeros(self.system.k.comm(), self.system.dofs.n_local(), n);
+        let mut s = Vec::with_capacity(n * n);
+        for first in (0..n).step_by(PANEL) {
+            progress(Event::Constraint(first, n));
+            let columns = self.functionals.transposed(first..(first + PANEL).min(n)).solved_by(self.factor)?;
+            s.extend(self.functionals.apply(&columns));
+            psi.set_columns(first, &columns);
+        }
+        psi.transform(&inverse(DMatrix::from_vec(n, n, s))?);
+        Ok(psi)
+    }
+
+    /// `(I - Psi B) u`, with Psi the first columns of the basis.
+    fn hold(&self, basis: &Block, u: &mut Block) {
+        let moved = self.functionals.apply(u);
+        u.axpy(-1.0, &basis.leading_combined(self.functionals.len(), &moved, u.n_columns()));
+    }
+
+    /// `A r = (I - Psi B) K_s^-1 r`
+    fn answer(&self, basis: &Block, r: &Block) -> Result<Block> {
+        let mut u = r.solved_by(self.factor)?;
+        self.hold(basis, &mut u);
+        Ok(u)
+    }
+
+    /// Number of displacements that are free while the retained points are held.
+    fn n_dimensions(&self) -> usize {
+        self.system.dofs.n_global() - self.functionals.rank()
+    }
+
+    fn modes(&self, psi: &Block, limit: f64, progress: &mut dyn FnMut(Event)) -> Result<Modes> {
+        let (n, mass) = (self.n_dimensions(), &self.system.m);
+        let start = arbitrary(self.system, n.min(modes::WIDTH));
+        let mut invert = |r: &Block| self.answer(psi, r);
+        let mut modes = modes::below(limit, n, mass, &start, &mut invert, &mut |size| progress(Event::Fixed(size)))?;
+        // Orthogonalisation has magnified what rounding left of B Phi.
+        self.hold(psi, &mut modes.shapes);
+        Ok(modes)
+    }
+
+    /// What the interior does under the inertia of some motions `Psi Y`, beside the modes: `A M Psi Y`, M-orthonormal. It has
+    /// as many vectors as there is room for.
+    fn inertia_modes(&self, psi: &Block, motions: &DMatrix<f64>, modes: &Modes) -> Result<Block> {
+        if motions.ncols() == 0 {
+            return Ok(psi.columns(0..0));
+        }
+        let moved = psi.leading_combined(self.functionals.len(), motions.as_slice(), motions.ncols());
+        let mut answer = self.answer(psi, &moved.multiplied_by(&self.system.m)?)?;
+        let room = self.n_dimensions() - modes.frequencies.len();
+        modes::make_orthonormal(&modes.shapes, &mut answer, &self.system.m, room)?;
+        self.hold(psi, &mut answer);
+        Ok(answer)
+    }
+}
+
+/// The inverse of `S = B K_s^-1 B^T`, column-major.
+///
+/// A functional of held displacements alone is zero: its row gets a 1, which makes its constraint mode zero.
+fn inverse(s: DMatrix<f64>) -> Result<Vec<f64>> {
+    let mut symmetric = 0.5 * (&s + s.transpose());
+    (0..s.nrows()).filter(|&i| s[(i, i)] == 0.0).for_each(|i| symmetric[(i, i)] = 1.0);
+    let factor = symmetric.cholesky().ok_or_else(|| {
+        Error::input(
+            "the retained points of the reduction are not independent: two loads act on the same nodes, or a part is held by nothing. \
+             `squeal check` shows loads and free parts",
+        )
+    })?;
+    Ok(factor.inverse().as_slice().to_vec())
+}
+
+/// Vectors without any order, the same on any number of ranks.
+fn arbitrary(system: &System, n_columns: usize) -> Block {
+    let (mut block, labels) = (Block::zeros(system.k.comm(), system.dofs.n_local(), n_columns), system.dofs.labels());
+    for j in 0..n_columns {
+        for (value, label) in block.column_mut(j).iter_mut().zip(&labels) {
+            let hash = splitmix(label << 8 | j as u64);
+            *value = (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+        }
+    }
+    block
+}
+
+/// The finaliser of SplitMix64: neighbouring numbers give unrelated ones. Source: Steele, Lea, Flood, OOPSLA 2014.
+fn splitmix(mut z: u64) -> u64 {
+    z = z.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+/// How the retained points move in the modes below `limit` (Hz) of the brake reduced so far, its contacts closed as at the equilibrium and
+/// without friction: a column of retained coordinates each.
+fn motions(
+    mass: &DMatrix<f64>,
+    stiffness: &DMatrix<f64>,
+    contacts: &[[[f64; 3]; 3]],
+    limit: f64,
+    n: usize,
+) -> Result<DMatrix<f64>> {
+    let mut k = stiffness.clone();
+    for (c, d) in contacts.iter().enumerate() {
+        let (slave, master) = (3 * c, 3 * (contacts.len() + c));
+        for (row, column, sign) in
+            [(slave, slave, 1.0), (slave, master, -1.0), (master, slave, -1.0), (master, master, 1.0)]
+        {
+            (0..9).for_each(|e| k[(row + e / 3, column + e % 3)] += sign * d[e / 3][e % 3]);
+        }
+    }
+    // Coordinates that cannot move have no mass.
+    let live: Vec<usize> = (0..mass.nrows()).filter(|&i| mass[(i, i)] > 0.0).collect();
+    let [m, k] = [mass, &k].map(|a| a.select_rows(&live).select_columns(&live));
+    // M = L L^T,  L^-1 K L^-T y = omega^2 y,  x = L^-T y
+    let l = m.cholesky().ok_or_else(|| Error::Library("the reduced mass is not positive definite".into()))?.unpack();
+    let half = l.solve_lower_triangular(&k).expect("the diagonal of L is positive");
+    let mut y = l.solve_lower_triangular(&half.transpose()).expect("the diagonal of L is positive");
+    let squares = dense::symmetric_eigen(live.len(), y.as_mut_slice())?;
+    let n_below = squares.iter().filter(|&&square| square < (TAU * limit).powi(2)).count();
+    let x = l.tr_solve_lower_triangular(&y.columns(0, n_below)).expect("the diagonal of L is positive");
+    let mut motions = DMatrix::zeros(n, n_below);
+    for (row, &i) in live.iter().enumerate().filter(|&(_, &i)| i < n) {
+        motions.row_mut(i).copy_from(&x.row(row));
+    }
+    Ok(motions)
+}
+
+/// Extends `known = T^T A T` of the first columns of T to all of them, A symmetric, panel by panel.
+fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix<f64>> {
+    let (n, done) = (basis.n_columns(), known.nrows());
+    let mut product = known.resize(n, n, 0.0);
+    for first in (done..n).step_by(PANEL) {
+        let last = (first + PANEL).min(n);
+        let columns = basis.leading_gram(last, &basis.columns(first..last).multiplied_by(a)?);
+        for (j, column) in (first..last).zip(columns.chunks_exact(last)) {
+            for (i, &value) in column[..=j].iter().enumerate() {
+                (product[(i, j)], product[(j, i)]) = (value, value);
+            }
+        }
+    }
+    Ok(product)
+}
+
+/// `T^T f`
+fn shadow(basis: &Block, f: &Vector) -> Result<Vec<f64>> {
+    let mut column = Block::zeros(f.comm(), f.n_local(), 1);
+    f.local(|values| column.column_mut(0).copy_from_slice(values))?;
+    Ok(basis.gram(&column))
+}

@@ -1,0 +1,16 @@
+//! Reduced models: contact through a few reference nodes, and super-elements that keep nothing else.
+//!
+//! ```text
+//! Interface --layout--> cells --contacts--> Interface with reference nodes
+//! System + Interface + Equilibrium --craig_bampton--> Reduced --> SuperElement --> System + Interface of some hundred equations
+//! ```
+
+pub mod contacts;
+pub mod craig_bampton;
+pub mod file;
+pub mod functionals;
+pub mod layout;
+mod linear;
+pub mod modes;
+pub mod recovery;
+pub mod super_element;

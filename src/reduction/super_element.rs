@@ -1,0 +1,234 @@
+//! A super-element: a brake that has become one element with some hundred coordinates and node-to-node contacts.
+//!
+//! ```text
+//! coordinates  [ slave points | master points | loaded points | fixed-interface modes | inertia modes ]    three a point, one a mode
+//! nodes        three coordinates each, the last one filled up with held ones; coordinates that cannot move are held, too
+//! contact      g_i = q_slave,i - q_master,i                                                   B = [I -I 0 0]
+//! ```
+//!
+//! It enters the assembly as an element among elements and its contacts are an [`Interface`], so everything above
+//! is the full model's. Where the law of the contacts is another one than the full model's, the penetration of each gets a correction xi so that
+//! at the full model's equilibrium it gives the full model's force: `p(d + xi) = p_full` (Fazio, Nacivet, Sinou, eq. 11 and 12).
+
+use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
+use crate::contact::interface::Pair;
+use crate::contact::{ContactPoint, Interface, Trace};
+use crate::mesh::Numbering;
+use crate::model::NormalLaw;
+use crate::petsc::{Comm, Matrix};
+use crate::{Error, Result};
+
+use super::craig_bampton::{Reduced, Structure};
+
+/// Where a super-element comes from.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Origin {
+    /// Title of the model.
+    pub title: String,
+    /// The model file.
+    pub model: String,
+    /// The mesh file.
+    pub mesh: String,
+    /// Its FNV-1a hash.
+    pub mesh_hash: String,
+    /// The program and its version.
+    pub program: String,
+    /// Friction of the swept pairs at the equilibrium that it was made about.
+    pub friction: f64,
+    /// Equations of the full model.
+    pub n_equations: usize,
+    /// Band that the model analyses, Hz.
+    pub band: [f64; 2],
+    /// Fixed-interface modes are kept below this, Hz.
+    pub limit: f64,
+    /// Whether friction that turns with the velocity damps the modes.
+    pub friction_damping: bool,
+}
+
+/// A contact between a slave point and a master point, with the full model's equilibrium there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NodeContact {
+    /// Pair, position and law.
+    pub point: ContactPoint,
+    /// Relative displacement at the equilibrium, m.
+    pub displacement: [f64; 3],
+    /// Normal force there, N.
+    pub normal_force: f64,
+}
+
+/// The reduced brake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SuperElement {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// Positions of the retained points, m: slaves, masters, loads.
+    pub points: Vec<[f64; 3]>,
+    /// Frequencies of the fixed-interface modes, Hz.
+    pub frequencies: Vec<f64>,
+    /// Mass, column-major, of as many rows as there are coordinates.
+    pub mass: Vec<f64>,
+    /// Damping.
+    pub damping: Vec<f64>,
+    /// Stiffness without the contacts.
+    pub stiffness: Vec<f64>,
+    /// Generalised forces of the loads.
+    pub load: Vec<f64>,
+    /// Generalised forces of the contacts that were linearised.
+    pub preload: Vec<f64>,
+    /// The sliding pairs.
+    pub pairs: Vec<Pair>,
+    /// Their contacts, pair by pair.
+    pub contacts: Vec<NodeContact>,
+}
+
+impl SuperElement {
+    /// Puts together what was reduced; `loaded` are the positions of the load points. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn new(origin: Origin, structure: &Structure, reduced: &Reduced, loaded: &[[f64; 3]]) -> Result<SuperElement> {
+        let interface = structure.interface;
+        let gaps = crate::equilibrium::Contacts::new(interface, structure.system)?.gaps(&structure.equilibrium.u)?;
+        let mut pairs: Vec<Pair> = Vec::new();
+        let mut contacts: Vec<NodeContact> = Vec::new();
+        for pair in interface.pairs.iter().filter(|pair| pair.is_sliding()) {
+            let first = contacts.len();
+            for a in pair.points.clone() {
+                let nodes = vec![contacts.len() as u32];
+                let point = ContactPoint { pair: pairs.len(), nodes, ..interface.points[a].clone() };
+                let normal_force = structure.equilibrium.responses[a].normal_force;
+                contacts.push(NodeContact { point, displacement: gaps[a], normal_force });
+            }
+            pairs.push(Pair { points: first..contacts.len(), ..pair.clone() });
+        }
+        let slaves = contacts.iter().map(|contact| contact.point.position);
+        // The partner is where the reference node projects: a gap away.
+        let masters = contacts.iter().map(|NodeContact { point, .. }| {
+            std::array::from_fn(|i| point.position[i] - point.law.gap * point.law.normal[i])
+        });
+        let points = slaves.chain(masters).chain(loaded.iter().copied()).collect();
+        Ok(SuperElement {
+            origin,
+            points,
+            frequencies: reduced.frequencies.clone(),
+            mass: reduced.mass.as_slice().to_vec(),
+            damping: reduced.damping.as_slice().to_vec(),
+            stiffness: reduced.stiffness.as_slice().to_vec(),
+            load: reduced.load.clone(),
+            preload: reduced.preload.clone(),
+            pairs,
+            contacts,
+        })
+    }
+
+    /// Number of coordinates.
+    pub fn n_coordinates(&self) -> usize {
+        self.load.len()
+    }
+
+    /// Number of inertia modes among the coordinates.
+    pub fn n_inertia_modes(&self) -> usize {
+        self.n_coordinates() - 3 * self.points.len() - self.frequencies.len()
+    }
+
+    /// The contacts, under the full model's law or another one (of node-to-node elements: N/m and N/m3), corrected to the full model's forces.
+    pub fn interface(&self, law: Option<NormalLaw>) -> Interface {
+        let n = self.contacts.len() as u32;
+        let mut trace = Trace::new();
+        let identity = |s: f64| [[s, 0.0, 0.0], [0.0, s, 0.0], [0.0, 0.0, s]];
+        for i in 0..n {
+            trace.push(&[i, n + i], &[identity(1.0), identity(-1.0)]);
+        }
+        let pairs = self.pairs.iter().map(|pair| Pair { law: law.unwrap_or(pair.law), ..pair.clone() }).collect();
+        Interface { pairs, points: self.contacts.iter().map(|contact| contact.under(law)).collect(), trace }
+    }
+
+    /// The assembled system under `factor` times the loads. Collective.
+    ///
+    /// # Errors
+    /// METIS's and PETSc's.
+    pub fn assemble(&self, comm: &Comm, interface: &Interface, factor: f64) -> Result<System> {
+        let n = self.n_coordinates();
+        let is_held = |i: usize| i >= n || self.mass[i * n + i] == 0.0;
+        let held: Vec<[bool; 3]> = (0..n.div_ceil(3)).map(|node| [0, 1, 2].map(|i| is_held(3 * node + i))).collect();
+        let mut system = {
+            let nodes = Numbering::even(held.len(), comm.rank(), comm.size());
+            System::assemble(comm, &nodes, &held, &[&Member::new(self)], &[&interface.trace])?
+        };
+        // Every coordinate couples with every other.
+        [&mut system.k, &mut system.m, &mut system.c].into_iter().try_for_each(Matrix::store_dense)?;
+        let force = |i: usize| self.load.get(i).map_or(0.0, |load| factor * load + self.preload[i]);
+        let forces: Vec<_> = (0..held.len()).map(|n| (n as u32, [0, 1, 2].map(|i| force(3 * n + i)))).collect();
+        system.add_load(&forces)?;
+        Ok(system)
+    }
+
+    /// Refuses a band that the modes kept do not cover; gives a warning where they cover it poorly.
+    ///
+    /// # Errors
+    /// [`Error::Input`] from the limit of the fixed-interface modes on.
+    pub fn require_band(&self, band: [f64; 2]) -> Result<Option<String>> {
+        let (end, limit) = (band[1], self.origin.limit);
+        let advice = "Make one with a higher [reduction] band";
+        if end > limit {
+            return Err(Error::input(format!(
+                "the super-element holds fixed-interface modes up to {limit} Hz only, and modes up to {end} Hz are asked for. {advice}"
+            )));
+        }
+        let poor =
+            format!("modes above {} Hz are less exact: fixed-interface modes end at {limit} Hz. {advice}", 0.5 * limit);
+        Ok((end > 0.5 * limit * (1.0 + 1e-12)).then_some(poor))
+    }
+}
+
+impl NodeContact {
+    /// The contact point under a law.
+    fn under(&self, law: Option<NormalLaw>) -> ContactPoint {
+        let mut point = self.point.clone();
+        if let Some(law) = law {
+            (point.law.normal_law, point.law.weight) = (law, 1.0);
+        }
+        if self.normal_force != 0.0 {
+            // p(d + xi) = p_full
+            point.law.correction +=
+                point.law.penetration_under(self.normal_force) - point.law.penetration(self.displacement);
+        }
+        point
+    }
+}
+
+/// The super-element among the elements of an assembly.
+struct Member<'a> {
+    element: &'a SuperElement,
+    nodes: Vec<u32>,
+}
+
+impl<'a> Member<'a> {
+    fn new(element: &'a SuperElement) -> Self {
+        Member { element, nodes: (0..element.n_coordinates().div_ceil(3) as u32).collect() }
+    }
+}
+
+impl Connectivity for Member<'_> {
+    fn len(&self) -> usize {
+        1
+    }
+
+    fn nodes(&self, _: usize) -> &[u32] {
+        &self.nodes
+    }
+}
+
+impl Elements for Member<'_> {
+    fn matrices(&self, _: usize, out: &mut ElementMatrices) {
+        let (n, width) = (self.element.n_coordinates(), 3 * self.nodes.len());
+        let SuperElement { mass, damping, stiffness, .. } = self.element;
+        for (to, from) in [(&mut out.m, mass), (&mut out.c, damping), (&mut out.k, stiffness)] {
+            to.clear();
+            to.resize(width * width, 0.0);
+            for (row, values) in to.chunks_exact_mut(width).zip(from.chunks_exact(n)) {
+                row[..n].copy_from_slice(values);
+            }
+        }
+    }
+}

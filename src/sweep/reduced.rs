@@ -1,0 +1,101 @@
+//! From a brake at its equilibrium to a super-element.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::assembly::System;
+use crate::equilibrium::Equilibrium;
+use crate::petsc::Comm;
+use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
+use crate::reduction::recovery::OuterSurface;
+use crate::reduction::super_element::{Origin, SuperElement};
+use crate::{Error, Result};
+
+use super::Brake;
+
+impl Brake {
+    /// Reduces the brake about an equilibrium to its sliding contacts, the mean motions of its loaded sets and its fixed-interface modes
+    /// below `limit` (Hz). The surface's basis is on the root alone. Collective.
+    ///
+    /// # Errors
+    /// See [`craig_bampton::reduce`].
+    pub fn reduce(
+        &self,
+        comm: &Comm,
+        system: &System,
+        equilibrium: &Equilibrium,
+        limit: f64,
+        progress: &mut dyn FnMut(Event),
+    ) -> Result<(SuperElement, OuterSurface, Costs)> {
+        let loaded = self.loaded();
+        let structure = Structure { system, interface: &self.interface, equilibrium, loaded: &loaded };
+        let reduced = craig_bampton::reduce(&structure, limit, progress)?;
+        let centres: Vec<[f64; 3]> = loaded.iter().map(|nodes| self.centre(nodes)).collect();
+        let origin = comm.agree(self.origin(comm, system, equilibrium, limit))?;
+        let element = SuperElement::new(origin, &structure, &reduced, &centres)?;
+        let surface = OuterSurface::new(&self.mesh, &self.nodes, system, &reduced.basis)?;
+        Ok((element, surface, reduced.costs))
+    }
+
+    /// Fixed-interface modes are kept below this, Hz: the end of the model's reduction band, else twice its band's.
+    pub fn reduction_limit(&self) -> f64 {
+        self.model.reduction.as_ref().map_or(2.0 * self.model.band[1], |reduction| reduction.band[1])
+    }
+
+    /// The nodes of each loaded set, sets that carry several loads once.
+    fn loaded(&self) -> Vec<Vec<u32>> {
+        let mut names: Vec<&str> = self.model.loads.iter().map(|load| load.on.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        names.into_iter().filter_map(|name| self.mesh.node_set(name)).collect()
+    }
+
+    fn centre(&self, nodes: &[u32]) -> [f64; 3] {
+        let sum = |i: usize| nodes.iter().map(|&n| self.mesh.nodes[n as usize][i]).sum::<f64>();
+        [0, 1, 2].map(|i| sum(i) / nodes.len() as f64)
+    }
+
+    fn origin(&self, comm: &Comm, system: &System, equilibrium: &Equilibrium, limit: f64) -> Result<Origin> {
+        let mesh_hash = if comm.is_root() { hash(&self.model.mesh_file)? } else { String::new() };
+        Ok(Origin {
+            title: self.model.title.clone(),
+            model: self.model.file.display().to_string(),
+            mesh: self.model.mesh_file.display().to_string(),
+            mesh_hash,
+            program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
+            friction: equilibrium.friction,
+            n_equations: system.dofs.n_global(),
+            band: self.model.band,
+            limit,
+            friction_damping: self.model.friction_damping,
+        })
+    }
+}
+
+/// FNV-1a, 64 bits, of a file's bytes, in hexadecimal. Source: Fowler, Noll, Vo, RFC 9923.
+fn hash(path: &Path) -> Result<String> {
+    let mut file = File::open(path).map_err(Error::io(path))?;
+    let (mut hash, mut buffer) = (0xcbf2_9ce4_8422_2325_u64, vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut buffer).map_err(Error::io(path))? {
+            0 => return Ok(format!("{hash:016x}")),
+            n => buffer[..n].iter().for_each(|&byte| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hashes_are_the_published_ones() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("mesh");
+        for (text, expected) in [("", "cbf29ce484222325"), ("a", "af63dc4c8601ec8c"), ("foobar", "85944171f73967e8")] {
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(hash(&path).unwrap(), expected);
+        }
+    }
+}
