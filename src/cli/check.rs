@@ -1,25 +1,33 @@
 //! `squeal check`: what a model is, before anything is computed.
 
 use std::fmt::Write;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
-use crate::Result;
 use crate::element::tet10::{MassProperties, mass_properties};
 use crate::mesh::quality::scaled_jacobian;
 use crate::model::LoadKind;
 use crate::petsc::{Comm, Factor, FactorKind};
-
+use crate::report::contact_cells::ContactCells;
 use crate::sweep::Brake;
+use crate::{Error, Result};
 
 use super::ranked::Ranked;
 
-pub fn run(comm: &Comm, path: &Path) -> Result<()> {
-    let brake = Brake::read(comm, path)?;
+pub fn run(comm: &Comm, path: &Path, n_contacts: Option<usize>, picture: Option<&Path>) -> Result<()> {
+    let brake = Brake::read_reduced(comm, path, n_contacts)?;
     let mut text = format!("{}\n\n", brake.model.title);
     parts(&mut text, comm, &brake);
     pairs(&mut text, &brake);
+    if n_contacts.is_some() {
+        layouts(&mut text, &brake);
+    }
     supports(&mut text, &brake);
     tell(comm, &text)?;
+    if let Some(file) = picture {
+        comm.agree(if comm.is_root() { draw(file, &brake) } else { Ok(()) })?;
+    }
     brake.require_held(comm)?;
     memory(comm, &brake)
 }
@@ -100,6 +108,34 @@ fn pairs(text: &mut String, brake: &Brake) {
         );
     }
     text.push('\n');
+}
+
+/// The reference nodes of the sliding pairs: how many, and how even their cells are.
+fn layouts(text: &mut String, brake: &Brake) {
+    for pair in brake.interface.pairs.iter().filter(|pair| pair.is_sliding()) {
+        let own = &brake.interface.points[pair.points.clone()];
+        let areas = || own.iter().map(|point| 1e6 * point.law.weight);
+        let points = || own.iter().map(|point| point.nodes.len());
+        let _ = writeln!(
+            text,
+            "{}: {} reference nodes, cells of {:.1} to {:.1} mm2 (mean {:.1}) with {} to {} contact points",
+            pair.name,
+            own.len(),
+            areas().fold(f64::INFINITY, f64::min),
+            areas().fold(0.0, f64::max),
+            areas().sum::<f64>() / own.len() as f64,
+            points().min().unwrap_or(0),
+            points().max().unwrap_or(0)
+        );
+    }
+    text.push('\n');
+}
+
+/// Writes the cells of the reference nodes.
+fn draw(file: &Path, brake: &Brake) -> Result<()> {
+    let mut out = File::create(file).map(BufWriter::new).map_err(Error::io(file))?;
+    let picture = ContactCells::new(&brake.mesh, &brake.interface);
+    picture.grid().write(&mut out).and_then(|()| out.flush()).map_err(Error::io(file))
 }
 
 fn supports(text: &mut String, brake: &Brake) {

@@ -33,6 +33,22 @@ pub fn band(text: &str) -> Result<[f64; 2], String> {
     Ok(band)
 }
 
+/// One coefficient of friction.
+pub fn single(text: &str) -> Result<f64, String> {
+    match parse(text)?.0[..] {
+        [mu] => Ok(mu),
+        _ => Err("expected one value".into()),
+    }
+}
+
+/// A frequency in Hz.
+pub fn frequency(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        f if f > 0.0 => Ok(f),
+        f => Err(format!("{f} Hz is not above 0")),
+    }
+}
+
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }

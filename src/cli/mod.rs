@@ -4,10 +4,12 @@ mod check;
 mod friction;
 mod progress;
 mod ranked;
+mod reduce;
 mod results;
 mod stability;
 mod statics;
 mod study;
+mod subject;
 mod volume;
 
 use std::io::{self, Write};
@@ -18,6 +20,7 @@ use std::time::Duration;
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
+use crate::model::NormalLaw;
 use crate::petsc::{Comm, Session};
 use crate::{Error, Result};
 use friction::Frictions;
@@ -43,11 +46,22 @@ enum Command {
     Check {
         /// The model file
         model: PathBuf,
+        /// Show how so many reference pairs would be spread over the sliding contacts
+        #[arg(long, value_name = "N")]
+        contacts: Option<usize>,
+        /// A VTU file that shows the cells of the reference nodes (with --contacts)
+        #[arg(short, long, value_name = "FILE", requires = "contacts")]
+        output: Option<PathBuf>,
     },
     /// Find the static equilibrium under load, contact and friction
     Static {
         #[command(flatten)]
         run: Run,
+    },
+    /// Reduce a model to a super-element with a few hundred coordinates, which squeals like the whole
+    Reduce {
+        #[command(flatten)]
+        reduce: Reduce,
     },
     /// Find the complex modes of the band, and which of them squeal, for one friction or a sweep
     Stability {
@@ -56,17 +70,51 @@ enum Command {
         /// Frequency band in Hz, instead of the model file's
         #[arg(long, value_name = "FROM:TO", value_parser = friction::band, allow_hyphen_values = true)]
         band: Option<[f64; 2]>,
+        /// Reduce the model to a super-element at each friction, and find the modes of that
+        #[arg(long)]
+        anew: bool,
     },
+}
+
+/// What `reduce` takes.
+#[derive(Args)]
+struct Reduce {
+    /// The model file
+    model: PathBuf,
+    /// So many reference pairs over the sliding contacts, e.g. 104 (default: the model file's)
+    #[arg(long, value_name = "N")]
+    contacts: Option<usize>,
+    /// Friction at which the other contacts are linearised (default: the swept contacts' own)
+    #[arg(long, value_name = "MU", value_parser = friction::single, allow_hyphen_values = true)]
+    friction: Option<f64>,
+    /// Keep fixed-interface modes up to this frequency in Hz (default: the model file's reduction, else twice its band)
+    #[arg(long, value_name = "HZ", value_parser = friction::frequency, allow_hyphen_values = true)]
+    limit: Option<f64>,
+    /// The super-element's file (default: the model file's name with .se.h5)
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace an earlier file
+    #[arg(long)]
+    force: bool,
 }
 
 /// What all computing commands take.
 #[derive(Args)]
 struct Run {
-    /// The model file
+    /// The model file, or the file of a super-element
     model: PathBuf,
     /// Friction of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the model file's)
     #[arg(long, value_name = "MU", value_parser = friction::parse, allow_hyphen_values = true)]
     friction: Option<Frictions>,
+    /// So many reference pairs in place of the contact points of the sliding contacts, e.g. 104
+    #[arg(long, value_name = "N")]
+    contacts: Option<usize>,
+    /// Of a super-element: the normal law of its contacts, linear:K or cubic:K1,K3 in N/m and N/m3
+    #[arg(long, value_name = "LAW", value_parser = subject::law)]
+    law: Option<NormalLaw>,
+    /// Of a super-element: the loads as a multiple of the model's
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = subject::pressure, allow_hyphen_values = true)]
+    pressure: f64,
     /// Folder of the results (default: the model file's name with the command's)
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -126,9 +174,10 @@ fn tell_usage(usage: &clap::Error) -> i32 {
 
 fn run(command: &Command, comm: &Comm) -> Result<()> {
     match command {
-        Command::Check { model } => check::run(comm, model),
+        Command::Check { model, contacts, output } => check::run(comm, model, *contacts, output.as_deref()),
         Command::Static { run } => statics::run(comm, run),
-        Command::Stability { run, band } => stability::run(comm, run, *band),
+        Command::Reduce { reduce } => reduce::run(comm, reduce),
+        Command::Stability { run, band, anew } => stability::run(comm, run, *band, *anew),
     }
 }
 

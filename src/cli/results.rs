@@ -6,7 +6,6 @@ use crate::equilibrium::{Balance, Equilibrium};
 use crate::petsc::{Comm, Vector};
 use crate::report::contact_surface::{ContactSurface, Fields};
 use crate::report::folder::Folder;
-use crate::report::tables::PairRow;
 use crate::report::vtu::{Cells, Grid, Values};
 use crate::stability::Mode;
 use crate::{Error, Result};
@@ -39,13 +38,6 @@ impl State {
             &equilibrium.responses,
         );
         Ok(State { u, balance, friction: equilibrium.friction })
-    }
-
-    /// Rows of the contact table.
-    pub fn pair_rows(&self, brake: &Brake) -> Vec<PairRow> {
-        let rows = brake.interface.pairs.iter().zip(&self.balance.pairs);
-        rows.map(|(pair, forces)| PairRow { friction: self.friction, pair: pair.name.clone(), forces: forces.clone() })
-            .collect()
     }
 
     /// The checks in words: balance of forces and moments, torque of each rotation. Collective.
@@ -127,7 +119,7 @@ fn part_nodes(brake: &Brake, part: &str) -> Vec<bool> {
 }
 
 /// A friction as file names have it: three digits, more where those would make two values one.
-fn friction_name(friction: f64) -> String {
+pub fn friction_name(friction: f64) -> String {
     let short = format!("{friction:.3}");
     if short.parse() == Ok(friction) { short } else { friction.to_string() }
 }
@@ -144,9 +136,13 @@ pub fn write_mode(
     let [re, im] = [0, 1].map(|i| drawing.at_nodes(&shape[i]));
     let parts = drawing.at_tets(|e| brake.mesh.tet_part[e] as i32);
     let point_data = vec![("real", Values::Vectors(&re)), ("imaginary", Values::Vectors(&im))];
-    // The number keeps modes apart whose frequencies are nearly the same.
-    let name = format!("mode_mu{}_{number:03}_{:.0}Hz", friction_name(friction), mode.frequency());
+    let name = mode_name(friction, number, mode);
     drawing.write(system.k.comm(), folder, &name, point_data, vec![("part", Values::Integers(&parts))])
+}
+
+/// Name, without its ending, of a mode's file. The number keeps modes apart whose frequencies are nearly the same.
+pub fn mode_name(friction: f64, number: usize, mode: &Mode) -> String {
+    format!("mode_mu{}_{number:03}_{:.0}Hz", friction_name(friction), mode.frequency())
 }
 
 /// Name, without its ending, of the file of the displacement at which a solve gave up.

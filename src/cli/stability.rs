@@ -3,36 +3,31 @@
 use std::time::Instant;
 
 use crate::Result;
+use crate::assembly::System;
 use crate::petsc::{Comm, ORDERING};
 use crate::report::tables::{self, ModeRow};
-use crate::stability::Count;
-use crate::sweep::Costs;
+use crate::stability::{Band, Count};
+use crate::sweep::{Costs, Sweep};
 
 use super::Run;
-use super::results;
-use super::study::Study;
+use super::study::{Study, Visit};
+use super::subject::Subject;
 
-pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
+pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>, anew: bool) -> Result<()> {
     let start = Instant::now();
     let study = Study::new(comm, run, "stability")?;
-    let band = band.unwrap_or(study.brake.model.band);
+    let band = study.subject.band(band)?;
     let (mut modes, mut counts) = (Vec::new(), Vec::new());
-    let outcome = study.run(comm, |visit| {
+    let outcome = study.run(comm, |mut visit| {
         let (friction, n_before) = (visit.equilibrium.friction, modes.len());
-        let found = visit.sweep.modes(visit.equilibrium, band, &mut |event| visit.study.say(&event))?;
-        for (i, mode) in found.modes.iter().enumerate() {
-            modes.push(ModeRow::new(friction, i, mode));
-            if mode.is_unstable() {
-                let (folder, brake) = (visit.study.folder.as_ref(), &visit.study.brake);
-                results::write_mode(folder, brake, visit.system, friction, (i + 1, mode))?;
-            }
-        }
+        let found = if anew { reduced_modes(comm, &visit, band)? } else { full_modes(&mut visit, band)? };
+        modes.extend(found.modes.iter().enumerate().map(|(i, mode)| ModeRow::new(friction, i, mode)));
         let rows = &modes[n_before..];
         *visit.text += &modes_text(rows, &found.count, found.n_solves);
         counts.push((friction, found.count));
         Ok(format!("{} modes, {} unstable", rows.len(), rows.iter().filter(|row| row.unstable).count()))
     })?;
-    let mut summary = format!("{}: complex modes {}-{} Hz\n\n", study.brake.model.title, band[0], band[1]);
+    let mut summary = format!("{}: complex modes {}-{} Hz\n\n", study.subject.title(), band[0], band[1]);
     if !counts.is_empty() {
         summary += &format!("{}\n{}\n", tables::sweep(&modes, &counts), tables::verdict(&modes));
     }
@@ -44,6 +39,31 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>) -> Result<()> {
         folder.write("details.txt", |out| out.write_all(outcome.record.text.as_bytes()))?;
     }
     study.finish(outcome, &summary)
+}
+
+/// The modes about the equilibrium, the unstable ones drawn.
+fn full_modes(visit: &mut Visit, band: [f64; 2]) -> Result<Band> {
+    let found = visit.sweep.modes(visit.equilibrium, band, &mut |event| visit.study.say(&event))?;
+    draw(visit.study, visit.study.subject.as_ref(), visit.system, visit.equilibrium.friction, &found)?;
+    Ok(found)
+}
+
+/// The modes of the super-element that the brake is about the equilibrium.
+fn reduced_modes(comm: &Comm, visit: &Visit, band: [f64; 2]) -> Result<Band> {
+    let (study, friction) = (visit.study, visit.equilibrium.friction);
+    let subject = study.subject.reduce(visit.system, visit.equilibrium)?;
+    let (band, system) = (subject.band(Some(band))?, subject.assemble(comm)?);
+    let mut sweep = Sweep::new(&system, subject.interface())?;
+    sweep.friction_damping = subject.friction_damping();
+    let equilibrium = sweep.equilibrium(friction, &mut |event| study.say(&event))?;
+    let found = sweep.modes(&equilibrium, band, &mut |event| study.say(&event))?;
+    draw(study, subject.as_ref(), &system, friction, &found)?;
+    Ok(found)
+}
+
+fn draw(study: &Study, subject: &dyn Subject, system: &System, friction: f64, found: &Band) -> Result<()> {
+    let unstable = found.modes.iter().enumerate().filter(|(_, mode)| mode.is_unstable());
+    unstable.into_iter().try_for_each(|(i, mode)| subject.draw(study.folder.as_ref(), system, friction, (i + 1, mode)))
 }
 
 /// The modes of one friction value, for people.

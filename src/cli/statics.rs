@@ -9,7 +9,7 @@ use super::study::Study;
 pub fn run(comm: &Comm, run: &Run) -> Result<()> {
     let study = Study::new(comm, run, "static")?;
     let outcome = study.run(comm, |_| Ok("equilibrium".into()))?;
-    let (title, place) = (&study.brake.model.title, study.place.display());
+    let (title, place) = (study.subject.title(), study.place.display());
     let summary = format!("{title}\n{}results in {place}\n", outcome.record.text);
     study.finish(outcome, &summary)
 }

@@ -3,20 +3,22 @@
 use std::path::PathBuf;
 
 use crate::assembly::System;
+use crate::contact::Pair;
 use crate::equilibrium::{Equilibrium, Step};
 use crate::petsc::Comm;
 use crate::report::folder::Folder;
 use crate::report::tables::{self, PairRow};
-use crate::sweep::{Brake, Costs, Event, Families, Sweep};
+use crate::sweep::{Costs, Event, Sweep};
 use crate::{Error, Result};
 
 use super::Run;
 use super::progress::Progress;
-use super::results::{self, State};
+use super::results;
+use super::subject::{self, Subject, Told};
 
 /// A brake about to be analysed over friction.
 pub struct Study {
-    pub brake: Brake,
+    pub subject: Box<dyn Subject>,
     pub folder: Option<Folder>,
     pub place: PathBuf,
     frictions: Vec<f64>,
@@ -44,33 +46,31 @@ pub struct Outcome {
 impl Study {
     /// Reads and checks everything before anything is computed. Collective.
     pub fn new(comm: &Comm, run: &Run, command: &str) -> Result<Study> {
-        let brake = Brake::read(comm, &run.model)?;
-        brake.require_held(comm)?;
-        let frictions = brake.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
+        let subject = subject::read(comm, run)?;
+        let frictions = subject.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
         let folder = results::folder(comm, run, command)?;
         let progress = Progress::new(comm, frictions.len(), run.verbose);
-        Ok(Study { brake, folder, place: run.folder(command), frictions, progress })
+        Ok(Study { subject, folder, place: run.folder(command), frictions, progress })
     }
 
     /// Finds the equilibria one after the other; `each` makes of them what the command is for, and says in a few words what
     /// it found. Collective.
     pub fn run(&self, comm: &Comm, mut each: impl FnMut(Visit) -> Result<String>) -> Result<Outcome> {
         self.progress.say("assembling");
-        let families = self.brake.families()?;
-        let system = self.brake.assemble(comm, &families)?;
-        let mut sweep = Sweep::new(&system, &self.brake.interface)?;
-        sweep.friction_damping = self.brake.model.friction_damping;
+        let system = self.subject.assemble(comm)?;
+        let mut sweep = Sweep::new(&system, self.subject.interface())?;
+        sweep.friction_damping = self.subject.friction_damping();
         let (mut record, mut failure) = (Record::default(), None);
         for &friction in &self.frictions {
             let mut equilibrium = match sweep.equilibrium(friction, &mut |event| self.say(&event)) {
                 Ok(equilibrium) => equilibrium,
                 Err(error) => {
                     record.add_steps(friction, sweep.path().steps());
-                    failure = Some(self.save_last(error, comm, &system, &sweep)?);
+                    failure = Some(self.save_last(error, &system, &sweep)?);
                     break;
                 }
             };
-            record.add(self, &families, &system, &mut equilibrium)?;
+            record.add(self, &system, &mut equilibrium)?;
             let (text, equilibrium) = (&mut record.text, &equilibrium);
             let done = each(Visit { study: self, system: &system, sweep: &mut sweep, equilibrium, text })?;
             self.progress.advance(&format!("friction {friction:.3}: {done}"));
@@ -103,12 +103,11 @@ impl Study {
     }
 
     /// Keeps the state in which a solve gave up, and says where.
-    fn save_last(&self, error: Error, comm: &Comm, system: &System, sweep: &Sweep) -> Result<Error> {
+    fn save_last(&self, error: Error, system: &System, sweep: &Sweep) -> Result<Error> {
         let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return Err(error) };
         let folder = self.folder.as_ref();
-        results::write_last(folder, &self.brake, system, u)?;
-        let ending = if comm.size() == 1 { "vtu" } else { "pvtu" };
-        let file = self.place.join(results::LAST_STATE).with_extension(ending);
+        let name = self.subject.draw_last(folder, system, u)?;
+        let file = self.place.join(name);
         let place = file.display();
         Ok(Error::NotConverged(format!("{reason}. The last state is in {place}")))
     }
@@ -124,20 +123,15 @@ pub struct Record {
 
 impl Record {
     /// Reports an equilibrium, whose steps it takes, and draws it. Collective.
-    fn add(
-        &mut self,
-        study: &Study,
-        families: &Families,
-        system: &System,
-        equilibrium: &mut Equilibrium,
-    ) -> Result<()> {
-        let brake = &study.brake;
-        let state = State::new(brake, families, system, equilibrium)?;
-        let comm = system.k.comm();
-        self.text += &equilibrium_text(comm, brake, &state, &equilibrium.steps);
-        self.rows.extend(state.pair_rows(brake));
-        self.steps.extend(equilibrium.steps.drain(..).map(|step| (state.friction, step)));
-        state.write(comm, study.folder.as_ref(), brake, &equilibrium.responses)
+    fn add(&mut self, study: &Study, system: &System, equilibrium: &mut Equilibrium) -> Result<()> {
+        let (subject, friction) = (&study.subject, equilibrium.friction);
+        let told = subject.tell(study.folder.as_ref(), system, equilibrium)?;
+        let pairs = &subject.interface().pairs;
+        self.text += &equilibrium_text(friction, pairs, &told, &equilibrium.steps);
+        let rows = pairs.iter().zip(told.pairs);
+        self.rows.extend(rows.map(|(pair, forces)| PairRow { friction, pair: pair.name.clone(), forces }));
+        self.steps.extend(equilibrium.steps.drain(..).map(|step| (friction, step)));
+        Ok(())
     }
 
     /// Keeps the steps towards an equilibrium that was not reached.
@@ -152,9 +146,9 @@ impl Record {
     }
 }
 
-/// The report of one equilibrium. Collective.
-fn equilibrium_text(comm: &Comm, brake: &Brake, state: &State, steps: &[Step]) -> String {
-    let mut text = format!("\nfriction {:.3}\n", state.friction);
+/// The report of one equilibrium.
+fn equilibrium_text(friction: f64, pairs: &[Pair], told: &Told, steps: &[Step]) -> String {
+    let mut text = format!("\nfriction {friction:.3}\n");
     for step in steps {
         let last = step.iterations.last().expect("a step has its start");
         text += &format!(
@@ -167,12 +161,12 @@ fn equilibrium_text(comm: &Comm, brake: &Brake, state: &State, steps: &[Step]) -
             last.counts.slip
         );
     }
-    let width = brake.interface.pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
+    let width = pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
     text += &format!(
         "  {:width$}  {:>6} {:>6} {:>6}  {:>12} {:>14} {:>10}\n",
         "pair", "open", "stick", "slip", "normal N", "tangential N", "peak MPa"
     );
-    for (pair, forces) in brake.interface.pairs.iter().zip(&state.balance.pairs) {
+    for (pair, forces) in pairs.iter().zip(&told.pairs) {
         let counts = forces.counts;
         text += &format!(
             "  {:width$}  {:>6} {:>6} {:>6}  {:>12.2} {:>14.2} {:>10.3}\n",
@@ -185,6 +179,6 @@ fn equilibrium_text(comm: &Comm, brake: &Brake, state: &State, steps: &[Step]) -
             1e-6 * forces.peak_pressure
         );
     }
-    let checks: Vec<String> = state.checks(comm, brake).lines().map(|line| format!("  {line}\n")).collect();
+    let checks: Vec<String> = told.checks.lines().map(|line| format!("  {line}\n")).collect();
     text + &checks.concat()
 }
