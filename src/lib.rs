@@ -16,7 +16,9 @@
 //!                                                                                |
 //!                         Modes <--stability (PEP)-- Pencil { M, C, K } <--linearise
 //!                           |
-//!                         sweep over friction --> cli --> report: tables, CSV, VTU
+//!             sweep over friction <--> tracking: branches, Hopf points
+//!                           |
+//!                          cli --> report: tables, CSV, VTU
 //! ```
 //!
 //! Every stage is one room with one main function from typed input to typed output:
@@ -29,8 +31,9 @@
 //! | [`contact`] | search, trace `g = B u`, contact and friction laws | [`contact::Interface::build`] |
 //! | [`assembly`] | equations, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
 //! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
-//! | [`stability`] | linearisation, modes of a band, none missed | [`stability::solve`] |
+//! | [`stability`] | linearisation, modes of a band, none missed; what explains them | [`stability::solve`] |
 //! | [`reduction`] | reference nodes for contacts, super-elements and their files | [`reduction::craig_bampton::reduce`] |
+//! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
 //! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
 //! | [`report`] | tables, CSV, VTU | |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
@@ -73,6 +76,7 @@
 //! | k_n, k_t | `stiffness`, `stick` | penalty of contact and of sticking, N/m3 |
 //! | D | `tangent` | `-df/dg` of a contact point, N/m |
 //! | lambda = a + i omega | `lambda`, `growth_rate`, `frequency` | eigenvalue 1/s; a > 0 squeals |
+//! | x, y | `right`, `left` | vectors of a mode, `P(lambda) x = 0`, `y^H P(lambda) = 0` |
 //! | alpha, beta | `rayleigh` | `C = alpha M + beta K` of a part |
 
 mod algebra;
@@ -89,5 +93,6 @@ pub mod reduction;
 pub mod report;
 pub mod stability;
 pub mod sweep;
+pub mod tracking;
 
 pub use error::{Error, Result};

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 const ROOMS: [(&str, &[&str]); 14] = [
     ("error", &[]),
     ("algebra", &[]),
+    ("tracking", &["error"]),
     ("model", &["error"]),
     ("mesh", &["error", "algebra", "model"]),
     ("element", &["algebra", "mesh"]),
