@@ -20,7 +20,7 @@ const FUNCTIONS: &[&str] = &[
     "IS(CreateGeneral|CreateStride|Destroy)",
     "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
     "Mat(CreateSeqAIJWithArrays|CreateMPIAIJWithSplitArrays|MPIAIJGetSeqAIJ|SeqAIJGetArray|SeqAIJRestoreArray|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|ConvertIfNeeded)",
-    "Mat(MatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseGetArrayRead|DenseRestoreArrayRead|Convert|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
+    "Mat(MatMult|TransposeMatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseGetArrayRead|DenseRestoreArrayRead|Convert|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
     "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
     "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",
     "KSP(Create|Destroy|Solve|GMRESSetRestart|SetPCSide|SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
@@ -31,6 +31,7 @@ const FUNCTIONS: &[&str] = &[
     "PEP(Solve|GetST|GetConverged|GetEigenpair|GetIterationNumber|GetConvergedReason|MonitorSet|SetStoppingTestFunction|StoppingBasic|SetInitialSpace|SetConvergenceTest|TOARSetRestart|TOARSetLocking|GetDimensions)",
     "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
     "d(gemm|geev|syev|getrf|getrs|sytrf|sytrs|trsv)_",
+    "zgesv_",
     "METIS_PartMeshDual",
     "squeal_.*",
 ];

@@ -9,6 +9,7 @@ MPI_Datatype squeal_type_double(void);
 MPI_Datatype squeal_type_int(void);
 MPI_Datatype squeal_type_byte(void);
 PetscErrorCode squeal_raise(const char *function, const char *message);
-/* BLAS that PETSc's headers leave out. */
+/* BLAS and LAPACK that PETSc's headers leave out. */
 void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
             double *x, const int *incx);
+void zgesv_(const int *n, const int *columns, void *a, const int *lda, int *pivots, void *b, const int *ldb, int *info);

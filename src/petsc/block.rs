@@ -24,6 +24,9 @@ struct View {
     raw: sys::Mat,
 }
 
+/// MatMatMult and its like.
+type Multiply = unsafe extern "C" fn(sys::Mat, sys::Mat, sys::MatReuse, f64, *mut sys::Mat) -> sys::PetscErrorCode;
+
 impl Drop for View {
     fn drop(&mut self) {
         // SAFETY: this handle owns the matrix object; the values stay their owner's.
@@ -132,12 +135,27 @@ impl Block {
     /// # Errors
     /// PETSc's.
     pub fn multiplied_by(&self, a: &Matrix) -> Result<Block> {
+        self.product(a, sys::MatMatMult)
+    }
+
+    /// `A^T self`.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn multiplied_by_transpose(&self, a: &Matrix) -> Result<Block> {
+        self.product(a, sys::MatTransposeMatMult)
+    }
+
+    fn product(&self, a: &Matrix, multiply: Multiply) -> Result<Block> {
+        if self.n_columns == 0 {
+            return Ok(self.clone());
+        }
         let view = View::new(self, self.values.as_ptr().cast_mut())?;
         let mut product = ptr::null_mut();
-        // SAFETY: MatMatMult reads `view` only and creates `product`, which is read and destroyed here.
+        // SAFETY: the multiplication reads `view` only and creates `product`, which is read and destroyed here.
         unsafe {
             let reuse = sys::MatReuse::MAT_INITIAL_MATRIX;
-            check(sys::MatMatMult(a.raw(), view.raw, reuse, f64::from(super::DEFAULT), &mut product))?;
+            check(multiply(a.raw(), view.raw, reuse, f64::from(super::DEFAULT), &mut product))?;
             let product = View { raw: product };
             let mut pointer = ptr::null_mut();
             check(sys::MatDenseGetArray(product.raw, &mut pointer))?;
@@ -152,15 +170,27 @@ impl Block {
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
     pub fn solved_by(&self, factor: &Factor) -> Result<Block> {
+        self.solution(factor, false)
+    }
+
+    /// `A^-T self` with the factor of A.
+    ///
+    /// # Errors
+    /// PETSc's, and MUMPS's with its code.
+    pub fn solved_by_transpose(&self, factor: &Factor) -> Result<Block> {
+        self.solution(factor, true)
+    }
+
+    fn solution(&self, factor: &Factor, transposed: bool) -> Result<Block> {
         let mut solution = self.clone();
         if let Some(dense) = factor.dense() {
-            dense.solve(&mut solution.values);
+            dense.solve(&mut solution.values, transposed);
             return Ok(solution);
         }
         let b = View::new(self, self.values.as_ptr().cast_mut())?;
         let pointer = solution.values.as_mut_ptr();
         let x = View::new(&solution, pointer)?;
-        factor.solve_dense(b.raw, x.raw, self.n_columns)?;
+        factor.solve_dense(b.raw, x.raw, self.n_columns, transposed)?;
         drop(x);
         Ok(solution)
     }

@@ -122,6 +122,26 @@ pub fn eigen(n: usize, a: &mut [f64]) -> Result<Vec<EigenPair>> {
     Ok((0..n).filter(|&j| im[j] >= 0.0).map(pair).collect())
 }
 
+/// Solves `A X = B` for a complex column-major A of `n x n`, which is destroyed; X overwrites B. False where A is singular. Not
+/// collective.
+///
+/// # Panics
+/// Where A is not `n x n`, or B has not n rows.
+pub fn solve_complex(n: usize, a: &mut [Complex64], b: &mut [Complex64]) -> bool {
+    assert!(a.len() == n * n && b.len().is_multiple_of(n));
+    if b.is_empty() {
+        return true;
+    }
+    let (size, columns, mut info) = (n as i32, (b.len() / n) as i32, 0);
+    let mut pivots = vec![0; n];
+    // SAFETY: sizes are those of the arrays; Complex64 has the layout of Fortran's COMPLEX*16.
+    unsafe {
+        let (a, b) = (a.as_mut_ptr().cast(), b.as_mut_ptr().cast());
+        sys::zgesv_(&size, &columns, a, &size, pivots.as_mut_ptr(), b, &size, &mut info);
+    }
+    info == 0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -145,6 +165,17 @@ mod tests {
         let values = symmetric_eigen(2, &mut a).unwrap();
         assert!((values[0] - 1.0).abs() < 1e-15 && (values[1] - 3.0).abs() < 1e-15);
         assert!((a[0] + a[1]).abs() < 1e-15 && (a[2] - a[3]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn complex_systems_are_solved_in_place() {
+        let z = Complex64::new;
+        // [i 2; 0 1] (1, i) = (3i, i)
+        let mut a = [z(0.0, 1.0), z(0.0, 0.0), z(2.0, 0.0), z(1.0, 0.0)];
+        let mut b = [z(0.0, 3.0), z(0.0, 1.0)];
+        assert!(solve_complex(2, &mut a, &mut b));
+        assert!((b[0] - 1.0).norm() < 1e-15 && (b[1] - z(0.0, 1.0)).norm() < 1e-15, "{b:?}");
+        assert!(!solve_complex(1, &mut [z(0.0, 0.0)], &mut [z(1.0, 0.0)]));
     }
 
     #[test]

@@ -42,11 +42,11 @@ impl DenseFactor {
         }
     }
 
-    /// Overwrites right-hand sides, column by column, with the solutions.
-    pub(super) fn solve(&self, columns: &mut [f64]) {
+    /// Overwrites right-hand sides, column by column, with the solutions, of the transposed matrix where that is asked for.
+    pub(super) fn solve(&self, columns: &mut [f64], transposed: bool) {
         match self.kind {
-            FactorKind::Unsymmetric if columns.len() == self.n => self.solve_one(columns),
-            _ => self.solve_many(columns),
+            FactorKind::Unsymmetric if columns.len() == self.n && !transposed => self.solve_one(columns),
+            _ => self.solve_many(columns, transposed),
         }
     }
 
@@ -65,15 +65,16 @@ impl DenseFactor {
         }
     }
 
-    fn solve_many(&self, columns: &mut [f64]) {
+    fn solve_many(&self, columns: &mut [f64], transposed: bool) {
         let (n, leading, mut info) = (self.n as i32, (self.n as i32).max(1), 0);
         let count = (columns.len() / self.n.max(1)) as i32;
         let (a, pivots, b) = (self.values.as_ptr(), self.pivots.as_ptr(), columns.as_mut_ptr());
+        let op = if transposed { c"T" } else { c"N" };
         // SAFETY: sizes are those of the arrays.
         unsafe {
             match self.kind {
                 FactorKind::Unsymmetric => {
-                    sys::dgetrs_(c"N".as_ptr(), &n, &count, a, &leading, pivots, b, &leading, &mut info);
+                    sys::dgetrs_(op.as_ptr(), &n, &count, a, &leading, pivots, b, &leading, &mut info);
                 }
                 FactorKind::Symmetric => {
                     sys::dsytrs_(c"L".as_ptr(), &n, &count, a, &leading, pivots, b, &leading, &mut info);
@@ -119,14 +120,17 @@ mod tests {
         let lu =
             DenseFactor::new(FactorKind::Unsymmetric, 3, vec![0.0, 2.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 4.0]).unwrap();
         let mut x = [3.0, 4.0, 8.0];
-        lu.solve(&mut x);
+        lu.solve(&mut x, false);
         assert_eq!(x, [2.0, 3.0, 2.0]);
         let mut x = [3.0, 4.0, 8.0, 0.0, 2.0, 0.0];
-        lu.solve(&mut x);
+        lu.solve(&mut x, false);
         assert_eq!(x, [2.0, 3.0, 2.0, 1.0, 0.0, 0.0]);
+        let mut x = [4.0, 3.0, 8.0];
+        lu.solve(&mut x, true);
+        assert_eq!(x, [3.0, 2.0, 2.0]);
         let ldl = DenseFactor::new(FactorKind::Symmetric, 3, SYMMETRIC.to_vec()).unwrap();
         let mut x = [5.0, 7.0, 6.0];
-        ldl.solve(&mut x);
+        ldl.solve(&mut x, false);
         assert_eq!(x, [7.0, 5.0, 2.0]);
     }
 

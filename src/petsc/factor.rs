@@ -252,7 +252,7 @@ impl Factor {
         let start = Instant::now();
         if let Some(dense) = &self.dense {
             x.copy_from(b)?;
-            x.local_mut(|x| dense.solve(x))?;
+            x.local_mut(|x| dense.solve(x, false))?;
             self.count(1, start);
             return Ok(());
         }
@@ -267,11 +267,15 @@ impl Factor {
         self.solves.set((n + 1, n_all + n_right_hand_sides, seconds + start.elapsed().as_secs_f64()));
     }
 
-    /// Dense right-hand sides and solutions of one shape.
-    pub(super) fn solve_dense(&self, b: sys::Mat, x: sys::Mat, n_columns: usize) -> Result<()> {
+    /// Dense right-hand sides and solutions of one shape, with A or its transpose.
+    pub(super) fn solve_dense(&self, b: sys::Mat, x: sys::Mat, n_columns: usize, transposed: bool) -> Result<()> {
         let start = Instant::now();
+        // ICNTL(9): 1 solves with A, anything else with its transpose.
+        self.set_icntl(9, i32::from(!transposed))?;
         // SAFETY: both are dense matrices of the factor's row layout.
-        check(unsafe { sys::MatMatSolve(self.raw, b, x) })?;
+        let outcome = check(unsafe { sys::MatMatSolve(self.raw, b, x) });
+        self.set_icntl(9, 1)?;
+        outcome?;
         self.count(n_columns, start);
         self.verdict("solve")
     }

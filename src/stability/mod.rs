@@ -2,15 +2,21 @@
 //!
 //! [`Pencil`] is the linearised problem, with friction's unsymmetric part in K. [`solve`] finds the band's modes by SLEPc's PEP
 //! (TOAR, inverted about a real shift, so that one real factor serves the whole band), gives each its backward error, and
-//! checks their number against the inertia of the symmetric problem, so that none is missed.
+//! checks their number against the inertia of the symmetric problem, so that none is missed. [`left_vectors`] finds their left vectors.
 
 mod band;
+mod explain;
+mod forms;
 mod inertia;
+mod left;
 mod linearise;
 mod mode;
 mod noise;
 mod subspace;
 
 pub use band::{Band, Count, Solver, solve};
+pub use explain::{Sensitivity, Share, self_product, sensitivity, shares};
+pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
+pub use left::{left_vectors, right_vectors};
 pub use linearise::Linearised;
-pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO};
+pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO, growth_threshold};

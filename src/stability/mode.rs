@@ -47,6 +47,12 @@ pub struct Mode {
     pub im: Vector,
 }
 
+/// The growth rate (1/s) beyond which an eigenvalue is unstable: [`UNSTABLE_RATIO`] of its angular frequency. A rigid motion's
+/// double zero may come out as a real pair of some 1e-2/s: divergence, a real eigenvalue, counts from 1/s on.
+pub fn growth_threshold(lambda: Complex64) -> f64 {
+    if lambda.im == 0.0 { DIVERGENCE } else { UNSTABLE_RATIO * lambda.im.abs() }
+}
+
 impl Mode {
     /// Frequency `omega / 2 pi`, Hz.
     pub fn frequency(&self) -> f64 {
@@ -63,11 +69,9 @@ impl Mode {
         -self.lambda.re / self.lambda.norm()
     }
 
-    /// Whether the mode grows, beyond noise. A rigid motion's double zero may come out as a real pair of some 1e-2/s:
-    /// divergence, a real eigenvalue, counts from 1/s on.
+    /// Whether the mode grows, beyond noise.
     pub fn is_unstable(&self) -> bool {
-        let noise = if self.lambda.im == 0.0 { DIVERGENCE } else { UNSTABLE_RATIO * self.lambda.im };
-        self.lambda.re > noise
+        self.lambda.re > growth_threshold(self.lambda)
     }
 
     /// Turns and scales the vector so that its largest entry (in modulus) is 1, real.

@@ -1,0 +1,112 @@
+//! What each part, connector and contact pair has in `y^H M x`, `y^H C x` and `y^H K x`.
+
+use num_complex::Complex64;
+
+use crate::Result;
+use crate::assembly::{ElementMatrices, Elements, System};
+use crate::equilibrium::{Contacts, Equilibrium};
+use crate::petsc::Vector;
+
+/// The share of one source in the three forms of two vectors.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Forms {
+    /// `y^H M x`
+    pub m: Complex64,
+    /// `y^H C x`
+    pub c: Complex64,
+    /// `y^H K x`
+    pub k: Complex64,
+}
+
+/// A complex vector in two real ones.
+#[derive(Clone, Copy)]
+pub struct Complex<'a> {
+    /// Real part.
+    pub re: &'a Vector,
+    /// Imaginary part.
+    pub im: &'a Vector,
+}
+
+/// A family of elements and the source that each member counts for.
+pub type Sources<'a> = (&'a dyn Elements, &'a dyn Fn(usize) -> usize);
+
+/// The forms of `n` sources of elements. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn of_elements(system: &System, families: &[Sources], n: usize, [y, x]: [Complex; 2]) -> Result<Vec<Forms>> {
+    let nodal = system.nodal(&[y.re, y.im, x.re, x.im])?;
+    let nodal = &nodal;
+    let gathered = |k: usize, nodes: &[u32]| {
+        let at = move |n: &u32| {
+            let n = *n as usize;
+            (0..3).map(move |i| Complex64::new(nodal[k][n][i], nodal[k + 1][n][i]))
+        };
+        nodes.iter().flat_map(at).collect::<Vec<_>>()
+    };
+    let mut sums = vec![Forms::default(); n];
+    let mut element = ElementMatrices::default();
+    for (family, source) in families {
+        for e in 0..family.len() {
+            let nodes = family.nodes(e);
+            // One rank counts an element that several compute.
+            if system.dofs.owns(nodes[0]) {
+                family.matrices(e, &mut element);
+                let (y, x) = (gathered(0, nodes), gathered(2, nodes));
+                let sum = &mut sums[source(e)];
+                for (form, matrix) in [(&mut sum.m, &element.m), (&mut sum.c, &element.c), (&mut sum.k, &element.k)] {
+                    *form += hermitian(matrix, &y, &x);
+                }
+            }
+        }
+    }
+    Ok(summed(system, sums))
+}
+
+/// `y^H A x` of a real row-major matrix.
+fn hermitian(a: &[f64], y: &[Complex64], x: &[Complex64]) -> Complex64 {
+    let row = |row: &[f64]| row.iter().zip(x).map(|(a, x)| x * *a).sum::<Complex64>();
+    a.chunks(x.len()).zip(y).map(|(a, y)| y.conj() * row(a)).sum()
+}
+
+fn summed(system: &System, mut sums: Vec<Forms>) -> Vec<Forms> {
+    let mut values: Vec<f64> = sums.iter().flat_map(|s| [s.m.re, s.m.im, s.c.re, s.c.im, s.k.re, s.k.im]).collect();
+    system.k.comm().sum_all(&mut values);
+    for (sum, v) in sums.iter_mut().zip(values.chunks(6)) {
+        [sum.m, sum.c, sum.k] = [0, 2, 4].map(|i| Complex64::new(v[i], v[i + 1]));
+    }
+    sums
+}
+
+/// The forms of the contact pairs, linearised about an equilibrium with a friction for each pair: `g_y^H D g_x`, and friction
+/// damping in C where that is in the pencil. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn of_contacts(
+    contacts: &mut Contacts,
+    equilibrium: &Equilibrium,
+    frictions: &[f64],
+    friction_damping: bool,
+    [y, x]: [Complex; 2],
+) -> Result<Vec<Forms>> {
+    let interface = contacts.interface();
+    let at = contacts.gaps(&equilibrium.u)?;
+    let mut gaps = |v: Complex| {
+        let (re, im) = (contacts.gaps(v.re)?, contacts.gaps(v.im)?);
+        let complex = |(re, im): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|i| Complex64::new(re[i], im[i]));
+        Ok(re.iter().zip(&im).map(complex).collect::<Vec<_>>())
+    };
+    let (y, x): (Vec<_>, Vec<_>) = (gaps(y)?, gaps(x)?);
+    let mut sums = vec![Forms::default(); interface.pairs.len()];
+    for (a, response) in equilibrium.responses.iter().enumerate() {
+        let sum = &mut sums[interface.points[a].pair];
+        let stiffness = interface.linearise(a, at[a], response.status, frictions);
+        sum.k += hermitian(stiffness.as_flattened(), &y[a], &x[a]);
+        if friction_damping {
+            let damping = interface.friction_damping(a, response.normal_force, frictions);
+            sum.c += hermitian(damping.as_flattened(), &y[a], &x[a]);
+        }
+    }
+    Ok(sums)
+}
