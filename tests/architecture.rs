@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each room with what it may import. `element` takes from `mesh` a test for good shapes, in its own tests.
-const ROOMS: [(&str, &[&str]); 14] = [
+const ROOMS: [(&str, &[&str]); 15] = [
     ("error", &[]),
     ("algebra", &[]),
     ("tracking", &["error"]),
@@ -20,13 +20,28 @@ const ROOMS: [(&str, &[&str]); 14] = [
     ("equilibrium", &["error", "algebra", "model", "mesh", "contact", "petsc", "assembly"]),
     ("stability", &["error", "contact", "petsc", "assembly", "equilibrium"]),
     ("reduction", &["error", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"]),
-    ("sweep", &["error", "model", "mesh", "contact", "petsc", "assembly", "equilibrium", "stability", "reduction"]),
-    ("report", &["error", "model", "mesh", "element", "contact", "equilibrium", "stability", "sweep"]),
+    (
+        "sweep",
+        &[
+            "error",
+            "tracking",
+            "model",
+            "mesh",
+            "contact",
+            "petsc",
+            "assembly",
+            "equilibrium",
+            "stability",
+            "reduction",
+        ],
+    ),
+    ("report", &["error", "tracking", "model", "mesh", "element", "contact", "equilibrium", "stability", "sweep"]),
     (
         "cli",
         &[
             "error",
             "algebra",
+            "tracking",
             "model",
             "mesh",
             "element",

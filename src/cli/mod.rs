@@ -73,6 +73,9 @@ enum Command {
         /// Reduce the model to a super-element at each friction, and find the modes of that
         #[arg(long)]
         anew: bool,
+        /// Do not follow the modes over friction, which solves at more values to find where they become unstable
+        #[arg(long)]
+        no_branches: bool,
     },
 }
 
@@ -177,7 +180,7 @@ fn run(command: &Command, comm: &Comm) -> Result<()> {
         Command::Check { model, contacts, output } => check::run(comm, model, *contacts, output.as_deref()),
         Command::Static { run } => statics::run(comm, run),
         Command::Reduce { reduce } => reduce::run(comm, reduce),
-        Command::Stability { run, band, anew } => stability::run(comm, run, *band, *anew),
+        Command::Stability { run, band, anew, no_branches } => stability::run(comm, run, *band, *anew, !no_branches),
     }
 }
 

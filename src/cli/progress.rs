@@ -29,6 +29,11 @@ impl Progress {
         self.bar.set_message(message.into());
     }
 
+    /// One more value is to come than was said.
+    pub fn lengthen(&self) {
+        self.bar.inc_length(1);
+    }
+
     /// One more value is done, which the text describes.
     pub fn advance(&self, done: &str) {
         self.bar.inc(1);

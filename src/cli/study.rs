@@ -21,8 +21,42 @@ pub struct Study {
     pub subject: Box<dyn Subject>,
     pub folder: Option<Folder>,
     pub place: PathBuf,
-    frictions: Vec<f64>,
+    /// The values asked for.
+    pub frictions: Vec<f64>,
     progress: Progress,
+}
+
+/// A study under way.
+pub struct Walk<'w, 's> {
+    pub study: &'w Study,
+    pub system: &'s System,
+    sweep: Sweep<'s>,
+    record: Record,
+}
+
+impl Walk<'_, '_> {
+    /// Finds the equilibrium at a friction; `each` makes of it what the command is for, and says in a few words what it found.
+    /// Tables and pictures are of the frictions asked for. Collective.
+    pub fn visit(&mut self, friction: f64, each: impl FnOnce(Visit) -> Result<String>) -> Result<()> {
+        let study = self.study;
+        let asked = study.frictions.contains(&friction);
+        if !asked {
+            study.progress.lengthen();
+        }
+        let mut equilibrium = match self.sweep.equilibrium(friction, &mut |event| study.say(&event)) {
+            Ok(equilibrium) => equilibrium,
+            Err(error) => {
+                self.record.add_steps(friction, self.sweep.path().steps());
+                return Err(study.save_last(error, self.system, &self.sweep)?);
+            }
+        };
+        self.record.add(study, self.system, &mut equilibrium, asked)?;
+        let (system, equilibrium) = (self.system, &equilibrium);
+        let (sweep, text) = (&mut self.sweep, &mut self.record.text);
+        let done = each(Visit { study, system, sweep, equilibrium, text })?;
+        study.progress.advance(&format!("friction {friction:.4}: {done}"));
+        Ok(())
+    }
 }
 
 /// One friction of a study, its equilibrium found.
@@ -53,30 +87,21 @@ impl Study {
         Ok(Study { subject, folder, place: run.folder(command), frictions, progress })
     }
 
-    /// Finds the equilibria one after the other; `each` makes of them what the command is for, and says in a few words what
-    /// it found. Collective.
-    pub fn run(&self, comm: &Comm, mut each: impl FnMut(Visit) -> Result<String>) -> Result<Outcome> {
+    /// Does the work of a command, which visits one friction after the other. Where that does not converge, what was found is kept.
+    /// Collective.
+    pub fn run(&self, comm: &Comm, work: impl FnOnce(&mut Walk) -> Result<()>) -> Result<Outcome> {
         self.progress.say("assembling");
         let system = self.subject.assemble(comm)?;
         let mut sweep = Sweep::new(&system, self.subject.interface())?;
         sweep.friction_damping = self.subject.friction_damping();
-        let (mut record, mut failure) = (Record::default(), None);
-        for &friction in &self.frictions {
-            let mut equilibrium = match sweep.equilibrium(friction, &mut |event| self.say(&event)) {
-                Ok(equilibrium) => equilibrium,
-                Err(error) => {
-                    record.add_steps(friction, sweep.path().steps());
-                    failure = Some(self.save_last(error, &system, &sweep)?);
-                    break;
-                }
-            };
-            record.add(self, &system, &mut equilibrium)?;
-            let (text, equilibrium) = (&mut record.text, &equilibrium);
-            let done = each(Visit { study: self, system: &system, sweep: &mut sweep, equilibrium, text })?;
-            self.progress.advance(&format!("friction {friction:.3}: {done}"));
-        }
+        let mut walk = Walk { study: self, system: &system, sweep, record: Record::default() };
+        let failure = match work(&mut walk) {
+            Ok(()) => None,
+            Err(error @ Error::NotConverged(_)) => Some(error),
+            Err(error) => return Err(error),
+        };
         self.progress.finish();
-        Ok(Outcome { record, costs: sweep.costs(), failure })
+        Ok(Outcome { record: walk.record, costs: walk.sweep.costs(), failure })
     }
 
     /// Writes the tables and the summary, gives the folder its name, and tells the summary.
@@ -122,14 +147,16 @@ pub struct Record {
 }
 
 impl Record {
-    /// Reports an equilibrium, whose steps it takes, and draws it. Collective.
-    fn add(&mut self, study: &Study, system: &System, equilibrium: &mut Equilibrium) -> Result<()> {
+    /// Reports an equilibrium, whose steps it takes; rows and pictures are of the frictions asked for. Collective.
+    fn add(&mut self, study: &Study, system: &System, equilibrium: &mut Equilibrium, asked: bool) -> Result<()> {
         let (subject, friction) = (&study.subject, equilibrium.friction);
-        let told = subject.tell(study.folder.as_ref(), system, equilibrium)?;
+        let told = subject.tell(study.folder.as_ref().filter(|_| asked), system, equilibrium)?;
         let pairs = &subject.interface().pairs;
         self.text += &equilibrium_text(friction, pairs, &told, &equilibrium.steps);
-        let rows = pairs.iter().zip(told.pairs);
-        self.rows.extend(rows.map(|(pair, forces)| PairRow { friction, pair: pair.name.clone(), forces }));
+        if asked {
+            let rows = pairs.iter().zip(told.pairs);
+            self.rows.extend(rows.map(|(pair, forces)| PairRow { friction, pair: pair.name.clone(), forces }));
+        }
         self.steps.extend(equilibrium.steps.drain(..).map(|step| (friction, step)));
         Ok(())
     }

@@ -3,6 +3,8 @@
 
 use std::path::Path;
 
+use num_complex::Complex64;
+
 use crate::assembly::System;
 use crate::contact::Interface;
 use crate::equilibrium::{Equilibrium, PairForces};
@@ -10,11 +12,11 @@ use crate::model::NormalLaw;
 use crate::petsc::{Comm, Vector};
 use crate::reduction::file;
 use crate::reduction::recovery::OuterSurface;
-use crate::reduction::super_element::SuperElement;
+use crate::reduction::super_element::{Member, SuperElement};
 use crate::report::folder::Folder;
 use crate::report::vtu::{Cells, Grid, Values};
-use crate::stability::Mode;
-use crate::sweep::{Brake, frictions_of};
+use crate::stability::{Complex, Mode};
+use crate::sweep::{Brake, Kind, Source, Sweep, frictions_of};
 use crate::{Error, Result};
 
 use super::Run;
@@ -42,6 +44,14 @@ pub trait Subject {
     fn tell(&self, folder: Option<&Folder>, system: &System, equilibrium: &Equilibrium) -> Result<Told>;
     /// Draws a mode with its number, from 1. Collective.
     fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, mode: (usize, &Mode)) -> Result<()>;
+    /// Explains a mode, given by its eigenvalue and right vector, and its left vector. Collective.
+    fn explain(
+        &self,
+        sweep: &mut Sweep,
+        equilibrium: &Equilibrium,
+        mode: (Complex64, Complex),
+        left: Complex,
+    ) -> Result<Vec<Source>>;
     /// The super-element that this is about an equilibrium. Collective.
     fn reduce(&self, system: &System, equilibrium: &Equilibrium) -> Result<Box<dyn Subject>>;
     /// Draws the displacement at which a solve gave up, and gives the file's name. Collective.
@@ -95,6 +105,16 @@ impl Subject for Brake {
 
     fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, mode: (usize, &Mode)) -> Result<()> {
         results::write_mode(folder, self, system, friction, mode)
+    }
+
+    fn explain(
+        &self,
+        sweep: &mut Sweep,
+        equilibrium: &Equilibrium,
+        mode: (Complex64, Complex),
+        left: Complex,
+    ) -> Result<Vec<Source>> {
+        Brake::explain(self, sweep, equilibrium, mode, Some(left))
     }
 
     fn reduce(&self, system: &System, equilibrium: &Equilibrium) -> Result<Box<dyn Subject>> {
@@ -205,6 +225,18 @@ impl Subject for ReducedBrake {
         let q = self.coordinates(system, &[&mode.re, &mode.im])?;
         let name = format!("{}.vtu", results::mode_name(friction, number, mode));
         self.write(system, folder, &name, &[("real", &q[0]), ("imaginary", &q[1])])
+    }
+
+    fn explain(
+        &self,
+        sweep: &mut Sweep,
+        equilibrium: &Equilibrium,
+        mode: (Complex64, Complex),
+        left: Complex,
+    ) -> Result<Vec<Source>> {
+        let named = [(Kind::Part, "super-element".to_owned())];
+        let member = Member::new(&self.element);
+        sweep.explain((&[(&member, &|_| 0)], &named), equilibrium, mode, Some(left))
     }
 
     fn reduce(&self, _: &System, _: &Equilibrium) -> Result<Box<dyn Subject>> {

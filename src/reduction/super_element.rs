@@ -197,14 +197,15 @@ impl NodeContact {
     }
 }
 
-/// The super-element among the elements of an assembly.
-struct Member<'a> {
+/// The super-element among the elements of an assembly, as a family of one.
+pub struct Member<'a> {
     element: &'a SuperElement,
     nodes: Vec<u32>,
 }
 
 impl<'a> Member<'a> {
-    fn new(element: &'a SuperElement) -> Self {
+    /// The family.
+    pub fn new(element: &'a SuperElement) -> Self {
         Member { element, nodes: (0..element.n_coordinates().div_ceil(3) as u32).collect() }
     }
 }

@@ -1,7 +1,9 @@
 //! Results on disk and on screen: tables, CSV, VTU. Reads results, computes nothing of its own.
 
+pub mod branches;
 pub mod contact_cells;
 pub mod contact_surface;
+pub mod explain;
 pub mod folder;
 pub mod tables;
 pub mod vtu;

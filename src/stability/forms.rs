@@ -54,16 +54,16 @@ pub fn of_elements(system: &System, families: &[Sources], n: usize, [y, x]: [Com
                 family.matrices(e, &mut element);
                 let (y, x) = (gathered(0, nodes), gathered(2, nodes));
                 let sum = &mut sums[source(e)];
-                for (form, matrix) in [(&mut sum.m, &element.m), (&mut sum.c, &element.c), (&mut sum.k, &element.k)] {
-                    *form += hermitian(matrix, &y, &x);
-                }
+                sum.m += hermitian(&element.mass_on_all_axes(), &y, &x);
+                sum.c += hermitian(&element.c, &y, &x);
+                sum.k += hermitian(&element.k, &y, &x);
             }
         }
     }
     Ok(summed(system, sums))
 }
 
-/// `y^H A x` of a real row-major matrix.
+/// `y^H A x` of a real row-major matrix; 0 of one without entries.
 fn hermitian(a: &[f64], y: &[Complex64], x: &[Complex64]) -> Complex64 {
     let row = |row: &[f64]| row.iter().zip(x).map(|(a, x)| x * *a).sum::<Complex64>();
     a.chunks(x.len()).zip(y).map(|(a, y)| y.conj() * row(a)).sum()

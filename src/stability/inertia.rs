@@ -157,7 +157,7 @@ mod tests {
     proptest! {
         #[test]
         fn an_update_counts_like_the_changed_matrix(
-            diagonal in prop::collection::vec(-1.0..1.0, 9),
+            diagonal in prop::collection::vec(-1.0..1.0_f64, 9),
             stiffnesses in prop::collection::vec(prop_oneof![-3.0..-0.1, 0.1..3.0], 3),
             directions in prop::collection::vec(-1.0..1.0, 27),
         ) {

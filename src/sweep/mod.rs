@@ -5,9 +5,13 @@
 
 mod brake;
 mod distribution;
+mod explain;
+mod friction;
 mod reduced;
 
 pub use brake::{Brake, Families, frictions_of};
+pub use explain::{Kind, Source};
+pub use friction::{Friction, Snapshot, tracking_options, wider};
 
 use std::time::Instant;
 
@@ -15,8 +19,8 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
-use crate::petsc::{FactorStats, memory};
-use crate::stability::{self, Band, Linearised, Solver};
+use crate::petsc::{Block, FactorStats, Matrix, memory};
+use crate::stability::{self, Band, Linearised, Mode, Solver};
 
 /// A structure under analysis at one friction after the other.
 pub struct Sweep<'a> {
@@ -26,8 +30,8 @@ pub struct Sweep<'a> {
     linearised: Option<Linearised>,
     /// Whether friction that turns with the velocity damps the modes.
     pub friction_damping: bool,
-    /// Spent on equilibria and on modes.
-    seconds: [f64; 2],
+    /// Spent on equilibria, modes and left vectors.
+    seconds: [f64; 3],
 }
 
 /// What a sweep has cost.
@@ -37,6 +41,8 @@ pub struct Costs {
     pub equilibria_seconds: f64,
     /// Spent on modes, s.
     pub modes_seconds: f64,
+    /// Spent on left vectors, s.
+    pub left_seconds: f64,
     /// LU of the equilibria's tangents.
     pub tangent: FactorStats,
     /// Iterations of the equilibria's linear systems with factors of neighbouring tangents.
@@ -70,7 +76,7 @@ impl<'a> Sweep<'a> {
             solver: Solver::for_system(system),
             linearised: None,
             friction_damping: false,
-            seconds: [0.0; 2],
+            seconds: [0.0; 3],
         })
     }
 
@@ -114,6 +120,35 @@ impl<'a> Sweep<'a> {
         self.solver = Solver::blocked(self.system);
     }
 
+    /// Left vectors of the modes of the last [`Sweep::modes`]. Collective.
+    ///
+    /// # Errors
+    /// See [`stability::left_vectors`].
+    pub fn left_vectors(&mut self, modes: &[Mode]) -> Result<(Block, usize)> {
+        let start = Instant::now();
+        let linearised = self.linearised.as_ref().expect("modes were found");
+        let pencil = linearised.pencil(self.system, self.path.contacts());
+        let outcome = stability::left_vectors(&pencil, &self.solver.lu, modes);
+        self.seconds[2] += start.elapsed().as_secs_f64();
+        outcome
+    }
+
+    /// Right vectors of such modes in the same form. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn right_vectors(&self, modes: &[Mode]) -> Result<Block> {
+        stability::right_vectors(&self.system.m, modes)
+    }
+
+    /// The damping of the last modes, where friction has its part in it.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn own_damping(&self) -> Result<Option<Matrix>> {
+        self.linearised.as_ref().and_then(|linearised| linearised.c.as_ref()).map(Matrix::duplicate).transpose()
+    }
+
     /// The last state tried, for output after a failure.
     pub fn path(&self) -> &Path<'a> {
         &self.path
@@ -125,6 +160,7 @@ impl<'a> Sweep<'a> {
         Costs {
             equilibria_seconds: self.seconds[0],
             modes_seconds: self.seconds[1],
+            left_seconds: self.seconds[2],
             tangent,
             n_iterations,
             stiffness: self.solver.lu.stats(),

@@ -1,0 +1,119 @@
+//! What explains a mode of a brake, by part, connector and contact pair.
+
+use num_complex::Complex64;
+
+use super::{Brake, Sweep};
+use crate::Result;
+use crate::equilibrium::Equilibrium;
+use crate::stability::{
+    Complex, Forms, Sensitivity, Share, Sources, of_contacts, of_elements, self_product, sensitivity, shares,
+};
+
+/// What a source of energy, damping and stiffness is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A part of the mesh.
+    Part,
+    /// A connector.
+    Connector,
+    /// A contact pair.
+    Contact,
+}
+
+/// A part, connector or contact pair and its role in a mode.
+#[derive(Debug, Clone)]
+pub struct Source {
+    /// What it is.
+    pub kind: Kind,
+    /// Its name in the model.
+    pub name: String,
+    /// Its energies, and what it feeds in or takes out.
+    pub share: Share,
+    /// How the eigenvalue follows it, where the left vector is known.
+    pub sensitivity: Option<Sensitivity>,
+    /// How the eigenvalue follows a contact pair's friction at this equilibrium, `d lambda / d mu`, 1/s.
+    pub friction: Option<Complex64>,
+}
+
+impl Sweep<'_> {
+    /// Explains a mode about an equilibrium by families of elements, the source of each member among `named`, and by the contact pairs. With
+    /// its left vector sensitivities come along. Shares add up to 1, what is fed in and taken out to the growth rate. Sensitivities are at
+    /// the equilibrium's contact status. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn explain(
+        &mut self,
+        (families, named): (&[Sources], &[(Kind, String)]),
+        equilibrium: &Equilibrium,
+        (lambda, right): (Complex64, Complex),
+        left: Option<Complex>,
+    ) -> Result<Vec<Source>> {
+        let pairs = &self.path.contacts().interface().pairs;
+        let names = named.iter().cloned().chain(pairs.iter().map(|pair| (Kind::Contact, pair.name.clone())));
+        let own = self.forms(families, named.len(), equilibrium, [right, right])?;
+        let mut sources: Vec<Source> = names
+            .zip(shares(lambda, &own))
+            .map(|((kind, name), share)| Source { kind, name, share, sensitivity: None, friction: None })
+            .collect();
+        let Some(left) = left else { return Ok(sources) };
+        let forms = self.forms(families, named.len(), equilibrium, [left, right])?;
+        let product = self_product(lambda, &forms);
+        for (source, form) in sources.iter_mut().zip(&forms) {
+            source.sensitivity = Some(sensitivity(lambda, form, product));
+        }
+        let friction = self.friction_forms(equilibrium, [left, right])?;
+        let contacts = sources.iter_mut().filter(|source| source.kind == Kind::Contact);
+        contacts.zip(friction).for_each(|(source, form)| source.friction = Some(-(form.k + lambda * form.c) / product));
+        Ok(sources)
+    }
+
+    /// Sources of elements, then contact pairs.
+    fn forms(
+        &mut self,
+        families: &[Sources],
+        n_named: usize,
+        equilibrium: &Equilibrium,
+        vectors: [Complex; 2],
+    ) -> Result<Vec<Forms>> {
+        let mut forms = of_elements(self.system, families, n_named, vectors)?;
+        let contacts = self.path.contacts();
+        let frictions = contacts.interface().frictions_at(equilibrium.friction);
+        forms.extend(of_contacts(contacts, equilibrium, &frictions, self.friction_damping, vectors)?);
+        Ok(forms)
+    }
+
+    /// The forms of `dP / d mu` of each contact pair: K and friction damping are linear in mu.
+    fn friction_forms(&mut self, equilibrium: &Equilibrium, vectors: [Complex; 2]) -> Result<Vec<Forms>> {
+        let mut at = |mu: f64| {
+            let frictions = vec![mu; self.path.contacts().interface().pairs.len()];
+            of_contacts(self.path.contacts(), equilibrium, &frictions, self.friction_damping, vectors)
+        };
+        let (one, none) = (at(1.0)?, at(0.0)?);
+        let difference = |(a, b): (&Forms, &Forms)| Forms { m: a.m - b.m, c: a.c - b.c, k: a.k - b.k };
+        Ok(one.iter().zip(&none).map(difference).collect())
+    }
+}
+
+impl Brake {
+    /// Explains a mode by parts, connectors and contact pairs: [`Sweep::explain`]. Collective.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] where a part has no material; PETSc's.
+    pub fn explain(
+        &self,
+        sweep: &mut Sweep,
+        equilibrium: &Equilibrium,
+        mode: (Complex64, Complex),
+        left: Option<Complex>,
+    ) -> Result<Vec<Source>> {
+        let parts = self.mesh.parts.iter().map(|name| (Kind::Part, name.clone()));
+        let connectors = self.model.connectors.iter().map(|connector| (Kind::Connector, connector.name.clone()));
+        let named: Vec<_> = parts.chain(connectors).collect();
+        let part = |e: usize| self.mesh.tet_part[e] as usize;
+        let link = |e: usize| self.mesh.parts.len() + e;
+        let families = self.families()?;
+        let sources: [Sources; 2] = [(&families.tets, &part), (families.links, &link)];
+        sweep.explain((&sources, &named), equilibrium, mode, left)
+    }
+}
