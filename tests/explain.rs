@@ -23,7 +23,9 @@ const FRICTION: f64 = 0.4;
 fn damped(comm: &Comm) -> Brake {
     let mut brake = Brake::read(comm, &data("pads_on_disc.toml")).unwrap();
     for (i, part) in brake.model.parts.iter_mut().enumerate() {
-        part.rayleigh = Rayleigh { alpha: 4.0 + i as f64, beta: if part.name == "disc" { 1e-7 } else { 0.0 } };
+        let (is_disc, is_lining) = (part.name == "disc", part.name.starts_with("lining"));
+        let alpha = if is_lining { 100.0 } else { 4.0 + i as f64 };
+        part.rayleigh = Rayleigh { alpha, beta: if is_disc { 1e-7 } else { 0.0 } };
     }
     // A faster disc, so that friction damping is one source among others.
     for point in &mut brake.interface.points {
