@@ -131,7 +131,7 @@ fn differences(
     let part = |brake: &mut Brake, name: &str| brake.model.parts.iter().position(|part| part.name == name).unwrap();
     for name in ["disc", "lining_inner"] {
         let exact = source(sources, name).sensitivity.unwrap();
-        check(&format!("damping of {name}"), exact.damping, 0.5, &|h, brake, _| {
+        check(&format!("damping of {name}"), exact.damping, 0.05, &|h, brake, _| {
             let i = part(brake, name);
             let Rayleigh { alpha, beta } = brake.model.parts[i].rayleigh;
             brake.model.parts[i].rayleigh = Rayleigh { alpha: (1.0 + h) * alpha, beta: (1.0 + h) * beta };
