@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use squeal::petsc::{Factor, FactorKind, ORDERING, Session};
+use squeal::petsc::{Factor, FactorKind, Session};
 use squeal::sweep::{Brake, Sweep};
 
 fn main() -> squeal::Result<()> {
@@ -52,7 +52,7 @@ fn main() -> squeal::Result<()> {
             1e-6 * cost.entries,
             1e-9 * cost.flops,
             cost.used_mb,
-            ORDERING.get(cost.ordering as usize).unwrap_or(&"?")
+            cost.ordering_name()
         ));
         let (b, mut x) = (system.load.duplicate()?, system.zeros()?);
         let start = Instant::now();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::petsc::{Comm, FactorStats, ORDERING};
+use crate::petsc::{Comm, FactorStats};
 use crate::reduction::craig_bampton::{Costs, Event};
 use crate::reduction::file;
 use crate::reduction::super_element::SuperElement;
@@ -81,7 +81,7 @@ fn say(progress: &Progress, event: Event) {
 fn text(element: &SuperElement, costs: &Costs, before: f64, seconds: f64, place: &Path) -> String {
     let (n_points, n_contacts, n_modes) = (element.points.len(), element.contacts.len(), element.frequencies.len());
     let origin = &element.origin;
-    let FactorStats { analysis_seconds, factorisation_seconds, entries, used_mb, ordering, .. } = costs.factor;
+    let FactorStats { analysis_seconds, factorisation_seconds, entries, used_mb, .. } = costs.factor;
     format!(
         "{}: super-element at friction {}\n\n\
          {n_contacts} contacts, {n_points} retained points, {n_modes} fixed-interface modes below {} Hz and {} inertia modes: \
@@ -101,7 +101,7 @@ fn text(element: &SuperElement, costs: &Costs, before: f64, seconds: f64, place:
         origin.n_equations,
         analysis_seconds + factorisation_seconds,
         1e-6 * entries,
-        ORDERING.get(ordering as usize).unwrap_or(&"?"),
+        costs.factor.ordering_name(),
         costs.constraint_seconds,
         3 * n_points,
         costs.fixed_seconds,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use crate::Result;
-use crate::petsc::{Comm, ORDERING, Vector};
+use crate::petsc::{Comm, Vector};
 use crate::report::branches;
 use crate::report::explain::{self, Explained};
 use crate::report::folder::Folder;
@@ -217,7 +217,7 @@ fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
             cost.used_mb,
             cost.estimated_mb,
             if cost.out_of_core { ", out of core" } else { "" },
-            ORDERING.get(cost.ordering as usize).unwrap_or(&"?")
+            cost.ordering_name()
         );
     }
     text

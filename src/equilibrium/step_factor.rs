@@ -168,6 +168,7 @@ impl StepFactor {
         self.factor.release();
         self.made_for.clear();
         self.update = None;
+        self.exact = false;
     }
 
     pub(super) fn costs(&self) -> (FactorStats, usize) {

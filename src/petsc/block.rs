@@ -197,11 +197,7 @@ impl Block {
 
     /// `self^T other`, column-major, the same on every rank.
     pub fn gram(&self, other: &Block) -> Vec<f64> {
-        let mut product = vec![0.0; self.n_columns * other.n_columns];
-        let sizes = [self.n_columns, self.n_local, other.n_columns];
-        dense::multiply(true, sizes, &self.values, &other.values, &mut product);
-        self.comm.sum_all(&mut product);
-        product
+        self.leading_gram(self.n_columns, other)
     }
 
     /// `self coefficients`, with column-major coefficients of as many rows as this block has columns. Not collective.
@@ -209,10 +205,7 @@ impl Block {
     /// # Panics
     /// Where the coefficients do not fill whole columns.
     pub fn combined(&self, coefficients: &[f64], n_columns: usize) -> Block {
-        let mut product = self.like(n_columns);
-        let sizes = [self.n_local, self.n_columns, n_columns];
-        dense::multiply(false, sizes, &self.values, coefficients, &mut product.values);
-        product
+        self.leading_combined(self.n_columns, coefficients, n_columns)
     }
 
     /// Coefficients (column-major) and number of the combinations that make an orthonormal basis of the columns' span; directions smaller

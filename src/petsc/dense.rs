@@ -71,57 +71,6 @@ pub fn symmetric_eigen(n: usize, a: &mut [f64]) -> Result<Vec<f64>> {
     }
 }
 
-/// An eigenvalue with non-negative imaginary part, and its right eigenvector.
-pub type EigenPair = (Complex64, Vec<Complex64>);
-
-/// Right eigenpairs of the closed upper half plane of a real `n x n` matrix, which is destroyed. Not collective.
-///
-/// # Errors
-/// [`Error::NotConverged`] where LAPACK's QR iteration fails.
-///
-/// # Panics
-/// Where the slice is not `n x n`.
-pub fn eigen(n: usize, a: &mut [f64]) -> Result<Vec<EigenPair>> {
-    assert_eq!(a.len(), n * n);
-    let (size, mut info) = (n as i32, 0);
-    let (mut re, mut im, mut vectors) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n]);
-    let mut work = vec![0.0; 40 * n.max(1)];
-    let length = work.len() as i32;
-    // SAFETY: sizes are those of the arrays; left vectors are not asked for.
-    unsafe {
-        sys::dgeev_(
-            c"N".as_ptr(),
-            c"V".as_ptr(),
-            &size,
-            a.as_mut_ptr(),
-            &size,
-            re.as_mut_ptr(),
-            im.as_mut_ptr(),
-            std::ptr::null_mut(),
-            &1,
-            vectors.as_mut_ptr(),
-            &size,
-            work.as_mut_ptr(),
-            &length,
-            &mut info,
-        );
-    }
-    if info != 0 {
-        return Err(Error::NotConverged(format!("LAPACK's dgeev failed with code {info} on {n} rows")));
-    }
-    let column = |j: usize| &vectors[j * n..(j + 1) * n];
-    let pair = |j: usize| {
-        let lambda = Complex64::new(re[j], im[j]);
-        let vector = match im[j] {
-            0.0 => column(j).iter().map(|&x| Complex64::new(x, 0.0)).collect(),
-            _ => column(j).iter().zip(column(j + 1)).map(|(&x, &y)| Complex64::new(x, y)).collect(),
-        };
-        (lambda, vector)
-    };
-    // Conjugates are neighbours, the one above the axis first.
-    Ok((0..n).filter(|&j| im[j] >= 0.0).map(pair).collect())
-}
-
 /// Solves `A X = B` for a complex column-major A of `n x n`, which is destroyed; X overwrites B. False where A is singular. Not
 /// collective.
 ///
@@ -176,16 +125,5 @@ mod tests {
         assert!(solve_complex(2, &mut a, &mut b));
         assert!((b[0] - 1.0).norm() < 1e-15 && (b[1] - z(0.0, 1.0)).norm() < 1e-15, "{b:?}");
         assert!(!solve_complex(1, &mut [z(0.0, 0.0)], &mut [z(1.0, 0.0)]));
-    }
-
-    #[test]
-    fn a_rotation_has_its_eigenvalue_above_the_axis() {
-        // [0 -2; 2 0] has +-2i
-        let pairs = eigen(2, &mut [0.0, 2.0, -2.0, 0.0]).unwrap();
-        assert_eq!(pairs.len(), 1);
-        let (lambda, x) = &pairs[0];
-        assert!((lambda - Complex64::new(0.0, 2.0)).norm() < 1e-15);
-        // A x = lambda x: -2 x_1 = 2i x_0
-        assert!((-2.0 * x[1] - lambda * x[0]).norm() < 1e-15);
     }
 }

@@ -24,8 +24,8 @@ pub enum FactorKind {
 /// What a factor costs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FactorStats {
-    /// Ordering used, MUMPS's number (3 is SCOTCH, 4 PORD).
-    pub ordering: i32,
+    /// Ordering used, MUMPS's number (3 is SCOTCH, 4 PORD); none where the matrix is dense and LAPACK factorises it.
+    pub ordering: Option<i32>,
     /// Entries in the factors.
     pub entries: f64,
     /// Floating-point operations of one numerical factorisation.
@@ -52,8 +52,15 @@ pub struct FactorStats {
     pub solve_seconds: f64,
 }
 
-/// Name of a MUMPS ordering.
-pub const ORDERING: [&str; 8] = ["AMD", "user", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
+/// Names of MUMPS's orderings.
+const ORDERINGS: [&str; 8] = ["AMD", "user", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
+
+impl FactorStats {
+    /// Name of the ordering.
+    pub fn ordering_name(&self) -> &'static str {
+        self.ordering.map_or("none (dense)", |number| ORDERINGS.get(number as usize).unwrap_or(&"?"))
+    }
+}
 
 /// A factorised matrix. The first factorisation analyses the pattern, which all later ones share.
 pub struct Factor {
@@ -111,7 +118,7 @@ impl Factor {
             self.set_icntl(13, 1)?;
         }
         self.symbolic(a)?;
-        self.stats.ordering = self.infog(7)? as i32;
+        self.stats.ordering = Some(self.infog(7)? as i32);
         self.stats.estimated_mb = self.infog(17)?;
         self.stats.n_analyses += 1;
         self.stats.analysis_seconds += start.elapsed().as_secs_f64();

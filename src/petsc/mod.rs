@@ -19,14 +19,16 @@ pub mod linear;
 mod matrix;
 pub mod memory;
 mod metis;
+mod noise;
 pub mod nonlinear;
 mod session;
 mod vector;
 
 pub use block::Block;
-pub use factor::{Factor, FactorKind, FactorStats, ORDERING};
+pub use factor::{Factor, FactorKind, FactorStats};
 pub use matrix::{Csr, Matrix, Rows};
 pub use metis::partition;
+pub use noise::Noise;
 pub use session::{Comm, Session};
 pub use vector::{Gather, Vector};
 

@@ -36,7 +36,7 @@ use nalgebra::DMatrix;
 use crate::assembly::System;
 use crate::contact::{Interface, Trace};
 use crate::equilibrium::Equilibrium;
-use crate::petsc::{Block, Factor, FactorKind, FactorStats, Matrix, Vector, dense};
+use crate::petsc::{Block, Factor, FactorKind, FactorStats, Matrix, Noise, Vector, dense};
 use crate::{Error, Result};
 
 use super::functionals::{Functionals, retained};
@@ -241,21 +241,9 @@ fn inverse(s: DMatrix<f64>) -> Result<Vec<f64>> {
 /// Vectors without any order, the same on any number of ranks.
 fn arbitrary(system: &System, n_columns: usize) -> Block {
     let (mut block, labels) = (Block::zeros(system.k.comm(), system.dofs.n_local(), n_columns), system.dofs.labels());
-    for j in 0..n_columns {
-        for (value, label) in block.column_mut(j).iter_mut().zip(&labels) {
-            let hash = splitmix(label << 8 | j as u64);
-            *value = (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
-        }
-    }
+    let mut noise = Noise::new(&labels);
+    (0..n_columns).for_each(|j| noise.fill(block.column_mut(j)));
     block
-}
-
-/// The finaliser of SplitMix64: neighbouring numbers give unrelated ones. Source: Steele, Lea, Flood, OOPSLA 2014.
-fn splitmix(mut z: u64) -> u64 {
-    z = z.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
 }
 
 /// How the retained points move in the modes below `limit` (Hz) of the brake reduced so far, its contacts closed as at the equilibrium and

@@ -11,7 +11,6 @@ mod inertia;
 mod left;
 mod linearise;
 mod mode;
-mod noise;
 mod subspace;
 
 pub use band::{Band, Count, Solver, solve};

@@ -19,9 +19,8 @@ use num_complex::Complex64;
 
 use super::Pencil;
 use super::mode::backward_errors;
-use super::noise::Noise;
 use crate::petsc::eigen::{self, Found, Pair, Quadratic};
-use crate::petsc::{Block, Factor, FactorKind, Matrix};
+use crate::petsc::{Block, Factor, FactorKind, Matrix, Noise};
 use crate::{Error, Result};
 
 /// Columns of a Krylov block.
