@@ -18,7 +18,7 @@
 //!                           |
 //!             sweep over friction <--> tracking: branches, Hopf points
 //!                           |
-//!                          cli --> report: tables, CSV, VTU
+//!                     cli --> results --> report: tables, CSV, VTU
 //! ```
 //!
 //! Every stage is one room with one main function from typed input to typed output:
@@ -35,6 +35,7 @@
 //! | [`reduction`] | reference nodes for contacts, super-elements and their files | [`reduction::craig_bampton::reduce`] |
 //! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
 //! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
+//! | [`results`] | what a study found, as plain data | [`results::Results`] |
 //! | [`report`] | tables, CSV, VTU | |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
 //! | [`petsc`] | the only `unsafe`: PETSc, SLEPc, MUMPS, METIS | |
@@ -91,6 +92,7 @@ pub mod model;
 pub mod petsc;
 pub mod reduction;
 pub mod report;
+pub mod results;
 pub mod stability;
 pub mod sweep;
 pub mod tracking;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each room with what it may import. `element` takes from `mesh` a test for good shapes, in its own tests.
-const ROOMS: [(&str, &[&str]); 15] = [
+const ROOMS: [(&str, &[&str]); 16] = [
     ("error", &[]),
     ("algebra", &[]),
     ("tracking", &["error"]),
@@ -35,7 +35,11 @@ const ROOMS: [(&str, &[&str]); 15] = [
             "reduction",
         ],
     ),
-    ("report", &["error", "tracking", "model", "mesh", "element", "contact", "equilibrium", "stability", "sweep"]),
+    ("results", &["error", "tracking", "equilibrium", "stability", "sweep"]),
+    (
+        "report",
+        &["error", "tracking", "model", "mesh", "element", "contact", "equilibrium", "stability", "sweep", "results"],
+    ),
     (
         "cli",
         &[
@@ -52,6 +56,7 @@ const ROOMS: [(&str, &[&str]); 15] = [
             "stability",
             "reduction",
             "sweep",
+            "results",
             "report",
         ],
     ),

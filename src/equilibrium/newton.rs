@@ -19,7 +19,7 @@ const ENOUGH: f64 = 0.1;
 const MAX_ITERATIONS: usize = 40;
 
 /// What one Newton iterate looked like.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Iteration {
     /// Residual over the larger of loads and contact forces (Euclidean norms).
     pub residual: f64,
@@ -30,7 +30,7 @@ pub struct Iteration {
 }
 
 /// The report of one solve.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// What was solved, for people.
     pub label: String,

@@ -21,7 +21,7 @@ pub enum Kind {
 }
 
 /// A part, connector or contact pair and its role in a mode.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     /// What it is.
     pub kind: Kind,

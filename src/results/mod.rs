@@ -1,0 +1,183 @@
+//! What a study found, as plain data: no PETSc, no ranks, whole on the root. A run fills it value by value, the results file keeps it
+//! between runs, and everything that a person sees (tables, plots, report, comparisons) is made of it alone.
+
+use num_complex::Complex64;
+
+use crate::equilibrium::{PairForces, Step};
+use crate::stability::Count;
+use crate::sweep::Source;
+use crate::tracking::Diagram;
+
+/// A study and what it found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Results {
+    /// What was analysed, and by what.
+    pub about: About,
+    /// Where shapes are known.
+    pub surface: Surface,
+    /// Where contact is known.
+    pub contact: ContactFaces,
+    /// One friction after the other, in the order in which they were finished; those asked for and those in between.
+    pub values: Vec<Value>,
+    /// Modes followed over friction, where that was asked for and has come to its end.
+    pub diagram: Option<Diagram>,
+    /// What the run cost, for people; whole only at the end.
+    pub costs: String,
+}
+
+/// What was analysed, and by what.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct About {
+    /// Title of the model.
+    pub title: String,
+    /// The program and its version.
+    pub program: String,
+    /// PETSc, SLEPc, MUMPS with their versions.
+    pub libraries: String,
+    /// The command as typed, without the program.
+    pub command: String,
+    /// The model file, or the super-element's.
+    pub model: String,
+    /// SHA-256 of its bytes.
+    pub model_digest: String,
+    /// Its text, as far as it is one.
+    pub model_text: String,
+    /// The mesh file.
+    pub mesh: String,
+    /// SHA-256 of its bytes.
+    pub mesh_digest: String,
+    /// Nodes of the mesh; none of a super-element.
+    pub n_nodes: usize,
+    /// Tetrahedra of the mesh.
+    pub n_tets: usize,
+    /// Equations solved, i.e. free displacements or generalised coordinates.
+    pub n_equations: usize,
+    /// Ranks that solved them.
+    pub n_ranks: usize,
+    /// Band analysed, Hz.
+    pub band: [f64; 2],
+    /// Frictions asked for, in their order.
+    pub frictions: Vec<f64>,
+    /// The parts, which `Surface::part` counts.
+    pub parts: Vec<Part>,
+    /// The contact pairs, which `ContactFaces::pair` and `Value::pairs` count.
+    pub pairs: Vec<Pair>,
+}
+
+/// A part.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Part {
+    /// Its name in the model.
+    pub name: String,
+    /// Its material's name.
+    pub material: String,
+    /// kg.
+    pub mass: f64,
+}
+
+/// A contact pair.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Pair {
+    /// Its name in the model.
+    pub name: String,
+    /// Whether its surfaces slide on each other.
+    pub sliding: bool,
+    /// Whether its friction is the study's parameter.
+    pub swept: bool,
+    /// Contact points.
+    pub n_points: usize,
+}
+
+/// The outer surface of all parts, undeformed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Surface {
+    /// m.
+    pub nodes: Vec<[f64; 3]>,
+    /// Triangles, turning so that their normals point out.
+    pub triangles: Vec<[u32; 3]>,
+    /// Part of each triangle.
+    pub part: Vec<i32>,
+    /// Some of the nodes, spread over all parts: there every mode's shape is known, so that it can be compared with another's.
+    pub samples: Vec<u32>,
+}
+
+/// The slave faces of all contact pairs, each pair with nodes of its own.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ContactFaces {
+    /// m, undeformed.
+    pub nodes: Vec<[f64; 3]>,
+    /// Triangles; empty where contacts are single points.
+    pub triangles: Vec<[u32; 3]>,
+    /// Pair of each triangle.
+    pub pair: Vec<i32>,
+    /// Pair of each node.
+    pub pair_of_node: Vec<i32>,
+}
+
+/// One friction.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Value {
+    /// Friction of the swept pairs.
+    pub friction: f64,
+    /// Whether it was asked for; else tracking needed it.
+    pub asked: bool,
+    /// What the contact pairs carry.
+    pub pairs: Vec<PairForces>,
+    /// The equilibrium's checks in words, a line each.
+    pub checks: String,
+    /// The Newton steps that led to it.
+    pub steps: Vec<Step>,
+    /// Normal pressure at the nodes of the contact faces, Pa.
+    pub pressure: Vec<f64>,
+    /// There: 0 open, 1 slip, 2 stick, -1 no contact point.
+    pub status: Vec<i32>,
+    /// Modes of the band by frequency.
+    pub modes: Vec<ModeData>,
+    /// The check of their number.
+    pub count: Option<Count>,
+    /// Wall-clock time, s.
+    pub seconds: f64,
+}
+
+/// A mode.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ModeData {
+    /// Eigenvalue, 1/s.
+    pub lambda: Complex64,
+    /// Normwise backward error.
+    pub backward_error: f64,
+    /// Whether it grows, beyond what rounding explains.
+    pub unstable: bool,
+    /// Displacements at the samples of the surface.
+    pub sampled: Shape,
+    /// Displacements at all nodes of the surface; of unstable modes at the frictions asked for.
+    pub shape: Option<Shape>,
+    /// What explains it; of the same modes.
+    pub sources: Vec<Source>,
+}
+
+/// Displacements of a complex mode, scaled so that the largest of the whole surface is 1 and real.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Shape {
+    /// Real part.
+    pub re: Vec<[f32; 3]>,
+    /// Imaginary part.
+    pub im: Vec<[f32; 3]>,
+}
+
+impl ModeData {
+    /// Hz.
+    pub fn frequency(&self) -> f64 {
+        self.lambda.im.abs() / std::f64::consts::TAU
+    }
+
+    /// Growth rate, 1/s.
+    pub fn growth_rate(&self) -> f64 {
+        self.lambda.re
+    }
+
+    /// `-Re lambda / |lambda|`.
+    pub fn damping_ratio(&self) -> f64 {
+        -self.lambda.re / self.lambda.norm()
+    }
+}
