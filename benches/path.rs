@@ -72,7 +72,7 @@ fn main() -> squeal::Result<()> {
         costs.equilibria_seconds,
         iterations(&equilibrium.steps),
         iterations(&next.steps),
-        costs.tangent.n_factorisations
+        costs.lu.n_factorisations
     ));
     tell(format!(
         "modes of the band               {:8.2} s  {} modes, {} solves",

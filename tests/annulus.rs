@@ -25,7 +25,7 @@ use std::f64::consts::TAU;
 use common::{Block, brake};
 use squeal::assembly::System;
 use squeal::mesh::Mesh;
-use squeal::petsc::Session;
+use squeal::petsc::{Factor, FactorKind, Session};
 use squeal::stability::{self, Band, Mode, Pencil, Solver};
 
 const FREE: &str = r#"
@@ -65,8 +65,8 @@ fn mesh(cells: [usize; 3]) -> Mesh {
 /// All modes of a band without contact.
 fn modes(system: &System, shift: f64, band: [f64; 2]) -> Band {
     let pencil = Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None };
-    let mut solver = Solver::shifted(shift);
-    let band = stability::solve(&pencil, &mut solver, band, &mut |_, _, _| ()).unwrap();
+    let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(shift));
+    let band = stability::solve(&pencil, &mut lu, &mut solver, band, &mut |_, _, _| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);
     band
 }

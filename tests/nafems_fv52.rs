@@ -25,7 +25,7 @@ mod common;
 use common::{Block, assert_close, brake};
 use squeal::assembly::System;
 use squeal::mesh::Mesh;
-use squeal::petsc::Session;
+use squeal::petsc::{Factor, FactorKind, Session};
 use squeal::stability::{self, Mode, Pencil, Solver};
 
 const MODEL: &str = r#"
@@ -62,8 +62,8 @@ fn a_plate_with_three_rigid_motions_has_the_published_modes() {
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
     let pencil = Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None };
-    let mut solver = Solver::shifted(300.0);
-    let band = stability::solve(&pencil, &mut solver, brake.model.band, &mut |_, _, _| ()).unwrap();
+    let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(300.0));
+    let band = stability::solve(&pencil, &mut lu, &mut solver, brake.model.band, &mut |_, _, _| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);
     let elastic: Vec<&Mode> = band.modes.iter().filter(|mode| mode.frequency() > 1.0).collect();
     assert_eq!(band.count.found - elastic.len(), 3, "rigid motions");

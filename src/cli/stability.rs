@@ -201,7 +201,7 @@ fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
         costs.left_seconds,
         costs.n_iterations
     );
-    let factors = [("equilibrium LU", costs.tangent), ("modes LU", costs.stiffness), ("modes LDL^T", costs.symmetric)];
+    let factors = [("LU", costs.lu), ("LDL^T", costs.symmetric)];
     for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
         text += &format!(
             "{name}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \

@@ -5,7 +5,7 @@ use super::newton::{self, Iteration, Step, Workspace};
 use crate::assembly::System;
 use crate::contact::interface::{Interface, Pair};
 use crate::contact::{Response, Stage};
-use crate::petsc::{FactorStats, Matrix, Vector};
+use crate::petsc::{Factor, Matrix, Vector};
 
 use super::step_factor::StepFactor;
 use crate::{Error, Result};
@@ -57,23 +57,29 @@ impl<'a> Path<'a> {
     }
 
     /// The evaluator of the contact points.
-    pub fn contacts(&mut self) -> &mut Contacts<'a> {
+    pub fn contacts(&self) -> &Contacts<'a> {
+        &self.contacts
+    }
+
+    /// The evaluator of the contact points, to evaluate.
+    pub fn contacts_mut(&mut self) -> &mut Contacts<'a> {
         &mut self.contacts
     }
 
-    /// Costs of the tangent's factor, and the iterations with factors of neighbouring tangents.
-    pub fn costs(&self) -> (FactorStats, usize) {
-        self.factor.costs()
+    /// The tangent's factor.
+    pub fn factor(&self) -> &Factor {
+        self.factor.factor()
     }
 
-    /// What the tangent's factor has cost.
-    pub fn factor(&self) -> FactorStats {
-        self.factor.costs().0
+    /// Iterations with factors of neighbouring tangents.
+    pub fn n_iterations(&self) -> usize {
+        self.factor.n_iterations()
     }
 
-    /// Gives the memory of the tangent's factor back; the next step makes it anew. Collective.
-    pub fn release_factor(&mut self) {
-        self.factor.release();
+    /// The evaluator, and the factor for the brake linearised with points that do what `frozen` says. Whoever borrows it makes it for that: the
+    /// next step starts from there.
+    pub fn lend_factor(&mut self, frozen: Vec<Response>) -> (&Contacts<'a>, &mut Factor) {
+        (&self.contacts, self.factor.lend(frozen))
     }
 
     /// The last converged or attempted displacement, for output after a failure.

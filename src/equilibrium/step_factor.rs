@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3};
 use super::contacts::Contacts;
 use crate::Result;
 use crate::contact::Response;
-use crate::petsc::{Block, Factor, FactorKind, FactorStats, Matrix, Vector, linear};
+use crate::petsc::{Block, Factor, FactorKind, Matrix, Vector, linear};
 
 /// Price of a right-hand side among many, in single solves: 0.09 s against 0.35 s on the full demo brake, two ranks.
 const BLOCKED_PRICE: f64 = 0.3;
@@ -163,16 +163,23 @@ impl StepFactor {
         if dyads.is_empty() { Ok(u) } else { u.solved_by(&self.factor) }
     }
 
-    /// Gives the memory back. Collective.
-    pub(super) fn release(&mut self) {
-        self.factor.release();
-        self.made_for.clear();
+    /// The factor, to be made for points that do this; steps to come start from it.
+    pub(super) fn lend(&mut self, made_for: Vec<Response>) -> &mut Factor {
+        self.made_for = made_for;
         self.update = None;
         self.exact = false;
+        self.spent = 0.0;
+        &mut self.factor
     }
 
-    pub(super) fn costs(&self) -> (FactorStats, usize) {
-        (self.factor.stats(), self.n_iterations)
+    /// The factor.
+    pub(super) fn factor(&self) -> &Factor {
+        &self.factor
+    }
+
+    /// Iterations with updated old factors.
+    pub(super) fn n_iterations(&self) -> usize {
+        self.n_iterations
     }
 }
 

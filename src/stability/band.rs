@@ -6,17 +6,17 @@ use num_complex::Complex64;
 
 use super::inertia::Inertia;
 use super::mode::backward_errors;
-use super::subspace::{self, Problem};
+use super::search;
+use super::space::Problem;
 use super::{Mode, Pencil};
 use crate::assembly::System;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::petsc::{Block, Factor, FactorKind, FactorStats, memory};
+use crate::petsc::{Block, Factor, memory};
 use crate::{Error, Result};
 
-/// What serves all pencils of one pattern: factors whose analysis is made once.
+/// How modes are searched for, and what serves all pencils of one pattern.
+#[derive(Default)]
 pub struct Solver {
-    /// LU of the unsymmetric stiffness; the equilibrium uses the same.
-    pub lu: Factor,
     /// What counts the modes.
     pub inertia: Inertia,
     /// Real shift of the inverted problem, 1/s: 0, unless the structure has rigid motions.
@@ -28,16 +28,8 @@ pub struct Solver {
 /// Equations from which the blocked search pays: below, a single solve costs too little.
 const BLOCKED_FROM: usize = 50_000;
 
-impl Default for Solver {
-    /// Searches with TOAR.
-    fn default() -> Self {
-        let lu = Factor::new(FactorKind::Unsymmetric);
-        Solver { lu, inertia: Inertia::default(), shift: 0.0, labels: None }
-    }
-}
-
 impl Solver {
-    /// The solver for a system: blocked for a large one, else [`Solver::default`].
+    /// The solver for a system: blocked for a large one, else [`Solver::default`], which is TOAR.
     pub fn for_system(system: &System) -> Solver {
         match system.dofs.n_global() {
             n if n >= BLOCKED_FROM => Solver::blocked(system),
@@ -86,9 +78,8 @@ pub struct Band {
 
 /// Eigenvalue tolerance handed to SLEPc: near double roots an error e in the residual is sqrt(e) in the eigenvalue.
 const TOLERANCE: f64 = 1e-12;
-/// Memory of an LU over that of the symmetric factor on the same pattern: both took their place on the full demo brake with 5.6 and
-/// 3.3 GB; with room to spare.
-const LU_OVER_SYMMETRIC: f64 = 2.0;
+/// Memory of a symmetric factor over that of an LU on the same pattern: 3.3 and 5.6 GB on the full demo brake.
+const SYMMETRIC_OVER_LU: f64 = 0.6;
 /// How often the search is widened before the band is given up.
 const TRIES: u32 = 4;
 /// The blocked search goes this much beyond the band's end, so that the count finds a gap.
@@ -105,26 +96,33 @@ struct Search {
 }
 
 /// Finds all modes of `band` (Hz) of a pencil, sorted by frequency, vectors scaled to a largest entry of 1. `progress` hears of
-/// (converged, wanted, solves). Collective.
+/// (converged, wanted, solves). `lu` becomes the factor of the pencil's stiffness (shifted, where the solver shifts). Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] where the band could not be completed.
 pub fn solve(
     pencil: &Pencil,
+    lu: &mut Factor,
     solver: &mut Solver,
     band: [f64; 2],
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Band> {
+    let available_mb = || memory::available_mb(pencil.k.comm());
+    if SYMMETRIC_OVER_LU * lu.stats().used_mb > available_mb() && !solver.inertia.is_made() {
+        lu.release();
+    }
     let expected = solver.inertia.n_below(pencil, band[1])?;
-    let lu = LU_OVER_SYMMETRIC * solver.inertia.stats().used_mb;
-    if !solver.lu.is_made() && lu > memory::available_mb(pencil.k.comm()) {
+    if !lu.is_made() && solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU > available_mb() {
         solver.inertia.release();
     }
-    solver.factorise_shifted(pencil)?;
+    solver.factorise_shifted(pencil, lu)?;
     let (mut n_solves, mut last) = (0, None);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
-        let search = solver.search(pencil, expected + margin, band[1], progress)?;
+        if solver.labels.is_some() && search::needs_mb(expected + margin, n_equations(pencil)) > available_mb() {
+            solver.inertia.release();
+        }
+        let search = solver.search(pencil, lu, expected + margin, band[1], progress)?;
         // What the blocked search does not find is left to the other one.
         let labels = solver.labels.take();
         let Some(search) = search else { continue };
@@ -227,15 +225,16 @@ impl Solver {
     fn search(
         &self,
         pencil: &Pencil,
+        lu: &Factor,
         n_modes: usize,
         end: f64,
         progress: &mut dyn FnMut(usize, usize, usize),
     ) -> Result<Option<Search>> {
-        let room = memory::available_mb(pencil.k.comm()) / subspace::needs_mb(n_modes, n_equations(pencil));
+        let room = memory::available_mb(pencil.k.comm()) / search::needs_mb(n_modes, n_equations(pencil));
         if let Some(labels) = self.labels.as_ref().filter(|_| self.shift == 0.0 && room > 1.0) {
-            let problem = Problem { pencil, factor: &self.lu, labels };
+            let problem = Problem { pencil, factor: lu, labels };
             let reach = BEYOND * end;
-            let outcome = subspace::solve(&problem, TAU * reach, n_modes, progress);
+            let outcome = search::solve(&problem, TAU * reach, n_modes, progress);
             return match outcome {
                 Ok((Found { pairs, n_solves, .. }, errors)) => {
                     Ok(Some(Search { pairs, reach, n_solves, backward_errors: Some(errors) }))
@@ -244,7 +243,7 @@ impl Solver {
                 Err(error) => Err(error),
             };
         }
-        let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: self.shift, factor: &self.lu };
+        let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: self.shift, factor: lu };
         let n_all = 2 * n_equations(pencil);
         let n_wanted = (2 * n_modes).min(n_all);
         let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
@@ -257,21 +256,14 @@ impl Solver {
         }))
     }
 
-    /// Memory (MB) that the next solution takes beyond what is held, as far as a factor of the same pattern tells: an LU, and
-    /// its symmetric counterpart of half the size.
-    pub fn still_needs_mb(&self, like: &FactorStats) -> f64 {
-        let missing = |is_made: bool, share: f64| if is_made { 0.0 } else { share * like.used_mb };
-        missing(self.lu.is_made(), 1.0) + missing(self.inertia.is_made(), 0.6)
-    }
-
     /// LU of `sigma^2 M + sigma C + K`.
-    fn factorise_shifted(&mut self, pencil: &Pencil) -> Result<()> {
+    fn factorise_shifted(&self, pencil: &Pencil, lu: &mut Factor) -> Result<()> {
         if self.shift == 0.0 {
-            return self.lu.factorise(pencil.k);
+            return lu.factorise(pencil.k);
         }
         let mut shifted = pencil.k.duplicate()?;
         shifted.axpy(self.shift * self.shift, pencil.m)?;
         shifted.axpy(self.shift, pencil.c)?;
-        self.lu.factorise(&shifted)
+        lu.factorise(&shifted)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::Result;
 use crate::assembly::System;
+use crate::contact::{Response, Status, Tangential};
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::petsc::Matrix;
 
@@ -17,6 +18,8 @@ pub struct Linearised {
     pub c: Option<Matrix>,
     /// What each contact point has in `k_symmetric`.
     tangents: Vec<[[f64; 3]; 3]>,
+    /// What each contact point does, its tangent that in `k`.
+    frozen: Vec<Response>,
 }
 
 impl Linearised {
@@ -25,7 +28,8 @@ impl Linearised {
     /// # Errors
     /// PETSc's.
     pub fn new(system: &System) -> Result<Linearised> {
-        Ok(Linearised { k: system.k.duplicate()?, k_symmetric: system.k.duplicate()?, c: None, tangents: Vec::new() })
+        let (k, k_symmetric) = (system.k.duplicate()?, system.k.duplicate()?);
+        Ok(Linearised { k, k_symmetric, c: None, tangents: Vec::new(), frozen: Vec::new() })
     }
 
     /// Linearises about `equilibrium`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`, all
@@ -51,13 +55,29 @@ impl Linearised {
             contacts.add_blocks((0..gaps.len()).map(block), &mut c)?;
             self.c = Some(c);
         }
-        for (matrix, frictions) in [(&mut self.k, &frictions), (&mut self.k_symmetric, &none)] {
+        let blocks = |frictions: &[f64]| -> Vec<[[f64; 3]; 3]> {
             let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, frictions);
-            self.tangents = (0..gaps.len()).map(block).collect();
+            (0..gaps.len()).map(block).collect()
+        };
+        let tangents = blocks(&frictions);
+        self.tangents = blocks(&none);
+        for (matrix, tangents) in [(&mut self.k, &tangents), (&mut self.k_symmetric, &self.tangents)] {
             matrix.copy_from(&system.k)?;
-            contacts.add_blocks(self.tangents.iter().copied(), matrix)?;
+            contacts.add_blocks(tangents.iter().copied(), matrix)?;
         }
+        let freeze = |(a, tangent): (usize, _)| {
+            let response = &equilibrium.responses[a];
+            let sticks = matches!(interface.points[a].law.tangential, Tangential::StickSlip { .. });
+            let status = if sticks && response.status == Status::Slip { Status::Stick } else { response.status };
+            Response { tangent, status, ..*response }
+        };
+        self.frozen = tangents.into_iter().enumerate().map(freeze).collect();
         Ok(())
+    }
+
+    /// What each contact point does, its tangent that in `k`.
+    pub fn frozen(&self) -> &[Response] {
+        &self.frozen
     }
 
     /// The pencil.

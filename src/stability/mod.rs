@@ -11,7 +11,8 @@ mod inertia;
 mod left;
 mod linearise;
 mod mode;
-mod subspace;
+mod search;
+mod space;
 
 pub use band::{Band, Count, Solver, solve};
 pub use explain::{Sensitivity, Share, self_product, sensitivity, shares};
@@ -19,3 +20,4 @@ pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::{left_vectors, right_vectors};
 pub use linearise::Linearised;
 pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO, growth_threshold};
+pub use space::Problem;

@@ -19,8 +19,8 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
-use crate::petsc::{Block, FactorStats, Matrix, memory};
-use crate::stability::{self, Band, Linearised, Mode, Solver};
+use crate::petsc::{Block, FactorStats, Matrix};
+use crate::stability::{self, Band, Linearised, Mode, Problem, Solver};
 
 /// A structure under analysis at one friction after the other.
 pub struct Sweep<'a> {
@@ -43,12 +43,10 @@ pub struct Costs {
     pub modes_seconds: f64,
     /// Spent on left vectors, s.
     pub left_seconds: f64,
-    /// LU of the equilibria's tangents.
-    pub tangent: FactorStats,
+    /// LU of the equilibria's tangents and of the modes' stiffness: one factor for both.
+    pub lu: FactorStats,
     /// Iterations of the equilibria's linear systems with factors of neighbouring tangents.
     pub n_iterations: usize,
-    /// LU of the modes' stiffness.
-    pub stiffness: FactorStats,
     /// Symmetric factor that counts modes.
     pub symmetric: FactorStats,
 }
@@ -61,8 +59,9 @@ pub enum Event<'a> {
     Modes(usize, usize, usize),
 }
 
-/// The equilibrium's factor stays beside those of the modes where these take no more than this of the memory left.
-const SHARE_OF_MEMORY: f64 = 0.8;
+/// Accuracy of left vectors that tell modes apart, and of those that give sensitivities.
+const TO_FOLLOW: f64 = 1e-4;
+const TO_EXPLAIN: f64 = 1e-7;
 
 impl<'a> Sweep<'a> {
     /// A sweep that starts from rest. Collective.
@@ -101,14 +100,10 @@ impl<'a> Sweep<'a> {
             self.linearised = Some(Linearised::new(self.system)?);
         }
         let linearised = self.linearised.as_mut().expect("made above");
-        linearised.update(self.system, self.path.contacts(), equilibrium, self.friction_damping)?;
-        if SHARE_OF_MEMORY * memory::available_mb(self.system.k.comm())
-            < self.solver.still_needs_mb(&self.path.factor())
-        {
-            self.path.release_factor();
-        }
-        let pencil = linearised.pencil(self.system, self.path.contacts());
-        let outcome = stability::solve(&pencil, &mut self.solver, band, &mut |converged, wanted, solves| {
+        linearised.update(self.system, self.path.contacts_mut(), equilibrium, self.friction_damping)?;
+        let (contacts, lu) = self.path.lend_factor(linearised.frozen().to_vec());
+        let pencil = linearised.pencil(self.system, contacts);
+        let outcome = stability::solve(&pencil, lu, &mut self.solver, band, &mut |converged, wanted, solves| {
             hear(Event::Modes(converged, wanted, solves));
         });
         self.seconds[1] += start.elapsed().as_secs_f64();
@@ -128,7 +123,9 @@ impl<'a> Sweep<'a> {
         let start = Instant::now();
         let linearised = self.linearised.as_ref().expect("modes were found");
         let pencil = linearised.pencil(self.system, self.path.contacts());
-        let outcome = stability::left_vectors(&pencil, &self.solver.lu, modes);
+        let problem = Problem { pencil: &pencil, factor: self.path.factor(), labels: &self.system.dofs.labels() };
+        let accuracy = |mode: &Mode| if mode.is_unstable() { TO_EXPLAIN } else { TO_FOLLOW };
+        let outcome = stability::left_vectors(&problem, modes, accuracy);
         self.seconds[2] += start.elapsed().as_secs_f64();
         outcome
     }
@@ -156,14 +153,12 @@ impl<'a> Sweep<'a> {
 
     /// What the sweep has cost so far.
     pub fn costs(&self) -> Costs {
-        let (tangent, n_iterations) = self.path.costs();
         Costs {
             equilibria_seconds: self.seconds[0],
             modes_seconds: self.seconds[1],
             left_seconds: self.seconds[2],
-            tangent,
-            n_iterations,
-            stiffness: self.solver.lu.stats(),
+            lu: self.path.factor().stats(),
+            n_iterations: self.path.n_iterations(),
             symmetric: self.solver.inertia.stats(),
         }
     }
