@@ -61,7 +61,7 @@ impl Found {
     fn add(&mut self, visit: Visit) -> Result<String> {
         let modes = visit.sweep.modes(visit.equilibrium, self.band, &mut |event| visit.study.say(&event))?;
         let any_unstable = modes.modes.iter().any(Mode::is_unstable);
-        let snapshot = any_unstable.then(|| Snapshot::new(visit.sweep, &modes, self.band[1])).transpose()?;
+        let snapshot = any_unstable.then(|| Snapshot::of_unstable(visit.sweep, &modes, self.band[1])).transpose()?;
         self.report(visit, &modes, |visit, i, row| match &snapshot {
             Some(snapshot) => explained(visit, &modes.modes[i], row, snapshot.left(i)?),
             None => Ok(Vec::new()),

@@ -76,10 +76,20 @@ impl<'a> Path<'a> {
         self.factor.n_iterations()
     }
 
-    /// The evaluator, and the factor for the brake linearised with points that do what `frozen` says. Whoever borrows it makes it for that: the
-    /// next step starts from there.
-    pub fn lend_factor(&mut self, frozen: Vec<Response>) -> (&Contacts<'a>, &mut Factor) {
-        (&self.contacts, self.factor.lend(frozen))
+    /// The evaluator, and room for the tangent of the brake linearised: the next step makes its own.
+    pub fn lend_tangent(&mut self) -> (&mut Contacts<'a>, &mut Matrix) {
+        (&mut self.contacts, &mut self.tangent)
+    }
+
+    /// The evaluator, the tangent, and room for its factor. Whoever borrows it makes it for points that do what `frozen` says: the next step
+    /// starts from there.
+    pub fn lend_factor(&mut self, frozen: Vec<Response>) -> (&Contacts<'a>, &Matrix, &mut Factor) {
+        (&self.contacts, &self.tangent, self.factor.lend(frozen))
+    }
+
+    /// The tangent last made.
+    pub fn tangent(&self) -> &Matrix {
+        &self.tangent
     }
 
     /// The last converged or attempted displacement, for output after a failure.

@@ -217,7 +217,8 @@ impl Block {
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / gram[(j, j)].sqrt().max(f64::MIN_POSITIVE)).collect();
         let eigen = SymmetricEigen::new(DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]));
         let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
-        let kept: Vec<usize> = (0..n).filter(|&j| eigen.eigenvalues[j] > negligible.powi(2) * largest).collect();
+        let mut kept: Vec<usize> = (0..n).filter(|&j| eigen.eigenvalues[j] > negligible.powi(2) * largest).collect();
+        kept.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
         let entry = |(i, j): (usize, usize)| scale[i] * eigen.eigenvectors[(i, j)] / eigen.eigenvalues[j].sqrt();
         let entries = kept.iter().flat_map(|&j| (0..n).map(move |i| (i, j)));
         (entries.map(entry).collect(), kept.len())

@@ -82,8 +82,9 @@ const TOLERANCE: f64 = 1e-12;
 const SYMMETRIC_OVER_LU: f64 = 0.6;
 /// How often the search is widened before the band is given up.
 const TRIES: u32 = 4;
-/// The blocked search goes this much beyond the band's end, so that the count finds a gap.
-const BEYOND: f64 = 1.03;
+/// The blocked search goes this much beyond the band's end, so that the count finds a gap; farther where friction has carried a mode
+/// across that gap; then it is TOAR's turn.
+const BEYOND: [f64; 2] = [1.03, 1.12];
 
 /// Eigenpairs of the closed upper half plane, complete up to a frequency.
 struct Search {
@@ -116,20 +117,20 @@ pub fn solve(
         solver.inertia.release();
     }
     solver.factorise_shifted(pencil, lu)?;
-    let (mut n_solves, mut last) = (0, None);
+    let (mut n_solves, mut last, mut gave_up) = (0, None, false);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
         if solver.labels.is_some() && search::needs_mb(expected + margin, n_equations(pencil)) > available_mb() {
             solver.inertia.release();
         }
-        let search = solver.search(pencil, lu, expected + margin, band[1], progress)?;
-        // What the blocked search does not find is left to the other one.
-        let labels = solver.labels.take();
-        let Some(search) = search else { continue };
+        let beyond = BEYOND.get(attempt as usize).filter(|_| !gave_up);
+        let Some(search) = solver.search(pencil, lu, expected + margin, band[1], beyond, progress)? else {
+            gave_up = true;
+            continue;
+        };
         n_solves += search.n_solves;
         if let Some(count) = count(pencil, solver, &search, band[1], expected)? {
             if count.agrees() {
-                solver.labels = labels;
                 return finish(pencil, search, band, count, n_solves);
             }
             last = Some((search, count));
@@ -221,19 +222,22 @@ fn sort(modes: &mut [Mode]) {
 }
 
 impl Solver {
-    /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up.
+    /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up. In blocks if it is told how far
+    /// `beyond` the end, and can; else by TOAR.
     fn search(
         &self,
         pencil: &Pencil,
         lu: &Factor,
         n_modes: usize,
         end: f64,
+        beyond: Option<&f64>,
         progress: &mut dyn FnMut(usize, usize, usize),
     ) -> Result<Option<Search>> {
         let room = memory::available_mb(pencil.k.comm()) / search::needs_mb(n_modes, n_equations(pencil));
-        if let Some(labels) = self.labels.as_ref().filter(|_| self.shift == 0.0 && room > 1.0) {
+        let in_blocks = self.labels.as_ref().filter(|_| self.shift == 0.0 && room > 1.0);
+        if let Some((labels, beyond)) = in_blocks.zip(beyond) {
             let problem = Problem { pencil, factor: lu, labels };
-            let reach = BEYOND * end;
+            let reach = beyond * end;
             let outcome = search::solve(&problem, TAU * reach, n_modes, progress);
             return match outcome {
                 Ok((Found { pairs, n_solves, .. }, errors)) => {

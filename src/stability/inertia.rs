@@ -56,6 +56,9 @@ impl Inertia {
             return Ok(n);
         }
         let mut shifted = pencil.k_symmetric.duplicate()?;
+        if let Some(points) = pencil.points {
+            points.contacts.add_blocks(points.tangents.iter().copied(), &mut shifted)?;
+        }
         shifted.axpy(-omega * omega, pencil.m)?;
         shifted.declare_symmetric()?;
         self.factor.factorise(&shifted)?;

@@ -16,21 +16,24 @@ use crate::{Error, Result};
 /// Rounds of corrections at most. A round wins a factor of about five.
 const ROUNDS: usize = 40;
 
+/// Relative steps away from an eigenvalue at which the problem is not singular.
+const NEIGHBOURS: [f64; 3] = [0.0, 1e-14, 1e-12];
+
 /// Left vectors of `modes`, columns `2i` and `2i + 1` the real and imaginary part of mode i, `y^H M y = 1`, with the `accuracy` that each is to
-/// have: relative, by the last round's change. Gives the number of solves, too. Collective.
+/// have: relative, by the last round's change; where it is infinite, the columns are no left vector. Gives the number of solves, too. Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy.
 pub fn left_vectors(problem: &Problem, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<(Block, usize)> {
     let m = problem.pencil.m;
     let start = right_vectors(m, modes)?;
-    if modes.is_empty() {
+    let mut open: Vec<usize> = (0..modes.len()).filter(|&i| accuracy(&modes[i]).is_finite()).collect();
+    if open.is_empty() {
         return Ok((start, 0));
     }
     let mut space = Space::new(*problem, Side::Left);
     space.extend_by(start.clone())?;
     let mut vectors = start_from(&space, modes, &start);
-    let mut open: Vec<usize> = (0..modes.len()).collect();
     for round in 0..ROUNDS {
         open.retain(|&i| {
             let moved = improve(&space, &mut vectors[i]);
@@ -66,26 +69,30 @@ fn start_from(space: &Space, modes: &[Mode], vectors: &Block) -> Vec<Ritz> {
 /// One inverse iteration with the projected `P(lambda)^T`, from where the vector was, so that two vectors of one eigenvalue stay two. Gives by how
 /// much it moved, relative and but for its phase.
 fn improve(space: &Space, vector: &mut Ritz) -> f64 {
-    let (n, lambda) = (space.v.n_columns(), vector.lambda);
-    let mut matrix = DMatrix::from_element(n, n, Complex64::default());
-    for (power, projected) in [(lambda * lambda, &space.m), (lambda, &space.c), (1.0.into(), &space.a)] {
-        matrix.zip_apply(projected, |z, x| *z += power * x);
-    }
     let entry = |row: usize| match (vector.re.get(row), vector.im.get(row)) {
         (Some(&re), Some(&im)) => Complex64::new(re, im),
         _ => Complex64::default(),
     };
-    let start = normalise((0..n).map(entry).collect());
-    let mut x = start.clone();
-    // Where lambda is an eigenvalue to the last digit, the vector so far is kept.
-    if !dense::solve_complex(n, matrix.as_mut_slice(), &mut x) || !x.iter().all(|z| z.is_finite()) {
-        x.clone_from(&start);
-    }
-    let x = normalise(x);
+    let start = normalise((0..space.v.n_columns()).map(entry).collect());
+    // Where lambda is an eigenvalue to the last digit, a neighbour serves.
+    let found = NEIGHBOURS.iter().find_map(|step| inverse_iterate(space, vector.lambda * (1.0 + step), &start));
+    let x = normalise(found.unwrap_or_else(|| start.clone()));
     let overlap: Complex64 = start.iter().zip(&x).map(|(a, b)| a.conj() * b).sum();
     let moved = start.iter().zip(&x).map(|(a, b)| (b - overlap * a).norm_sqr()).sum::<f64>().sqrt();
     (vector.re, vector.im) = x.iter().map(|z| (z.re, z.im)).unzip();
     moved
+}
+
+/// The projected `P(lambda)^-T start`; none where that cannot be had.
+fn inverse_iterate(space: &Space, lambda: Complex64, start: &[Complex64]) -> Option<Vec<Complex64>> {
+    let n = start.len();
+    let mut matrix = DMatrix::from_element(n, n, Complex64::default());
+    for (power, projected) in [(lambda * lambda, &space.m), (lambda, &space.c), (1.0.into(), &space.a)] {
+        matrix.zip_apply(projected, |z, x| *z += power * x);
+    }
+    let mut x = start.to_vec();
+    let is_solved = dense::solve_complex(n, matrix.as_mut_slice(), &mut x);
+    (is_solved && x.iter().all(|z| z.is_finite())).then_some(x)
 }
 
 /// A vector of length 1.

@@ -8,32 +8,20 @@ use crate::petsc::Matrix;
 
 use super::{Pencil, Points};
 
-/// The matrices linearised about an equilibrium with the status of every point frozen.
+/// A system linearised about an equilibrium with the status of every point frozen; its stiffness has a place elsewhere.
+#[derive(Default)]
 pub struct Linearised {
-    /// `K + B^T D B` with friction's unsymmetric blocks.
-    pub k: Matrix,
-    /// The same without them: symmetric.
-    pub k_symmetric: Matrix,
     /// `C`, with friction damping where it is asked for.
     pub c: Option<Matrix>,
-    /// What each contact point has in `k_symmetric`.
-    tangents: Vec<[[f64; 3]; 3]>,
-    /// What each contact point does, its tangent that in `k`.
+    /// What each contact point has without friction's coupling.
+    symmetric: Vec<[[f64; 3]; 3]>,
+    /// What each contact point does, its tangent that of the stiffness.
     frozen: Vec<Response>,
 }
 
 impl Linearised {
-    /// Room on the system's pattern. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn new(system: &System) -> Result<Linearised> {
-        let (k, k_symmetric) = (system.k.duplicate()?, system.k.duplicate()?);
-        Ok(Linearised { k, k_symmetric, c: None, tangents: Vec::new(), frozen: Vec::new() })
-    }
-
-    /// Linearises about `equilibrium`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`, all
-    /// other closed points stick. With `friction_damping`, `C += B^T [mu p / |v| (I - n n^T - t t^T)] B` of the sliding points.
+    /// Linearises about `equilibrium`, with `k = K + B^T D B`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`,
+    /// all other closed points stick. With `friction_damping`, `C += B^T [mu p / |v| (I - n n^T - t t^T)] B` of the sliding points.
     /// Collective.
     ///
     /// # Errors
@@ -41,7 +29,7 @@ impl Linearised {
     pub fn update(
         &mut self,
         system: &System,
-        contacts: &mut Contacts,
+        (contacts, k): (&mut Contacts, &mut Matrix),
         equilibrium: &Equilibrium,
         friction_damping: bool,
     ) -> Result<()> {
@@ -60,11 +48,9 @@ impl Linearised {
             (0..gaps.len()).map(block).collect()
         };
         let tangents = blocks(&frictions);
-        self.tangents = blocks(&none);
-        for (matrix, tangents) in [(&mut self.k, &tangents), (&mut self.k_symmetric, &self.tangents)] {
-            matrix.copy_from(&system.k)?;
-            contacts.add_blocks(tangents.iter().copied(), matrix)?;
-        }
+        self.symmetric = blocks(&none);
+        k.copy_from(&system.k)?;
+        contacts.add_blocks(tangents.iter().copied(), k)?;
         let freeze = |(a, tangent): (usize, _)| {
             let response = &equilibrium.responses[a];
             let sticks = matches!(interface.points[a].law.tangential, Tangential::StickSlip { .. });
@@ -75,15 +61,15 @@ impl Linearised {
         Ok(())
     }
 
-    /// What each contact point does, its tangent that in `k`.
+    /// What each contact point does, its tangent that of the stiffness.
     pub fn frozen(&self) -> &[Response] {
         &self.frozen
     }
 
-    /// The pencil.
-    pub fn pencil<'a>(&'a self, system: &'a System, contacts: &'a Contacts<'a>) -> Pencil<'a> {
-        let (c, tangents) = (self.c.as_ref().unwrap_or(&system.c), self.tangents.as_slice());
+    /// The pencil, with the stiffness that [`Linearised::update`] has made.
+    pub fn pencil<'a>(&'a self, system: &'a System, contacts: &'a Contacts<'a>, k: &'a Matrix) -> Pencil<'a> {
+        let (c, tangents) = (self.c.as_ref().unwrap_or(&system.c), self.symmetric.as_slice());
         let points = Some(Points { contacts, tangents });
-        Pencil { m: &system.m, c, k: &self.k, k_symmetric: &self.k_symmetric, points }
+        Pencil { m: &system.m, c, k, k_symmetric: &system.k, points }
     }
 }

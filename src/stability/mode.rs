@@ -20,13 +20,13 @@ pub struct Pencil<'a> {
     pub c: &'a Matrix,
     /// Stiffness with the tangent of contact and friction.
     pub k: &'a Matrix,
-    /// Stiffness with the tangent of contact without friction's coupling: symmetric, for counting.
+    /// Symmetric stiffness, for counting: without friction, and without the points below.
     pub k_symmetric: &'a Matrix,
-    /// The contact points whose tangents are in `k_symmetric`, where the count may follow their changes.
+    /// Contact points that add to `k_symmetric`; the count follows their changes.
     pub points: Option<Points<'a>>,
 }
 
-/// Contact points with what each has in a pencil's symmetric stiffness.
+/// Contact points with what each adds to a pencil's symmetric stiffness.
 #[derive(Clone, Copy)]
 pub struct Points<'a> {
     /// Where the points stand among the equations.

@@ -64,21 +64,18 @@ pub fn solve(
     for _ in 0..MAX_ROUNDS {
         let ritz = ritz(&space, radius, n_expected)?;
         let rests = |r: &Ritz| last.iter().any(|z| (z - r.lambda).norm() <= REST * z.norm());
-        let mut late: Vec<&Ritz> = ritz.iter().filter(|r| !rests(r)).collect();
-        progress(ritz.len() - late.len(), ritz.len(), space.n_solves);
+        let n_resting = ritz.iter().filter(|r| rests(r)).count();
+        progress(n_resting, ritz.len(), space.n_solves);
         let lambdas: Vec<Complex64> = ritz.iter().map(|r| r.lambda).collect();
-        if late.is_empty() && last.len() == ritz.len() {
+        if n_resting == ritz.len() && last.len() == ritz.len() {
             let x = space.vectors(&ritz);
             let errors = backward_errors(problem.pencil, &lambdas, &x)?;
-            late = ritz.iter().zip(&errors).filter(|(_, e)| **e > BACKWARD_ERROR).map(|(r, _)| r).collect();
-            if late.is_empty() {
+            if errors.iter().all(|&error| error <= BACKWARD_ERROR) {
                 return Ok((found(&lambdas, &x, space.n_solves)?, errors));
             }
         }
-        if late.is_empty() {
-            late = ritz.iter().collect();
-        }
-        let residuals = space.sketch(&late)?;
+        // What has converged has small residuals and hardly counts.
+        let residuals = space.sketch(&ritz.iter().collect::<Vec<_>>())?;
         space.extend_by_solves(residuals)?;
         last = lambdas;
     }
@@ -88,9 +85,8 @@ pub fn solve(
 /// Krylov blocks of `K^-1 M`.
 fn krylov<'a>(problem: &Problem<'a>, n_expected: usize) -> Result<Space<'a>> {
     let mut space = Space::new(*problem, Side::Right);
-    let n_total = problem.pencil.k.comm().sum(problem.pencil.k.n_local() as f64) as usize;
-    let n_columns = n_krylov(n_expected).min(n_total);
-    let mut image = space.random(KRYLOV_BLOCK.min(n_total)).multiplied_by(problem.pencil.m)?;
+    let n_columns = n_krylov(n_expected).min(space.n_equations);
+    let mut image = space.random(KRYLOV_BLOCK.min(space.n_equations)).multiplied_by(problem.pencil.m)?;
     while space.v.n_columns() < n_columns && image.n_columns() > 0 {
         image = space.extend_by_solves(image)?;
     }

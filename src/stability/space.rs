@@ -43,6 +43,8 @@ pub(super) struct Space<'a> {
     pub c: DMatrix<f64>,
     pub a: DMatrix<f64>,
     noise: Noise<'a>,
+    /// On all ranks.
+    pub n_equations: usize,
     /// Right-hand sides solved for.
     pub n_solves: usize,
 }
@@ -57,10 +59,11 @@ pub(super) struct Ritz {
 impl<'a> Space<'a> {
     /// Without any column.
     pub fn new(problem: Problem<'a>, side: Side) -> Space<'a> {
-        let empty = || Block::zeros(problem.pencil.k.comm(), problem.pencil.k.n_local(), 0);
+        let (comm, n_local) = (problem.pencil.k.comm(), problem.pencil.k.n_local());
         let none = || DMatrix::zeros(0, 0);
-        let (v, av, noise) = (empty(), empty(), Noise::new(problem.labels));
-        Space { problem, side, v, av, m: none(), c: none(), a: none(), noise, n_solves: 0 }
+        let [v, av] = [0, 1].map(|_| Block::zeros(comm, n_local, 0));
+        let (noise, n_equations) = (Noise::new(problem.labels), comm.sum(n_local as f64) as usize);
+        Space { problem, side, v, av, m: none(), c: none(), a: none(), noise, n_equations, n_solves: 0 }
     }
 
     /// Columns without order.
@@ -107,7 +110,10 @@ impl<'a> Space<'a> {
             let overlap = self.v.gram(&w);
             w.axpy(-1.0, &self.v.combined(&overlap, w.n_columns()));
             aw.axpy(-1.0, &self.av.combined(&overlap, aw.n_columns()));
-            let (basis, n) = w.orthonormalising(NEGLIGIBLE);
+            let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE);
+            // No space has more directions than equations; what is beyond is rounding.
+            n = n.min(self.n_equations - self.v.n_columns());
+            basis.truncate(n * w.n_columns());
             (w, aw) = (w.combined(&basis, n), aw.combined(&basis, n));
         }
         let pencil = self.problem.pencil;
@@ -124,22 +130,28 @@ impl<'a> Space<'a> {
     /// are zero.
     pub fn vectors(&self, ritz: &[Ritz]) -> Block {
         let n = self.v.n_columns();
-        let padded = |part| std::iter::chain(part, std::iter::repeat(&0.0)).take(n);
-        let y: Vec<f64> = ritz.iter().flat_map(|r| [&r.re, &r.im]).flat_map(padded).copied().collect();
+        let padded = |part: &[f64]| part.iter().copied().chain(std::iter::repeat(0.0)).take(n).collect::<Vec<f64>>();
+        let y: Vec<f64> = ritz.iter().flat_map(|r| [&r.re, &r.im]).flat_map(|part| padded(part)).collect();
         self.v.combined(&y, 2 * ritz.len())
     }
 
-    /// Random combinations of the residuals' real and imaginary parts,
+    /// Real and imaginary parts of the residuals where they are few, else random combinations of them,
     /// `sum_i Re(z_ij^* P(lambda_i) V y_i)`, `z_ij` normal: column j is `A V a_j + C V b_j + M V d_j`.
     ///
     /// # Errors
     /// PETSc's.
     pub fn sketch(&mut self, ritz: &[&Ritz]) -> Result<Block> {
-        let (n, noise, pencil) = (self.v.n_columns(), &mut self.noise, self.problem.pencil);
-        let mut coefficients = [0, 1, 2].map(|_| vec![0.0; n * SKETCH]);
-        for j in 0..SKETCH {
-            for r in ritz {
-                let z = Complex64::new(noise.normal(), noise.normal());
+        let (n, pencil) = (self.v.n_columns(), self.problem.pencil);
+        let n_columns = SKETCH.min(2 * ritz.len());
+        let mut coefficients = [0, 1, 2].map(|_| vec![0.0; n * n_columns]);
+        for j in 0..n_columns {
+            for (i, r) in ritz.iter().enumerate() {
+                let z = match (n_columns < SKETCH, j == 2 * i, j == 2 * i + 1) {
+                    (true, true, _) => Complex64::ONE,
+                    (true, _, true) => Complex64::I,
+                    (true, ..) => continue,
+                    (false, ..) => Complex64::new(self.noise.normal(), self.noise.normal()),
+                };
                 for (power, a) in coefficients.iter_mut().enumerate() {
                     let factor = z.conj() * r.lambda.powu(power as u32);
                     let column = a[j * n..(j + 1) * n].iter_mut().zip(r.re.iter().zip(&r.im));
@@ -148,9 +160,9 @@ impl<'a> Space<'a> {
             }
         }
         let [a, b, d] = coefficients;
-        let mut sum = self.av.combined(&a, SKETCH);
-        sum.axpy(1.0, &self.v.combined(&b, SKETCH).multiplied_by(pencil.c)?);
-        sum.axpy(1.0, &self.v.combined(&d, SKETCH).multiplied_by(pencil.m)?);
+        let mut sum = self.av.combined(&a, n_columns);
+        sum.axpy(1.0, &self.v.combined(&b, n_columns).multiplied_by(pencil.c)?);
+        sum.axpy(1.0, &self.v.combined(&d, n_columns).multiplied_by(pencil.m)?);
         Ok(sum)
     }
 }

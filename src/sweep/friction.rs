@@ -37,6 +37,10 @@ pub struct Friction<'f> {
 /// Modes are solved for up to this fraction beyond the band's end, and conjugates kept down to as far below zero: there modes come and
 /// go unnoticed.
 const BEYOND: f64 = 0.05;
+/// Accuracy of left vectors that explain a mode: sensitivities are as exact.
+const EXPLAINS: f64 = 1e-7;
+/// Accuracy of left vectors that only recognise a mode at the next friction.
+const RECOGNISES: f64 = 1e-4;
 /// Hopf points are bracketed to this, in friction.
 const TOLERANCE: f64 = 1e-3;
 
@@ -52,12 +56,27 @@ pub fn tracking_options(band: [f64; 2]) -> Options {
 }
 
 impl Snapshot {
-    /// Left vectors of the modes that a sweep has just found, and right vectors in the same form. Collective.
+    /// Left vectors of the modes that a sweep has just found, those of unstable modes to seven digits, and right vectors in the same form.
+    /// Collective.
     ///
     /// # Errors
     /// See [`crate::stability::left_vectors`].
     pub fn new(sweep: &mut Sweep, band: &Band, end: f64) -> Result<Snapshot> {
-        let (left, _) = sweep.left_vectors(&band.modes)?;
+        Snapshot::with(sweep, band, end, RECOGNISES)
+    }
+
+    /// As [`Snapshot::new`], where only unstable modes need left vectors: those of the others are not computed. Collective.
+    ///
+    /// # Errors
+    /// See [`crate::stability::left_vectors`].
+    pub fn of_unstable(sweep: &mut Sweep, band: &Band, end: f64) -> Result<Snapshot> {
+        Snapshot::with(sweep, band, end, f64::INFINITY)
+    }
+
+    /// With the accuracy of stable modes' left vectors.
+    fn with(sweep: &mut Sweep, band: &Band, end: f64, of_stable: f64) -> Result<Snapshot> {
+        let (left, _) =
+            sweep.left_vectors(&band.modes, |mode| if mode.is_unstable() { EXPLAINS } else { of_stable })?;
         let right = sweep.right_vectors(&band.modes)?;
         let n = band.modes.len();
         let low = |i: &usize| band.modes[*i].lambda.im > 0.0 && band.modes[*i].lambda.im < BEYOND * TAU * end;

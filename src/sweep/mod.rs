@@ -27,7 +27,7 @@ pub struct Sweep<'a> {
     system: &'a System,
     path: Path<'a>,
     solver: Solver,
-    linearised: Option<Linearised>,
+    linearised: Linearised,
     /// Whether friction that turns with the velocity damps the modes.
     pub friction_damping: bool,
     /// Spent on equilibria, modes and left vectors.
@@ -59,10 +59,6 @@ pub enum Event<'a> {
     Modes(usize, usize, usize),
 }
 
-/// Accuracy of left vectors that tell modes apart, and of those that give sensitivities.
-const TO_FOLLOW: f64 = 1e-4;
-const TO_EXPLAIN: f64 = 1e-7;
-
 impl<'a> Sweep<'a> {
     /// A sweep that starts from rest. Collective.
     ///
@@ -73,7 +69,7 @@ impl<'a> Sweep<'a> {
             system,
             path: Path::new(system, interface)?,
             solver: Solver::for_system(system),
-            linearised: None,
+            linearised: Linearised::default(),
             friction_damping: false,
             seconds: [0.0; 3],
         })
@@ -96,13 +92,10 @@ impl<'a> Sweep<'a> {
     /// See [`stability::solve`].
     pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], hear: &mut dyn FnMut(Event)) -> Result<Band> {
         let start = Instant::now();
-        if self.linearised.is_none() {
-            self.linearised = Some(Linearised::new(self.system)?);
-        }
-        let linearised = self.linearised.as_mut().expect("made above");
-        linearised.update(self.system, self.path.contacts_mut(), equilibrium, self.friction_damping)?;
-        let (contacts, lu) = self.path.lend_factor(linearised.frozen().to_vec());
-        let pencil = linearised.pencil(self.system, contacts);
+        let linearised = &mut self.linearised;
+        linearised.update(self.system, self.path.lend_tangent(), equilibrium, self.friction_damping)?;
+        let (contacts, k, lu) = self.path.lend_factor(linearised.frozen().to_vec());
+        let pencil = linearised.pencil(self.system, contacts, k);
         let outcome = stability::solve(&pencil, lu, &mut self.solver, band, &mut |converged, wanted, solves| {
             hear(Event::Modes(converged, wanted, solves));
         });
@@ -115,16 +108,14 @@ impl<'a> Sweep<'a> {
         self.solver = Solver::blocked(self.system);
     }
 
-    /// Left vectors of the modes of the last [`Sweep::modes`]. Collective.
+    /// Left vectors of the modes of the last [`Sweep::modes`], each to the accuracy asked for. Collective.
     ///
     /// # Errors
     /// See [`stability::left_vectors`].
-    pub fn left_vectors(&mut self, modes: &[Mode]) -> Result<(Block, usize)> {
+    pub fn left_vectors(&mut self, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<(Block, usize)> {
         let start = Instant::now();
-        let linearised = self.linearised.as_ref().expect("modes were found");
-        let pencil = linearised.pencil(self.system, self.path.contacts());
+        let pencil = self.linearised.pencil(self.system, self.path.contacts(), self.path.tangent());
         let problem = Problem { pencil: &pencil, factor: self.path.factor(), labels: &self.system.dofs.labels() };
-        let accuracy = |mode: &Mode| if mode.is_unstable() { TO_EXPLAIN } else { TO_FOLLOW };
         let outcome = stability::left_vectors(&problem, modes, accuracy);
         self.seconds[2] += start.elapsed().as_secs_f64();
         outcome
@@ -143,7 +134,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// PETSc's.
     pub fn own_damping(&self) -> Result<Option<Matrix>> {
-        self.linearised.as_ref().and_then(|linearised| linearised.c.as_ref()).map(Matrix::duplicate).transpose()
+        self.linearised.c.as_ref().map(Matrix::duplicate).transpose()
     }
 
     /// The last state tried, for output after a failure.
