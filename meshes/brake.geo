@@ -25,7 +25,7 @@ h_bracket_()  = {     30,   13.5,    4.8,   3.95 };
 per_turn_()   = {      6,      8,      7,      9 };  // elements around a full circle of a fillet, at least
 per_hole_()   = {      8,      8,     12,     16 };  // elements around a hole
 wall_h_()     = {     20,      7,    4.5,    3.5 };  // and along it
-vanes_()      = {      7,     17,     37,     37 };  // primes: no doublet of a low nodal diameter is split
+vanes_()      = {      7,     17,     17,     17 };  // primes: no doublet of a low nodal diameter is split
 vane_n_()     = {      1,      1,      1,      2 };  // elements over a vane's height
 rmin_()       = {    100,    8.5,      0,      0 };  // corner radii below this stay sharp
 vane_n = vane_n_(k);  h_disc = h_disc_(k);  h_lining = h_lining_(k);  h_plate = h_plate_(k);  h_piston = h_piston_(k);

@@ -80,6 +80,8 @@ pub struct Band {
 const TOLERANCE: f64 = 1e-12;
 /// Memory of a symmetric factor over that of an LU on the same pattern: 3.3 and 5.6 GB on the full demo brake.
 const SYMMETRIC_OVER_LU: f64 = 0.6;
+/// By this factor the shift moves where TOAR gave up: about another shift it does not meet the same blocks.
+const ELSEWHERE: f64 = 1.3;
 /// How often the search is widened before the band is given up.
 const TRIES: u32 = 4;
 /// The blocked search goes this much beyond the band's end, so that the count finds a gap; farther where friction has carried a mode
@@ -116,7 +118,8 @@ pub fn solve(
     if !lu.is_made() && solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU > available_mb() {
         solver.inertia.release();
     }
-    solver.factorise_shifted(pencil, lu)?;
+    let mut shift = solver.shift;
+    factorise_shifted(pencil, lu, shift)?;
     let (mut n_solves, mut last, mut gave_up) = (0, None, false);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
@@ -124,8 +127,12 @@ pub fn solve(
             solver.inertia.release();
         }
         let beyond = BEYOND.get(attempt as usize).filter(|_| !gave_up);
-        let Some(search) = solver.search(pencil, lu, expected + margin, band[1], beyond, progress)? else {
+        let Some(search) = solver.search(pencil, (lu, shift), expected + margin, band[1], beyond, progress)? else {
             gave_up = true;
+            if shift != 0.0 {
+                shift *= ELSEWHERE;
+                factorise_shifted(pencil, lu, shift)?;
+            }
             continue;
         };
         n_solves += search.n_solves;
@@ -227,14 +234,14 @@ impl Solver {
     fn search(
         &self,
         pencil: &Pencil,
-        lu: &Factor,
+        (lu, shift): (&Factor, f64),
         n_modes: usize,
         end: f64,
         beyond: Option<&f64>,
         progress: &mut dyn FnMut(usize, usize, usize),
     ) -> Result<Option<Search>> {
         let room = memory::available_mb(pencil.k.comm()) / search::needs_mb(n_modes, n_equations(pencil));
-        let in_blocks = self.labels.as_ref().filter(|_| self.shift == 0.0 && room > 1.0);
+        let in_blocks = self.labels.as_ref().filter(|_| shift == 0.0 && room > 1.0);
         if let Some((labels, beyond)) = in_blocks.zip(beyond) {
             let problem = Problem { pencil, factor: lu, labels };
             let reach = beyond * end;
@@ -247,7 +254,7 @@ impl Solver {
                 Err(error) => Err(error),
             };
         }
-        let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift: self.shift, factor: lu };
+        let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, factor: lu };
         let n_all = 2 * n_equations(pencil);
         let n_wanted = (2 * n_modes).min(n_all);
         let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
@@ -259,15 +266,15 @@ impl Solver {
             Search { pairs, reach, n_solves, backward_errors: None }
         }))
     }
+}
 
-    /// LU of `sigma^2 M + sigma C + K`.
-    fn factorise_shifted(&self, pencil: &Pencil, lu: &mut Factor) -> Result<()> {
-        if self.shift == 0.0 {
-            return lu.factorise(pencil.k);
-        }
-        let mut shifted = pencil.k.duplicate()?;
-        shifted.axpy(self.shift * self.shift, pencil.m)?;
-        shifted.axpy(self.shift, pencil.c)?;
-        lu.factorise(&shifted)
+/// LU of `sigma^2 M + sigma C + K`.
+fn factorise_shifted(pencil: &Pencil, lu: &mut Factor, shift: f64) -> Result<()> {
+    if shift == 0.0 {
+        return lu.factorise(pencil.k);
     }
+    let mut shifted = pencil.k.duplicate()?;
+    shifted.axpy(shift * shift, pencil.m)?;
+    shifted.axpy(shift, pencil.c)?;
+    lu.factorise(&shifted)
 }
