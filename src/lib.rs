@@ -87,6 +87,7 @@ pub mod contact;
 pub mod element;
 pub mod equilibrium;
 pub mod error;
+mod hdf;
 pub mod mesh;
 pub mod model;
 pub mod petsc;

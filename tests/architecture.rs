@@ -7,8 +7,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each room with what it may import. `element` takes from `mesh` a test for good shapes, in its own tests.
-const ROOMS: [(&str, &[&str]); 16] = [
+const ROOMS: [(&str, &[&str]); 17] = [
     ("error", &[]),
+    ("hdf", &["error"]),
     ("algebra", &[]),
     ("tracking", &["error"]),
     ("model", &["error"]),
@@ -19,7 +20,7 @@ const ROOMS: [(&str, &[&str]); 16] = [
     ("assembly", &["error", "algebra", "model", "mesh", "element", "contact", "petsc"]),
     ("equilibrium", &["error", "algebra", "model", "mesh", "contact", "petsc", "assembly"]),
     ("stability", &["error", "contact", "petsc", "assembly", "equilibrium"]),
-    ("reduction", &["error", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"]),
+    ("reduction", &["error", "hdf", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"]),
     (
         "sweep",
         &[
@@ -35,7 +36,7 @@ const ROOMS: [(&str, &[&str]); 16] = [
             "reduction",
         ],
     ),
-    ("results", &["error", "tracking", "equilibrium", "stability", "sweep"]),
+    ("results", &["error", "hdf", "tracking", "equilibrium", "stability", "sweep"]),
     (
         "report",
         &["error", "tracking", "model", "mesh", "element", "contact", "equilibrium", "stability", "sweep", "results"],
@@ -44,6 +45,7 @@ const ROOMS: [(&str, &[&str]); 16] = [
         "cli",
         &[
             "error",
+            "hdf",
             "algebra",
             "tracking",
             "model",

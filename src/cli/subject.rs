@@ -8,6 +8,7 @@ use num_complex::Complex64;
 use crate::assembly::System;
 use crate::contact::Interface;
 use crate::equilibrium::{Equilibrium, PairForces};
+use crate::hdf::is_hdf5;
 use crate::model::NormalLaw;
 use crate::petsc::{Comm, Vector};
 use crate::reduction::file;
@@ -60,7 +61,7 @@ pub trait Subject {
 
 /// Reads and checks what a command is run on. Collective.
 pub fn read(comm: &Comm, run: &Run) -> Result<Box<dyn Subject>> {
-    if file::is_hdf5(&run.model) {
+    if is_hdf5(&run.model) {
         return Ok(Box::new(ReducedBrake::read(comm, run)?));
     }
     if run.law.is_some() || run.pressure != 1.0 {

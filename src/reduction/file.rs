@@ -1,7 +1,7 @@
 //! The file of a super-element, HDF5.
 //!
 //! ```text
-//! /                 attributes: format "squeal super-element", version 1
+//! /                 attributes: format "squeal super-element", version 2
 //! about             text, TOML: [origin] model, mesh with hash, friction, bands; [[pair]] the sliding pairs; parts
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
@@ -15,28 +15,27 @@
 //! surface/basis     n x 3 n_s   displacements of the corners for a unit of each coordinate, single precision
 //! ```
 //!
-//! The file appears when it is complete: it is written under another name beside its place.
+//! [`crate::hdf`] tells how a text is kept, and that the file appears when it is complete.
 
 use std::path::Path;
 
-use hdf5::types::VarLenUnicode;
-use hdf5::{File, Group, H5Type};
-use ndarray::{ArrayView1, ArrayView2};
+use hdf5::{File, Group};
 use serde::{Deserialize, Serialize};
 
 use crate::contact::interface::{Kind, Pair, Statistics};
+use crate::Result;
 use crate::contact::{ContactPoint, Point, Tangential};
+use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
 use crate::model::NormalLaw;
-use crate::{Error, Result};
 
 use super::recovery::OuterSurface;
 use super::super_element::{NodeContact, Origin, SuperElement};
 
-const FORMAT: &str = "squeal super-element";
-/// Raised with every change of the layout.
-const VERSION: i32 = 1;
-/// First bytes of every HDF5 file.
-const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
+const FORMAT: Format = Format {
+    name: "squeal super-element",
+    version: 2,
+    advice: "Make the super-element anew with `squeal reduce`",
+};
 
 /// What is told in words.
 #[derive(Serialize, Deserialize)]
@@ -61,51 +60,32 @@ struct PairText {
     n_contacts: usize,
 }
 
-/// Whether a file is HDF5, by its first bytes; false where it cannot be read.
-pub fn is_hdf5(path: &Path) -> bool {
-    use std::io::Read;
-    let mut start = [0; MAGIC.len()];
-    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == MAGIC
-}
-
 /// Writes a super-element with its surface. Not collective.
 ///
 /// # Errors
 /// The system's and HDF5's, with the path.
 pub fn write(path: &Path, element: &SuperElement, surface: &OuterSurface) -> Result<()> {
-    let name = path.file_name().ok_or_else(|| Error::input(format!("{} has no file name", path.display())))?;
-    let draft = path.with_file_name(format!(".{}.partial-{}", name.to_string_lossy(), std::process::id()));
-    let written = write_draft(&draft, element, surface);
-    if written.is_err() {
-        // Best effort: half a file is of no use.
-        let _ = std::fs::remove_file(&draft);
-    }
-    written.map_err(|reason| Error::Library(format!("{}: HDF5: {reason}", path.display())))?;
-    std::fs::rename(&draft, path).map_err(Error::io(path))
+    hdf::create(path, &FORMAT, |file| write_body(file, element, surface))
 }
 
-fn write_draft(path: &Path, element: &SuperElement, surface: &OuterSurface) -> hdf5::Result<()> {
-    let file = File::create(path)?;
-    file.new_attr::<VarLenUnicode>().create("format")?.write_scalar(&text(FORMAT)?)?;
-    file.new_attr::<i32>().create("version")?.write_scalar(&VERSION)?;
+fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hdf5::Result<()> {
     let about = About { origin: element.origin.clone(), parts: surface.parts.clone(), pair: pair_texts(element) };
     let about = toml::to_string(&about).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
-    file.new_dataset::<VarLenUnicode>().create("about")?.write_scalar(&text(&about)?)?;
+    text(file, "about", &about)?;
     let n = element.n_coordinates();
-    table(&file, "points", 3, element.points.as_flattened())?;
-    list(&file, "frequencies", &element.frequencies)?;
-    table(&file, "mass", n, &element.mass)?;
-    table(&file, "damping", n, &element.damping)?;
-    table(&file, "stiffness", n, &element.stiffness)?;
-    list(&file, "load", &element.load)?;
-    list(&file, "preload", &element.preload)?;
+    table(file, "points", 3, element.points.as_flattened())?;
+    list(file, "frequencies", &element.frequencies)?;
+    table(file, "mass", n, &element.mass)?;
+    table(file, "damping", n, &element.damping)?;
+    table(file, "stiffness", n, &element.stiffness)?;
+    list(file, "load", &element.load)?;
+    list(file, "preload", &element.preload)?;
     write_contacts(&file.create_group("contacts")?, &element.contacts)?;
     let group = file.create_group("surface")?;
     table(&group, "nodes", 3, surface.nodes.as_flattened())?;
     table(&group, "triangles", 3, surface.triangles.as_flattened())?;
     list(&group, "part", &surface.part)?;
-    table(&group, "basis", 3 * surface.nodes.len(), &surface.basis)?;
-    file.close()
+    table(&group, "basis", 3 * surface.nodes.len(), &surface.basis)
 }
 
 fn write_contacts(group: &Group, contacts: &[NodeContact]) -> hdf5::Result<()> {
@@ -145,47 +125,21 @@ fn pair_texts(element: &SuperElement) -> Vec<PairText> {
     element.pairs.iter().map(of).collect()
 }
 
-fn text(text: &str) -> hdf5::Result<VarLenUnicode> {
-    text.parse().map_err(|reason| hdf5::Error::from(format!("{reason:?}")))
-}
-
-fn list<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<()> {
-    group.new_dataset_builder().with_data(ArrayView1::from(values)).create(name).map(|_| ())
-}
-
-fn table<T: H5Type>(group: &Group, name: &str, width: usize, values: &[T]) -> hdf5::Result<()> {
-    let rows = values.len() / width.max(1);
-    let view = ArrayView2::from_shape((rows, width), values).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
-    group.new_dataset_builder().with_data(view).create(name).map(|_| ())
-}
-
 /// Reads a super-element and its surface. Not collective.
 ///
 /// # Errors
 /// [`Error::Input`] where the file is none, is incomplete, or of another version.
 pub fn read(path: &Path) -> Result<(SuperElement, OuterSurface)> {
-    let place = path.display();
-    let refuse = |what: String| Error::input(format!("{place}: {what}. Make it anew with `squeal reduce`"));
-    let broken = |reason: hdf5::Error| refuse(format!("the super-element is incomplete or damaged: {reason}"));
-    let file = File::open(path).map_err(broken)?;
-    let format = file.attr("format").and_then(|a| a.read_scalar::<VarLenUnicode>());
-    if format.map_or(true, |format| format.as_str() != FORMAT) {
-        return Err(Error::input(format!("{place} is an HDF5 file, but not a super-element of squeal")));
-    }
-    let version: i32 = file.attr("version").and_then(|a| a.read_scalar()).map_err(broken)?;
-    if version != VERSION {
-        return Err(refuse(format!("the super-element is of version {version}, this program reads version {VERSION}")));
-    }
-    let (element, surface) = read_body(&file).map_err(broken)?;
+    let file = hdf::open(path, &FORMAT)?;
+    let (element, surface) = read_body(&file).map_err(|reason| hdf::damaged(path, &FORMAT, reason))?;
     match inconsistency(&element, &surface) {
         None => Ok((element, surface)),
-        Some(what) => Err(refuse(format!("the super-element is damaged: {what}"))),
+        Some(what) => Err(hdf::damaged(path, &FORMAT, what)),
     }
 }
 
 fn read_body(file: &File) -> hdf5::Result<(SuperElement, OuterSurface)> {
-    let about = file.dataset("about")?.read_scalar::<VarLenUnicode>()?;
-    let about: About = toml::from_str(about.as_str()).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
+    let about: About = toml::from_str(&read_text(file, "about")?).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
     let pairs = pairs(&about.pair);
     let surface = file.group("surface")?;
     let element = SuperElement {
@@ -264,15 +218,6 @@ fn read_contacts(group: &Group, pairs: &[Pair]) -> hdf5::Result<Vec<NodeContact>
         Ok(NodeContact { point, displacement: displacement[i], normal_force: force[i] })
     };
     (0..pair.len()).map(of).collect()
-}
-
-fn values<T: H5Type>(group: &Group, name: &str) -> hdf5::Result<Vec<T>> {
-    group.dataset(name)?.read_raw()
-}
-
-fn triples<T: H5Type + Copy>(group: &Group, name: &str) -> hdf5::Result<Vec<[T; 3]>> {
-    let flat: Vec<T> = values(group, name)?;
-    Ok(flat.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect())
 }
 
 /// What does not fit together.

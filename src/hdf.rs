@@ -1,0 +1,201 @@
+//! What all our HDF5 files share: how they appear, how they are recognised, and how lists, tables and texts are kept.
+//!
+//! A file has the attributes `format` and `version`, and appears under its name when it is complete. Every array is checksummed
+//! (Fletcher-32), and so are the names and attributes (HDF5 1.10's metadata), so that a flipped bit is an error. A text is an array of bytes, UTF-8.
+
+use std::path::{Path, PathBuf};
+
+use hdf5::types::VarLenUnicode;
+use hdf5::{File, Group, H5Type};
+use ndarray::{ArrayView, IxDyn};
+
+use crate::{Error, Result};
+
+/// A kind of file.
+pub struct Format {
+    /// Its mark.
+    pub name: &'static str,
+    /// Raised with every change of the layout.
+    pub version: i32,
+    /// What to do about a file that cannot be read.
+    pub advice: &'static str,
+}
+
+/// First bytes of every HDF5 file.
+const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// Bytes of a chunk, about: what is checked and unpacked at a time.
+const CHUNK: usize = 1 << 20;
+
+/// Whether a file is HDF5, by its first bytes; false where it cannot be read.
+pub fn is_hdf5(path: &Path) -> bool {
+    use std::io::Read;
+    let mut start = [0; MAGIC.len()];
+    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == MAGIC
+}
+
+/// Writes a file, which appears under its name when it is complete and on the disk. Not collective.
+///
+/// # Errors
+/// The system's and HDF5's, with the path.
+pub fn create(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<()> {
+    let draft = draft(path)?;
+    let written = write_draft(&draft, format, body).map_err(|reason| failure(path, &reason));
+    let named = written.and_then(|()| {
+        std::fs::File::open(&draft).and_then(|file| file.sync_data()).map_err(Error::io(path))?;
+        std::fs::rename(&draft, path).map_err(Error::io(path))
+    });
+    if named.is_err() {
+        // Best effort: half a file is of no use.
+        let _ = std::fs::remove_file(&draft);
+    }
+    named
+}
+
+/// The name of a file that is not complete yet.
+fn draft(path: &Path) -> Result<PathBuf> {
+    let name = path.file_name().ok_or_else(|| Error::input(format!("{} has no file name", path.display())))?;
+    Ok(path.with_file_name(format!(".{}.partial-{}", name.to_string_lossy(), std::process::id())))
+}
+
+fn write_draft(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::Result<()>) -> hdf5::Result<()> {
+    let file = File::with_options().with_fapl(|access| access.libver_v110()).create(path)?;
+    file.new_attr::<VarLenUnicode>().create("format")?.write_scalar(&unicode(format.name)?)?;
+    file.new_attr::<i32>().create("version")?.write_scalar(&format.version)?;
+    body(&file)?;
+    file.close()
+}
+
+/// What HDF5 says of a file that it could not write.
+fn failure(path: &Path, reason: &hdf5::Error) -> Error {
+    Error::Library(format!("{}: HDF5: {reason}", path.display()))
+}
+
+/// Opens a file of ours. Not collective.
+///
+/// # Errors
+/// [`Error::Input`] where it is missing, damaged, another kind of file or of another version.
+pub fn open(path: &Path, format: &Format) -> Result<File> {
+    let place = path.display();
+    if let Err(reason) = std::fs::File::open(path) {
+        return Err(Error::input(format!("{place}: {reason}")));
+    }
+    if !is_hdf5(path) {
+        return Err(Error::input(format!("{place} is not a file of the kind \"{}\", nor any other HDF5 file", format.name)));
+    }
+    let file = File::open(path).map_err(|reason| damaged(path, format, reason))?;
+    let name = file.attr("format").and_then(|a| a.read_scalar::<VarLenUnicode>());
+    if name.map_or(true, |name| name.as_str() != format.name) {
+        return Err(Error::input(format!("{place} is an HDF5 file, but not of the kind \"{}\"", format.name)));
+    }
+    let version: i32 =
+        file.attr("version").and_then(|a| a.read_scalar()).map_err(|reason| damaged(path, format, reason))?;
+    if version == format.version {
+        return Ok(file);
+    }
+    Err(Error::input(format!(
+        "{place} is of version {version}, this program reads version {}. {}",
+        format.version, format.advice
+    )))
+}
+
+/// What is told of a file that HDF5 cannot read to its end, or that does not fit together.
+pub fn damaged(path: &Path, format: &Format, reason: impl std::fmt::Display) -> Error {
+    Error::input(format!("{} is incomplete or damaged: {reason}. {}", path.display(), format.advice))
+}
+
+/// A text as HDF5's own kind of string, for attributes.
+fn unicode(text: &str) -> hdf5::Result<VarLenUnicode> {
+    text.parse().map_err(|reason| hdf5::Error::from(format!("{reason:?}")))
+}
+
+/// Keeps a text.
+///
+/// # Errors
+/// HDF5's, as of everything here.
+pub fn text(group: &Group, name: &str, text: &str) -> hdf5::Result<()> {
+    list(group, name, text.as_bytes())
+}
+
+/// Keeps a list.
+///
+/// # Errors
+/// HDF5's.
+pub fn list<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<()> {
+    array(group, name, &[values.len()], values, Packing::Plain)
+}
+
+/// Keeps rows of so many values.
+///
+/// # Errors
+/// HDF5's.
+pub fn table<T: H5Type>(group: &Group, name: &str, width: usize, values: &[T]) -> hdf5::Result<()> {
+    array(group, name, &[values.len() / width.max(1), width], values, Packing::Plain)
+}
+
+/// Whether an array is compressed.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Packing {
+    /// As it is.
+    Plain,
+    /// Compressed.
+    Packed,
+}
+
+/// Keeps an array, the last index running fastest.
+///
+/// # Errors
+/// HDF5's; where the values do not fill the shape.
+pub fn array<T: H5Type>(
+    group: &Group,
+    name: &str,
+    shape: &[usize],
+    values: &[T],
+    packing: Packing,
+) -> hdf5::Result<()> {
+    let view = ArrayView::from_shape(IxDyn(shape), values).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
+    let builder = group.new_dataset_builder().with_data(view);
+    // What is empty has no chunks.
+    let builder = match (values.is_empty(), packing) {
+        (true, _) => builder,
+        (false, Packing::Plain) => builder.chunk(chunk::<T>(shape)).fletcher32(),
+        (false, Packing::Packed) => builder.chunk(chunk::<T>(shape)).shuffle().deflate(1).fletcher32(),
+    };
+    builder.create(name).map(|_| ())
+}
+
+/// As many rows as fill a chunk; parts of one where it is longer.
+fn chunk<T>(shape: &[usize]) -> Vec<usize> {
+    let mut room = (CHUNK / size_of::<T>().max(1)).max(1);
+    let mut chunk = vec![1; shape.len()];
+    for (length, &n) in chunk.iter_mut().zip(shape).rev() {
+        *length = n.clamp(1, room);
+        room /= *length;
+        room = room.max(1);
+    }
+    chunk
+}
+
+/// All values of an array.
+///
+/// # Errors
+/// HDF5's.
+pub fn values<T: H5Type>(group: &Group, name: &str) -> hdf5::Result<Vec<T>> {
+    group.dataset(name)?.read_raw()
+}
+
+/// The rows of a table of three columns.
+///
+/// # Errors
+/// HDF5's.
+pub fn triples<T: H5Type + Copy>(group: &Group, name: &str) -> hdf5::Result<Vec<[T; 3]>> {
+    let flat: Vec<T> = values(group, name)?;
+    Ok(flat.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect())
+}
+
+/// A text.
+///
+/// # Errors
+/// HDF5's; where it is not UTF-8.
+pub fn read_text(group: &Group, name: &str) -> hdf5::Result<String> {
+    String::from_utf8(values(group, name)?).map_err(|reason| hdf5::Error::from(format!("{name}: {reason}")))
+}
