@@ -28,6 +28,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "tracking",
             "model",
             "mesh",
+            "element",
             "contact",
             "petsc",
             "assembly",

@@ -13,12 +13,14 @@
 //! A mass that does not couple axes has a pattern of its own, a third as large (`axes`).
 
 mod axes;
+mod boundary;
 mod dofs;
 mod pattern;
 mod scatter;
 mod structure;
 mod system;
 
+pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
 pub use pattern::Pattern;
 pub use structure::{Link, Tets, held, links, loads};

@@ -5,7 +5,6 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
-use crate::element::tet10::{MassProperties, mass_properties};
 use crate::mesh::quality::scaled_jacobian;
 use crate::model::LoadKind;
 use crate::petsc::{Comm, Factor, FactorKind};
@@ -52,10 +51,9 @@ fn parts(text: &mut String, comm: &Comm, brake: &Brake) {
         "part", "tets", "mass kg", "centre mm", "inertia kg mm2 (xx yy zz)", "quality min / med"
     );
     for (i, name) in mesh.parts.iter().enumerate() {
-        let part = brake.model.parts.iter().find(|part| part.name == *name).expect("checked against the mesh");
-        let own = || brake.own_tets().filter(|&e| mesh.tet_part[e] as usize == i).map(|e| mesh.tet_nodes(e));
-        let properties = mass(comm, own(), part.material.density);
-        let quality = Ranked::new(comm, own().map(|x| scaled_jacobian(&x)).collect());
+        let own = brake.own_tets().filter(|&e| mesh.tet_part[e] as usize == i).map(|e| mesh.tet_nodes(e));
+        let properties = brake.part_properties(comm, i);
+        let quality = Ranked::new(comm, own.map(|x| scaled_jacobian(&x)).collect());
         let centre = properties.centre();
         let inertia = properties.inertia_about(centre);
         let millimetres = centre.map(|x| fixed(1e3 * x, 2)).join(" ");
@@ -70,17 +68,6 @@ fn parts(text: &mut String, comm: &Comm, brake: &Brake) {
         );
     }
     text.push('\n');
-}
-
-/// Mass and moments of the tetrahedra of all ranks. Collective.
-fn mass(comm: &Comm, tets: impl Iterator<Item = [[f64; 3]; 10]>, density: f64) -> MassProperties {
-    let mut own = MassProperties::default();
-    tets.for_each(|x| own += mass_properties(&x, density));
-    let MassProperties { mass, first_moment, second_moment: [x, y, z] } = own;
-    let mut sums = [[mass, 0.0, 0.0], first_moment, x, y, z];
-    comm.sum_all(sums.as_flattened_mut());
-    let [[mass, ..], first_moment, x, y, z] = sums;
-    MassProperties { mass, first_moment, second_moment: [x, y, z] }
 }
 
 /// Contact pairs with points, areas, gaps.

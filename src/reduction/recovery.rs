@@ -1,11 +1,8 @@
 //! From the coordinates of a super-element back to the brake: its outer surface moves by `u = T q`.
 
-use std::collections::{BTreeMap, HashMap};
-
 use crate::Result;
-use crate::assembly::{DofMap, System};
-use crate::mesh::{Mesh, Numbering};
-use crate::petsc::{Block, Gather};
+use crate::assembly::{Boundary, System};
+use crate::petsc::Block;
 
 /// The outer surface of all parts, in triangles between the corners of the facets, and how it moves.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,136 +34,24 @@ impl OuterSurface {
         u
     }
 
-    /// The surface of a mesh, of which each rank has a piece, with the basis of a reduction there; the root has the basis, other ranks
-    /// have none. Collective.
+    /// The surface of a mesh with the basis of a reduction there; the root has the basis, other ranks have none. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn new(mesh: &Mesh, nodes: &Numbering, system: &System, basis: &Block) -> Result<OuterSurface> {
-        let comm = system.k.comm();
-        let faces = Face::from_numbers(&comm.join(&Face::to_numbers(&own_faces(mesh, nodes, &system.dofs))));
-        let corners: BTreeMap<u32, Corner> =
-            faces.iter().flat_map(|face| face.corners).map(|corner| (corner.global, corner)).collect();
-        let place: BTreeMap<u32, u32> = corners.keys().zip(0..).map(|(&global, i)| (global, i)).collect();
-        let mut surface = OuterSurface {
-            nodes: corners.values().map(|corner| corner.position).collect(),
-            triangles: faces.iter().map(|face| face.corners.map(|corner| place[&corner.global])).collect(),
-            part: faces.iter().map(|face| face.part).collect(),
-            parts: mesh.parts.clone(),
-            basis: Vec::new(),
-        };
-        let wanted = corners.values().filter(|_| comm.is_root());
-        let equations: Vec<i32> = wanted.flat_map(|corner| corner.equations).collect();
-        let free: Vec<i32> = equations.iter().copied().filter(|&e| e >= 0).collect();
-        let mut gather = Gather::new(&system.load, &free)?;
+    pub fn new(boundary: Boundary, parts: &[String], system: &System, basis: &Block) -> Result<OuterSurface> {
+        let mut displacements = boundary.follow(system, 0..boundary.nodes.len())?;
+        let mut columns = Vec::new();
         for j in 0..basis.n_columns() {
-            gather.run(&basis.vector(j)?, |values| {
-                let mut values = values.iter();
-                let at = |&e: &i32| if e < 0 { 0.0 } else { *values.next().expect("one value a free equation") as f32 };
-                surface.basis.extend(equations.iter().map(at));
-            })?;
+            columns.extend(displacements.of(&basis.vector(j)?)?.into_iter().map(|u| u as f32));
         }
-        Ok(surface)
+        let Boundary { nodes, triangles, part, .. } = boundary;
+        Ok(OuterSurface { nodes, triangles, part, parts: parts.to_vec(), basis: columns })
     }
-}
-
-/// A corner of an outer face, by its number among all nodes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Corner {
-    global: u32,
-    position: [f64; 3],
-    equations: [i32; 3],
-}
-
-/// An outer face of a tetrahedron.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Face {
-    corners: [Corner; 3],
-    part: i32,
-}
-
-impl Face {
-    /// Numbers that a face becomes to be sent.
-    const WIDTH: usize = 22;
-
-    fn to_numbers(faces: &[Face]) -> Vec<f64> {
-        faces.iter().flat_map(|face| face.numbers()).collect()
-    }
-
-    fn numbers(&self) -> [f64; Face::WIDTH] {
-        let mut numbers = [0.0; Face::WIDTH];
-        for (corner, out) in self.corners.iter().zip(numbers.chunks_exact_mut(7)) {
-            out[0] = f64::from(corner.global);
-            out[1..4].copy_from_slice(&corner.position);
-            out[4..].copy_from_slice(&corner.equations.map(f64::from));
-        }
-        numbers[21] = f64::from(self.part);
-        numbers
-    }
-
-    fn from_numbers(numbers: &[f64]) -> Vec<Face> {
-        let corner = |n: &[f64]| Corner {
-            global: n[0] as u32,
-            position: [n[1], n[2], n[3]],
-            equations: [n[4], n[5], n[6]].map(|e| e as i32),
-        };
-        let face = |n: &[f64]| Face { corners: [0, 7, 14].map(|k| corner(&n[k..])), part: n[21] as i32 };
-        numbers.chunks_exact(Face::WIDTH).map(face).collect()
-    }
-}
-
-/// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it has all
-/// tetrahedra around a node of its own.
-fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<Face> {
-    /// Corners of a tetrahedron's faces, seen from outside.
-    const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-    let mut faces: HashMap<[u32; 3], ([u32; 3], usize)> = HashMap::new();
-    for (e, tet) in mesh.tets.iter().enumerate() {
-        for face in FACES.map(|face| face.map(|a| tet[a])) {
-            let mut key = face;
-            key.sort_unstable();
-            // A face between two tetrahedra is not outside.
-            if nodes.owns(key[0]) && faces.remove(&key).is_none() {
-                faces.insert(key, (face, e));
-            }
-        }
-    }
-    let mut outer: Vec<([u32; 3], usize)> = faces.into_values().collect();
-    outer.sort_unstable_by_key(|&(face, e)| (e, face));
-    let corner = |n: u32| Corner {
-        global: nodes.global()[n as usize],
-        position: mesh.nodes[n as usize],
-        equations: dofs.equations(n),
-    };
-    outer.iter().map(|&(face, e)| Face { corners: face.map(corner), part: mesh.tet_part[e] as i32 }).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Two tetrahedra with a common face.
-    fn mesh() -> Mesh {
-        let tets = vec![[0, 1, 2, 3, 5, 6, 7, 8, 9, 10], [0, 2, 1, 4, 7, 6, 5, 11, 12, 13]];
-        let nodes = (0..14).map(|n| [f64::from(n), 0.0, 0.0]).collect();
-        Mesh { nodes, tets, tet_part: vec![0, 1], parts: vec!["a".into(), "b".into()], ..Mesh::default() }
-    }
-
-    fn faces(owned: std::ops::Range<u32>) -> Vec<Face> {
-        let nodes = Numbering::whole(14, owned);
-        own_faces(&mesh(), &nodes, &DofMap::new(&nodes, &[[false; 3]; 14]))
-    }
-
-    #[test]
-    fn two_tetrahedra_have_six_outer_faces_each_on_one_rank() {
-        let all = faces(0..14);
-        assert_eq!(all.iter().map(|face| face.part).collect::<Vec<_>>(), [0, 0, 0, 1, 1, 1]);
-        let below_three = |face: &Face| face.corners.iter().filter(|corner| corner.global < 3).count();
-        assert!(all.iter().all(|face| below_three(face) == 2));
-        let apart = [faces(0..1), faces(1..14)].concat();
-        assert!(apart.len() == 6 && all.iter().all(|face| apart.contains(face)));
-        assert_eq!(Face::from_numbers(&Face::to_numbers(&all)), all);
-    }
 
     #[test]
     fn a_surface_moves_by_its_coordinates() {

@@ -29,7 +29,7 @@ pub struct Origin {
     pub model: String,
     /// The mesh file.
     pub mesh: String,
-    /// Its FNV-1a hash.
+    /// SHA-256 of its bytes.
     pub mesh_hash: String,
     /// The program and its version.
     pub program: String,

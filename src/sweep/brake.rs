@@ -3,9 +3,10 @@
 use std::fs::File;
 use std::path::Path;
 
-use crate::assembly::{self, Connectivity, Elements, Link, System, Tets};
+use crate::assembly::{self, Boundary, Connectivity, Elements, Link, System, Tets};
 use crate::contact::Interface;
 use crate::contact::search::Team;
+use crate::element::tet10::{MassProperties, mass_properties};
 use crate::equilibrium::free_motions;
 use crate::mesh::{self, Mesh, Numbering, Piece};
 use crate::model::{self, Model, located};
@@ -124,6 +125,28 @@ impl Brake {
     /// The tetrahedra that this rank counts where each is to be counted once: those of whose first node it is the owner.
     pub fn own_tets(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         (0..self.mesh.tets.len()).filter(|&e| self.nodes.owns(self.mesh.tets[e][0]))
+    }
+
+    /// Mass and moments of a part, by its place in the mesh's list. Collective.
+    ///
+    /// # Panics
+    /// Where the model does not have the part, against which it was checked.
+    pub fn part_properties(&self, comm: &Comm, part: usize) -> MassProperties {
+        let name = &self.mesh.parts[part];
+        let density = self.model.parts.iter().find(|p| p.name == *name).expect("checked against the mesh").material.density;
+        let mut own = MassProperties::default();
+        let tets = self.own_tets().filter(|&e| self.mesh.tet_part[e] as usize == part);
+        tets.for_each(|e| own += mass_properties(&self.mesh.tet_nodes(e), density));
+        let MassProperties { mass, first_moment, second_moment: [x, y, z] } = own;
+        let mut sums = [[mass, 0.0, 0.0], first_moment, x, y, z];
+        comm.sum_all(sums.as_flattened_mut());
+        let [[mass, ..], first_moment, x, y, z] = sums;
+        MassProperties { mass, first_moment, second_moment: [x, y, z] }
+    }
+
+    /// The outer surface of all parts. Collective.
+    pub fn boundary(&self, comm: &Comm, system: &System) -> Boundary {
+        Boundary::new(comm, &self.mesh, &self.nodes, &system.dofs)
     }
 
     /// The families of elements.

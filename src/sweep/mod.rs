@@ -4,12 +4,14 @@
 //! call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
 
 mod brake;
+mod digest;
 mod distribution;
 mod explain;
 mod friction;
 mod reduced;
 
 pub use brake::{Brake, Families, frictions_of};
+pub use digest::digest;
 pub use explain::{Kind, Source};
 pub use friction::{Friction, Snapshot, tracking_options, wider};
 

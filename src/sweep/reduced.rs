@@ -1,18 +1,15 @@
 //! From a brake at its equilibrium to a super-element.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
-
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
 use crate::petsc::Comm;
 use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Origin, SuperElement};
-use crate::{Error, Result};
+use crate::Result;
 
 use super::Brake;
+use super::digest::digest;
 
 impl Brake {
     /// Reduces the brake about an equilibrium to its sliding contacts, the mean motions of its loaded sets and its fixed-interface modes
@@ -34,7 +31,8 @@ impl Brake {
         let centres: Vec<[f64; 3]> = loaded.iter().map(|nodes| self.centre(nodes)).collect();
         let origin = comm.agree(self.origin(comm, system, equilibrium, limit))?;
         let element = SuperElement::new(origin, &structure, &reduced, &centres)?;
-        let surface = OuterSurface::new(&self.mesh, &self.nodes, system, &reduced.basis)?;
+        let boundary = self.boundary(comm, system);
+        let surface = OuterSurface::new(boundary, &self.mesh.parts, system, &reduced.basis)?;
         Ok((element, surface, reduced.costs))
     }
 
@@ -57,7 +55,7 @@ impl Brake {
     }
 
     fn origin(&self, comm: &Comm, system: &System, equilibrium: &Equilibrium, limit: f64) -> Result<Origin> {
-        let mesh_hash = if comm.is_root() { hash(&self.model.mesh_file)? } else { String::new() };
+        let mesh_hash = if comm.is_root() { digest(&self.model.mesh_file)? } else { String::new() };
         Ok(Origin {
             title: self.model.title.clone(),
             model: self.model.file.display().to_string(),
@@ -70,32 +68,5 @@ impl Brake {
             limit,
             friction_damping: self.model.friction_damping,
         })
-    }
-}
-
-/// FNV-1a, 64 bits, of a file's bytes, in hexadecimal. Source: Fowler, Noll, Vo, RFC 9923.
-fn hash(path: &Path) -> Result<String> {
-    let mut file = File::open(path).map_err(Error::io(path))?;
-    let (mut hash, mut buffer) = (0xcbf2_9ce4_8422_2325_u64, vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut buffer).map_err(Error::io(path))? {
-            0 => return Ok(format!("{hash:016x}")),
-            n => buffer[..n].iter().for_each(|&byte| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn hashes_are_the_published_ones() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("mesh");
-        for (text, expected) in [("", "cbf29ce484222325"), ("a", "af63dc4c8601ec8c"), ("foobar", "85944171f73967e8")] {
-            std::fs::write(&path, text).unwrap();
-            assert_eq!(hash(&path).unwrap(), expected);
-        }
     }
 }

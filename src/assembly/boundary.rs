@@ -1,0 +1,170 @@
+//! The outer surface of all parts, and how it moves.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::{DofMap, System};
+use crate::Result;
+use crate::mesh::{Mesh, Numbering};
+use crate::petsc::{Comm, Gather, Vector};
+
+/// The outer surface of all parts of a mesh of which each rank has a piece, in triangles between the corners of the facets. Nodes and
+/// triangles are in an order that does not depend on the number of ranks. Every rank knows it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Boundary {
+    /// Coordinates of its nodes, m.
+    pub nodes: Vec<[f64; 3]>,
+    /// Triangles, turning so that their normals point out.
+    pub triangles: Vec<[u32; 3]>,
+    /// Part of each triangle.
+    pub part: Vec<i32>,
+    /// Equations of its nodes, -1 where held.
+    equations: Vec<[i32; 3]>,
+}
+
+impl Boundary {
+    /// Brings the outer faces of all ranks together. Collective.
+    pub fn new(comm: &Comm, mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Boundary {
+        let mut faces = Face::from_numbers(&comm.join(&Face::to_numbers(&own_faces(mesh, nodes, dofs))));
+        faces.sort_by_key(|face| (face.part, face.corners.map(|corner| corner.label)));
+        let corners: BTreeMap<u32, Corner> =
+            faces.iter().flat_map(|face| face.corners).map(|corner| (corner.label, corner)).collect();
+        let place: HashMap<u32, u32> = corners.keys().zip(0..).map(|(&label, i)| (label, i)).collect();
+        Boundary {
+            nodes: corners.values().map(|corner| corner.position).collect(),
+            triangles: faces.iter().map(|face| face.corners.map(|corner| place[&corner.label])).collect(),
+            part: faces.iter().map(|face| face.part).collect(),
+            equations: corners.values().map(|corner| corner.equations).collect(),
+        }
+    }
+
+    /// Prepares to follow some of the nodes in vectors of a system. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn follow(&self, system: &System, chosen: impl Iterator<Item = usize>) -> Result<Displacements> {
+        let is_root = system.k.comm().is_root();
+        let equations: Vec<i32> = chosen.filter(|_| is_root).flat_map(|node| self.equations[node]).collect();
+        let free: Vec<i32> = equations.iter().copied().filter(|&e| e >= 0).collect();
+        Ok(Displacements { equations, gather: Gather::new(&system.load, &free)? })
+    }
+}
+
+/// Displacements of some nodes, on the root.
+pub struct Displacements {
+    equations: Vec<i32>,
+    gather: Gather,
+}
+
+impl Displacements {
+    /// Displacements x, y, z of the nodes one after the other, zero where held; none on other ranks than the root. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn of(&mut self, vector: &Vector) -> Result<Vec<f64>> {
+        let equations = &self.equations;
+        self.gather.run(vector, |values| {
+            let mut values = values.iter();
+            let at = |&e: &i32| if e < 0 { 0.0 } else { *values.next().expect("one value a free equation") };
+            equations.iter().map(at).collect()
+        })
+    }
+}
+
+/// A corner of an outer face, by its number in the mesh's file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Corner {
+    label: u32,
+    position: [f64; 3],
+    equations: [i32; 3],
+}
+
+/// An outer face of a tetrahedron.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Face {
+    corners: [Corner; 3],
+    part: i32,
+}
+
+impl Face {
+    /// Numbers that a face becomes to be sent.
+    const WIDTH: usize = 22;
+
+    fn to_numbers(faces: &[Face]) -> Vec<f64> {
+        faces.iter().flat_map(|face| face.numbers()).collect()
+    }
+
+    fn numbers(&self) -> [f64; Face::WIDTH] {
+        let mut numbers = [0.0; Face::WIDTH];
+        for (corner, out) in self.corners.iter().zip(numbers.chunks_exact_mut(7)) {
+            out[0] = f64::from(corner.label);
+            out[1..4].copy_from_slice(&corner.position);
+            out[4..].copy_from_slice(&corner.equations.map(f64::from));
+        }
+        numbers[21] = f64::from(self.part);
+        numbers
+    }
+
+    fn from_numbers(numbers: &[f64]) -> Vec<Face> {
+        let corner = |n: &[f64]| Corner {
+            label: n[0] as u32,
+            position: [n[1], n[2], n[3]],
+            equations: [n[4], n[5], n[6]].map(|e| e as i32),
+        };
+        let face = |n: &[f64]| Face { corners: [0, 7, 14].map(|k| corner(&n[k..])), part: n[21] as i32 };
+        numbers.chunks_exact(Face::WIDTH).map(face).collect()
+    }
+}
+
+/// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it has all
+/// tetrahedra around a node of its own.
+fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<Face> {
+    /// Corners of a tetrahedron's faces, seen from outside.
+    const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let mut faces: HashMap<[u32; 3], ([u32; 3], usize)> = HashMap::new();
+    for (e, tet) in mesh.tets.iter().enumerate() {
+        for face in FACES.map(|face| face.map(|a| tet[a])) {
+            let mut key = face;
+            key.sort_unstable();
+            // A face between two tetrahedra is not outside.
+            if nodes.owns(key[0]) && faces.remove(&key).is_none() {
+                faces.insert(key, (face, e));
+            }
+        }
+    }
+    let mut outer: Vec<([u32; 3], usize)> = faces.into_values().collect();
+    outer.sort_unstable_by_key(|&(face, e)| (e, face));
+    let corner = |n: u32| Corner {
+        label: nodes.labels()[n as usize],
+        position: mesh.nodes[n as usize],
+        equations: dofs.equations(n),
+    };
+    outer.iter().map(|&(face, e)| Face { corners: face.map(corner), part: mesh.tet_part[e] as i32 }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two tetrahedra with a common face.
+    fn mesh() -> Mesh {
+        let tets = vec![[0, 1, 2, 3, 5, 6, 7, 8, 9, 10], [0, 2, 1, 4, 7, 6, 5, 11, 12, 13]];
+        let nodes = (0..14).map(|n| [f64::from(n), 0.0, 0.0]).collect();
+        Mesh { nodes, tets, tet_part: vec![0, 1], parts: vec!["a".into(), "b".into()], ..Mesh::default() }
+    }
+
+    fn faces(owned: std::ops::Range<u32>) -> Vec<Face> {
+        let nodes = Numbering::whole(14, owned);
+        own_faces(&mesh(), &nodes, &DofMap::new(&nodes, &[[false; 3]; 14]))
+    }
+
+    #[test]
+    fn two_tetrahedra_have_six_outer_faces_each_on_one_rank() {
+        let all = faces(0..14);
+        assert_eq!(all.iter().map(|face| face.part).collect::<Vec<_>>(), [0, 0, 0, 1, 1, 1]);
+        let below_three = |face: &Face| face.corners.iter().filter(|corner| corner.label < 3).count();
+        assert!(all.iter().all(|face| below_three(face) == 2));
+        let apart = [faces(0..1), faces(1..14)].concat();
+        assert!(apart.len() == 6 && all.iter().all(|face| apart.contains(face)));
+        assert_eq!(Face::from_numbers(&Face::to_numbers(&all)), all);
+    }
+}
