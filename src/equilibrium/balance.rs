@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::algebra::{cross, dot, norm, sub};
 use crate::assembly::{DofMap, ElementMatrices, Elements, System};
 use crate::contact::interface::{Interface, Pair};
@@ -11,7 +13,7 @@ use crate::petsc::Comm;
 use super::Counts;
 
 /// Force (N) and its moment about the origin (N m).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
     /// Force, N.
     pub force: [f64; 3],
@@ -46,7 +48,7 @@ impl Wrench {
 }
 
 /// What a contact pair carries.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairForces {
     /// Points by status.
     pub counts: Counts,

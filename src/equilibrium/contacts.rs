@@ -1,5 +1,7 @@
 //! Between the equations and the contact points.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Result;
 use crate::assembly::{DofMap, System};
 use crate::contact::{Interface, Response, Stage, Status};
@@ -15,7 +17,7 @@ pub struct Contacts<'a> {
 }
 
 /// Points of a pair by status.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Without contact.
     pub open: usize,

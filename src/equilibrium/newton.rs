@@ -1,5 +1,7 @@
 //! One solve of the equilibrium at given laws and friction.
 
+use serde::{Deserialize, Serialize};
+
 use super::contacts::{Contacts, Counts};
 use crate::Result;
 use crate::assembly::System;
@@ -19,7 +21,7 @@ const ENOUGH: f64 = 0.1;
 const MAX_ITERATIONS: usize = 40;
 
 /// What one Newton iterate looked like.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Iteration {
     /// Residual over the larger of loads and contact forces (Euclidean norms).
     pub residual: f64,
@@ -30,7 +32,7 @@ pub struct Iteration {
 }
 
 /// The report of one solve.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// What was solved, for people.
     pub label: String,

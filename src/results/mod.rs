@@ -1,7 +1,15 @@
 //! What a study found, as plain data: no PETSc, no ranks, whole on the root. A run fills it value by value, the results file keeps it
 //! between runs, and everything that a person sees (tables, plots, report, comparisons) is made of it alone.
 
+pub mod file;
+mod samples;
+mod shape;
+
+pub use samples::spread;
+pub use shape::largest;
+
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 use crate::equilibrium::{PairForces, Step};
 use crate::stability::Count;
@@ -23,10 +31,12 @@ pub struct Results {
     pub diagram: Option<Diagram>,
     /// What the run cost, for people; whole only at the end.
     pub costs: String,
+    /// Why the study went no further than its values; none where it came to its end.
+    pub failure: Option<String>,
 }
 
 /// What was analysed, and by what.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// Title of the model.
     pub title: String,
@@ -65,7 +75,7 @@ pub struct About {
 }
 
 /// A part.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// Its name in the model.
     pub name: String,
@@ -76,7 +86,7 @@ pub struct Part {
 }
 
 /// A contact pair.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// Its name in the model.
     pub name: String,
@@ -156,7 +166,8 @@ pub struct ModeData {
     pub sources: Vec<Source>,
 }
 
-/// Displacements of a complex mode, scaled so that the largest of the whole surface is 1 and real.
+/// Displacements of a complex mode, scaled so that the largest one where the mode is known (at the surface, else at its samples) is 1
+/// and real.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shape {
     /// Real part.

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 use super::inertia::Inertia;
 use super::mode::backward_errors;
@@ -49,7 +50,7 @@ impl Solver {
 }
 
 /// How many modes the symmetric problem has below a frequency, and how many were found there.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Count {
     /// The frequency, Hz: the band's end, or a gap between modes near it.
     pub below: f64,

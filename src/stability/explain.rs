@@ -13,11 +13,12 @@
 //! over them, too.
 
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 use super::forms::Forms;
 
 /// What one part, connector or contact pair has in a mode.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// Of the kinetic energy, `x^H M_p x / x^H M x`.
     pub kinetic: f64,
@@ -45,7 +46,7 @@ pub fn shares(lambda: Complex64, forms: &[Forms]) -> Vec<Share> {
 }
 
 /// How an eigenvalue follows a source's matrices: `d lambda / d ln` of its mass, damping and stiffness, 1/s.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
     /// To a factor on the mass.
     pub mass: Complex64,

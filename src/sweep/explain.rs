@@ -1,6 +1,7 @@
 //! What explains a mode of a brake, by part, connector and contact pair.
 
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 use super::{Brake, Sweep};
 use crate::Result;
@@ -10,7 +11,8 @@ use crate::stability::{
 };
 
 /// What a source of energy, damping and stiffness is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// A part of the mesh.
     Part,
@@ -21,7 +23,7 @@ pub enum Kind {
 }
 
 /// A part, connector or contact pair and its role in a mode.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Source {
     /// What it is.
     pub kind: Kind,

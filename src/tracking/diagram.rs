@@ -1,6 +1,7 @@
 //! What tracking finds: branches and Hopf points.
 
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 /// A mode at one value of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +32,7 @@ impl Branch {
 }
 
 /// Another branch in the shape of an unstable one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Partner {
     /// Index of the branch.
     pub branch: usize,
@@ -40,7 +41,7 @@ pub struct Partner {
 }
 
 /// A value where a growth rate passes zero. (For a real eigenvalue, which makes no oscillation, this is divergence.)
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hopf {
     /// Index of the branch.
     pub branch: usize,
