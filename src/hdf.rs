@@ -80,7 +80,10 @@ pub fn open(path: &Path, format: &Format) -> Result<File> {
         return Err(Error::input(format!("{place}: {reason}")));
     }
     if !is_hdf5(path) {
-        return Err(Error::input(format!("{place} is not a file of the kind \"{}\", nor any other HDF5 file", format.name)));
+        return Err(Error::input(format!(
+            "{place} is not a file of the kind \"{}\", nor any other HDF5 file",
+            format.name
+        )));
     }
     let file = File::open(path).map_err(|reason| damaged(path, format, reason))?;
     let name = file.attr("format").and_then(|a| a.read_scalar::<VarLenUnicode>());

@@ -20,7 +20,10 @@ const ROOMS: [(&str, &[&str]); 17] = [
     ("assembly", &["error", "algebra", "model", "mesh", "element", "contact", "petsc"]),
     ("equilibrium", &["error", "algebra", "model", "mesh", "contact", "petsc", "assembly"]),
     ("stability", &["error", "contact", "petsc", "assembly", "equilibrium"]),
-    ("reduction", &["error", "hdf", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"]),
+    (
+        "reduction",
+        &["error", "hdf", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"],
+    ),
     (
         "sweep",
         &[

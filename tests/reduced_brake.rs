@@ -87,7 +87,10 @@ fn a_file_that_is_no_super_element_is_refused() {
     let file = hdf5::File::open_rw(place.path("new.se.h5")).unwrap();
     file.attr("version").unwrap().write_scalar(&7).unwrap();
     file.close().unwrap();
-    assert_refused(&stability("new.se.h5"), &["is of version 7, this program reads version 2", "anew with `squeal reduce`"]);
+    assert_refused(
+        &stability("new.se.h5"),
+        &["is of version 7, this program reads version 2", "anew with `squeal reduce`"],
+    );
 
     std::fs::copy(place.path("brake.se.h5"), place.path("nan.se.h5")).unwrap();
     let file = hdf5::File::open_rw(place.path("nan.se.h5")).unwrap();

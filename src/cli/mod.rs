@@ -2,11 +2,15 @@
 
 mod check;
 mod friction;
+mod full;
+mod motion;
+mod output;
 mod progress;
 mod ranked;
 mod reduce;
-mod results;
+mod reduced;
 mod stability;
+mod state;
 mod statics;
 mod study;
 mod subject;

@@ -1,62 +1,40 @@
-//! What the computing commands share: a brake, its frictions, a results folder, and one equilibrium after the other.
+//! What the computing commands share: a brake, its frictions, a results folder, and one equilibrium after the other. All that is found goes
+//! into [`Results`], of which everything that is written is made.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use crate::assembly::System;
-use crate::contact::Pair;
-use crate::equilibrium::{Equilibrium, Step};
-use crate::petsc::Comm;
+use crate::equilibrium::Equilibrium;
+use crate::petsc::{Comm, libraries};
 use crate::report::folder::Folder;
-use crate::report::tables::{self, PairRow};
-use crate::sweep::{Costs, Event, Sweep};
+use crate::results::{About, Failure, ModeData, Results, Value};
+use crate::stability::Count;
+use crate::sweep::{Costs, Event, Snapshot, Sweep};
 use crate::{Error, Result};
 
-use super::Run;
+use super::motion::Motion;
 use super::progress::Progress;
-use super::results;
 use super::subject::{self, Subject, Told};
+use super::{Run, output};
 
 /// A brake about to be analysed over friction.
 pub struct Study {
     pub subject: Box<dyn Subject>,
     pub folder: Option<Folder>,
-    pub place: PathBuf,
-    /// The values asked for.
-    pub frictions: Vec<f64>,
+    pub about: About,
+    place: PathBuf,
     progress: Progress,
+    start: Instant,
 }
 
 /// A study under way.
 pub struct Walk<'w, 's> {
     pub study: &'w Study,
     pub system: &'s System,
+    pub results: Results,
     sweep: Sweep<'s>,
-    record: Record,
-}
-
-impl Walk<'_, '_> {
-    /// Finds the equilibrium at a friction; `each` makes of it what the command is for, and says in a few words what it found.
-    /// Tables and pictures are of the frictions asked for. Collective.
-    pub fn visit(&mut self, friction: f64, each: impl FnOnce(Visit) -> Result<String>) -> Result<()> {
-        let study = self.study;
-        let asked = study.frictions.contains(&friction);
-        if !asked {
-            study.progress.lengthen();
-        }
-        let mut equilibrium = match self.sweep.equilibrium(friction, &mut |event| study.say(&event)) {
-            Ok(equilibrium) => equilibrium,
-            Err(error) => {
-                self.record.add_steps(friction, self.sweep.path().steps());
-                return Err(study.save_last(error, self.system, &self.sweep)?);
-            }
-        };
-        self.record.add(study, self.system, &mut equilibrium, asked)?;
-        let (system, equilibrium) = (self.system, &equilibrium);
-        let (sweep, text) = (&mut self.sweep, &mut self.record.text);
-        let done = each(Visit { study, system, sweep, equilibrium, text })?;
-        study.progress.advance(&format!("friction {friction:.4}: {done}"));
-        Ok(())
-    }
+    motion: Box<dyn Motion + 's>,
 }
 
 /// One friction of a study, its equilibrium found.
@@ -64,27 +42,58 @@ pub struct Visit<'v, 's> {
     pub study: &'v Study,
     pub system: &'v System,
     pub sweep: &'v mut Sweep<'s>,
+    pub motion: &'v mut dyn Motion,
     pub equilibrium: &'v Equilibrium,
-    /// The report in words, to be added to.
-    pub text: &'v mut String,
+    /// Whether the friction is one of those asked for, whose modes are drawn and explained.
+    pub asked: bool,
+}
+
+/// What a command makes of an equilibrium.
+#[derive(Default)]
+pub struct Found {
+    pub modes: Vec<ModeData>,
+    pub count: Option<Count>,
+    /// Where modes are followed.
+    pub snapshot: Option<Snapshot>,
 }
 
 /// How a study ended.
 pub struct Outcome {
-    pub record: Record,
-    pub costs: Costs,
-    /// Why it went no further, after the frictions in the record.
-    pub failure: Option<Error>,
+    results: Results,
+    /// Why it went no further than its results.
+    error: Option<Error>,
 }
 
 impl Study {
-    /// Reads and checks everything before anything is computed. Collective.
-    pub fn new(comm: &Comm, run: &Run, command: &str) -> Result<Study> {
+    /// Reads and checks everything before anything is computed; `band` gives the band (Hz) to analyse. Collective.
+    pub fn new(
+        comm: &Comm,
+        run: &Run,
+        command: &str,
+        band: impl FnOnce(&dyn Subject) -> Result<[f64; 2]>,
+    ) -> Result<Study> {
+        let start = Instant::now();
         let subject = subject::read(comm, run)?;
         let frictions = subject.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
-        let folder = results::folder(comm, run, command)?;
+        let band = band(&*subject)?;
+        let place = run.folder(command);
+        let folder = comm.agree(if comm.is_root() { Folder::create(&place, run.force).map(Some) } else { Ok(None) })?;
         let progress = Progress::new(comm, frictions.len(), run.verbose);
-        Ok(Study { subject, folder, place: run.folder(command), frictions, progress })
+        let about = About {
+            program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
+            libraries: libraries(),
+            command: std::env::args().skip(1).collect::<Vec<_>>().join(" "),
+            n_ranks: comm.size(),
+            band,
+            frictions,
+            ..subject.about(comm)?
+        };
+        Ok(Study { subject, folder, about, place, progress, start })
+    }
+
+    /// The values asked for.
+    pub fn frictions(&self) -> &[f64] {
+        &self.about.frictions
     }
 
     /// Does the work of a command, which visits one friction after the other. Where that does not converge, what was found is kept.
@@ -94,25 +103,37 @@ impl Study {
         let system = self.subject.assemble(comm)?;
         let mut sweep = Sweep::new(&system, self.subject.interface())?;
         sweep.friction_damping = self.subject.friction_damping();
-        let mut walk = Walk { study: self, system: &system, sweep, record: Record::default() };
-        let failure = match work(&mut walk) {
+        let motion = self.subject.motion(&system)?;
+        let results = Results {
+            about: About { n_equations: system.dofs.n_global(), ..self.about.clone() },
+            surface: motion.surface().clone(),
+            contact: self.subject.contact_faces(),
+            ..Results::default()
+        };
+        let mut walk = Walk { study: self, system: &system, results, sweep, motion };
+        let error = match work(&mut walk) {
             Ok(()) => None,
             Err(error @ Error::NotConverged(_)) => Some(error),
             Err(error) => return Err(error),
         };
         self.progress.finish();
-        Ok(Outcome { record: walk.record, costs: walk.sweep.costs(), failure })
+        let (costs, mut results) = (walk.sweep.costs(), walk.results);
+        results.costs = costs_text(&costs, self.start.elapsed().as_secs_f64(), comm.size());
+        if let Some(error) = &error {
+            results.failure.get_or_insert_default().reason = error.to_string();
+        }
+        Ok(Outcome { results, error })
     }
 
-    /// Writes the tables and the summary, gives the folder its name, and tells the summary.
-    pub fn finish(self, outcome: Outcome, summary: &str) -> Result<()> {
+    /// Writes what was found, gives the folder its name, and tells the summary.
+    pub fn finish(self, outcome: Outcome, summary: fn(&Results, &str) -> String) -> Result<()> {
         if let Some(folder) = self.folder {
-            outcome.record.write(&folder)?;
-            results::write_summary(&folder, summary, outcome.failure.as_ref())?;
+            let text = summary(&outcome.results, &self.place.display().to_string());
+            output::write(&folder, &outcome.results, &text)?;
             folder.finish()?;
-            super::tell(summary)?;
+            super::tell(&text)?;
         }
-        outcome.failure.map_or(Ok(()), Err)
+        outcome.error.map_or(Ok(()), Err)
     }
 
     /// What a sweep is doing, for a person who waits.
@@ -126,86 +147,86 @@ impl Study {
             }
         });
     }
-
-    /// Keeps the state in which a solve gave up, and says where.
-    fn save_last(&self, error: Error, system: &System, sweep: &Sweep) -> Result<Error> {
-        let (Error::NotConverged(reason), Some(u)) = (&error, sweep.path().last()) else { return Err(error) };
-        let folder = self.folder.as_ref();
-        let name = self.subject.draw_last(folder, system, u)?;
-        let file = self.place.join(name);
-        let place = file.display();
-        Ok(Error::NotConverged(format!("{reason}. The last state is in {place}")))
-    }
 }
 
-/// What the equilibria of a run leave behind: the report in words, and rows of the tables.
-#[derive(Default)]
-pub struct Record {
-    pub text: String,
-    rows: Vec<PairRow>,
-    steps: Vec<(f64, Step)>,
-}
-
-impl Record {
-    /// Reports an equilibrium, whose steps it takes; rows and pictures are of the frictions asked for. Collective.
-    fn add(&mut self, study: &Study, system: &System, equilibrium: &mut Equilibrium, asked: bool) -> Result<()> {
-        let (subject, friction) = (&study.subject, equilibrium.friction);
-        let told = subject.tell(study.folder.as_ref().filter(|_| asked), system, equilibrium)?;
-        let pairs = &subject.interface().pairs;
-        self.text += &equilibrium_text(friction, pairs, &told, &equilibrium.steps);
-        if asked {
-            let rows = pairs.iter().zip(told.pairs);
-            self.rows.extend(rows.map(|(pair, forces)| PairRow { friction, pair: pair.name.clone(), forces }));
+impl Walk<'_, '_> {
+    /// Finds the equilibrium at a friction; `each` makes of it what the command is for. Pictures are of the frictions asked for. Gives the
+    /// snapshot that was found. Collective.
+    pub fn visit(&mut self, friction: f64, each: impl FnOnce(Visit) -> Result<Found>) -> Result<Option<Snapshot>> {
+        let (study, system, start) = (self.study, self.system, Instant::now());
+        let asked = study.frictions().contains(&friction);
+        if !asked {
+            study.progress.lengthen();
         }
-        self.steps.extend(equilibrium.steps.drain(..).map(|step| (friction, step)));
-        Ok(())
+        let equilibrium = match self.sweep.equilibrium(friction, &mut |event| study.say(&event)) {
+            Ok(equilibrium) => equilibrium,
+            Err(error) => return Err(self.give_up(friction, error)?),
+        };
+        let Told { pairs, checks } =
+            study.subject.tell(study.folder.as_ref().filter(|_| asked), system, &equilibrium)?;
+        let (sweep, motion) = (&mut self.sweep, &mut *self.motion);
+        let found = each(Visit { study, system, sweep, motion, equilibrium: &equilibrium, asked })?;
+        let (pressure, status) = study.subject.contact_fields(&equilibrium.responses);
+        let Found { modes, count, snapshot } = found;
+        let (steps, seconds) = (equilibrium.steps, start.elapsed().as_secs_f64());
+        let value = Value { friction, asked, pairs, checks, steps, pressure, status, modes, count, seconds };
+        study.progress.advance(&done(&value));
+        self.results.values.push(value);
+        Ok(snapshot)
     }
 
-    /// Keeps the steps towards an equilibrium that was not reached.
-    fn add_steps(&mut self, friction: f64, steps: &[Step]) {
-        self.steps.extend(steps.iter().map(|step| (friction, step.clone())));
-    }
-
-    /// Writes the tables.
-    fn write(&self, folder: &Folder) -> Result<()> {
-        results::csv_table(folder, "contact.csv", |out| tables::pairs(out, &self.rows))?;
-        results::csv_table(folder, "convergence.csv", |out| tables::convergence(out, &self.steps))
+    /// Keeps the steps towards an equilibrium that was not reached and the state in which they ended, and says where that is.
+    fn give_up(&mut self, friction: f64, error: Error) -> Result<Error> {
+        let steps = self.sweep.path().steps().to_vec();
+        self.results.failure = Some(Failure { friction: Some(friction), steps, ..Failure::default() });
+        let (Error::NotConverged(reason), Some(u)) = (&error, self.sweep.path().last()) else { return Ok(error) };
+        let study = self.study;
+        let name = study.subject.draw_last(study.folder.as_ref(), self.system, u)?;
+        let file = study.place.join(name);
+        Ok(Error::NotConverged(format!("{reason}. The last state is in {}", file.display())))
     }
 }
 
-/// The report of one equilibrium.
-fn equilibrium_text(friction: f64, pairs: &[Pair], told: &Told, steps: &[Step]) -> String {
-    let mut text = format!("\nfriction {friction:.3}\n");
-    for step in steps {
-        let last = step.iterations.last().expect("a step has its start");
-        text += &format!(
-            "  {}: {} iterations, residual {:.1e}, {} open, {} sticking, {} slipping\n",
-            step.label,
-            step.iterations.len() - 1,
-            last.residual,
-            last.counts.open,
-            last.counts.stick,
-            last.counts.slip
-        );
-    }
-    let width = pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
-    text += &format!(
-        "  {:width$}  {:>6} {:>6} {:>6}  {:>12} {:>14} {:>10}\n",
-        "pair", "open", "stick", "slip", "normal N", "tangential N", "peak MPa"
+/// A finished friction in a few words.
+fn done(value: &Value) -> String {
+    let found = match value.count {
+        Some(_) => {
+            let n_unstable = value.modes.iter().filter(|mode| mode.unstable).count();
+            format!("{} modes, {n_unstable} unstable", value.modes.len())
+        }
+        None => "equilibrium".into(),
+    };
+    format!("friction {:.4}: {found}", value.friction)
+}
+
+/// What the run cost: seconds of its stages, and each factor.
+fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
+    let mut text = format!(
+        "{seconds:.1} s on {ranks} rank{}: equilibria {:.1} s, modes {:.1} s, left vectors {:.1} s; {} iterations with a neighbour's factor\n",
+        if ranks == 1 { "" } else { "s" },
+        costs.equilibria_seconds,
+        costs.modes_seconds,
+        costs.left_seconds,
+        costs.n_iterations
     );
-    for (pair, forces) in pairs.iter().zip(&told.pairs) {
-        let counts = forces.counts;
+    let factors = [("LU", costs.lu), ("LDL^T", costs.symmetric)];
+    for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
         text += &format!(
-            "  {:width$}  {:>6} {:>6} {:>6}  {:>12.2} {:>14.2} {:>10.3}\n",
-            pair.name,
-            counts.open,
-            counts.stick,
-            counts.slip,
-            forces.normal,
-            forces.tangential,
-            1e-6 * forces.peak_pressure
+            "{name}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \
+             {:.0} MB of {:.0} MB estimated{}, ordering {}\n",
+            cost.n_analyses,
+            cost.analysis_seconds,
+            cost.n_factorisations,
+            cost.factorisation_seconds,
+            cost.n_solves,
+            cost.n_right_hand_sides,
+            cost.solve_seconds,
+            1e-6 * cost.entries,
+            cost.used_mb,
+            cost.estimated_mb,
+            if cost.out_of_core { ", out of core" } else { "" },
+            cost.ordering_name()
         );
     }
-    let checks: Vec<String> = told.checks.lines().map(|line| format!("  {line}\n")).collect();
-    text + &checks.concat()
+    text
 }

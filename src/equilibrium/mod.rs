@@ -13,7 +13,7 @@ mod path;
 mod step_factor;
 mod support;
 
-pub use balance::{Balance, PairForces};
+pub use balance::{Balance, PairForces, Wrench};
 pub use contacts::{Contacts, Counts};
 pub use newton::{Iteration, Step};
 pub use path::{Equilibrium, Path};

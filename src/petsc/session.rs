@@ -1,7 +1,7 @@
 //! MPI, PETSc and SLEPc from start to end, and the communicator.
 
 use std::env;
-use std::ffi::{CString, c_void};
+use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr;
 use std::rc::Rc;
 
@@ -58,6 +58,19 @@ impl Drop for Session {
             sys::SlepcFinalize();
         }
     }
+}
+
+/// PETSc and SLEPc with their versions and dates.
+pub fn libraries() -> String {
+    let version = |get: unsafe extern "C" fn(*mut c_char, usize) -> sys::PetscErrorCode| {
+        let mut text = [0 as c_char; 256];
+        // SAFETY: the library writes at most so many bytes, with a zero at the end; it needs no session.
+        unsafe {
+            get(text.as_mut_ptr(), text.len());
+            CStr::from_ptr(text.as_ptr()).to_string_lossy().trim().to_owned()
+        }
+    };
+    [version(sys::PetscGetVersion), version(sys::SlepcGetVersion)].join("; ")
 }
 
 fn set_option(name: &str, value: &str) -> Result<()> {

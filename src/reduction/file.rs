@@ -22,8 +22,8 @@ use std::path::Path;
 use hdf5::{File, Group};
 use serde::{Deserialize, Serialize};
 
-use crate::contact::interface::{Kind, Pair, Statistics};
 use crate::Result;
+use crate::contact::interface::{Kind, Pair, Statistics};
 use crate::contact::{ContactPoint, Point, Tangential};
 use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
 use crate::model::NormalLaw;
@@ -31,11 +31,8 @@ use crate::model::NormalLaw;
 use super::recovery::OuterSurface;
 use super::super_element::{NodeContact, Origin, SuperElement};
 
-const FORMAT: Format = Format {
-    name: "squeal super-element",
-    version: 2,
-    advice: "Make the super-element anew with `squeal reduce`",
-};
+const FORMAT: Format =
+    Format { name: "squeal super-element", version: 2, advice: "Make the super-element anew with `squeal reduce`" };
 
 /// What is told in words.
 #[derive(Serialize, Deserialize)]
@@ -139,7 +136,8 @@ pub fn read(path: &Path) -> Result<(SuperElement, OuterSurface)> {
 }
 
 fn read_body(file: &File) -> hdf5::Result<(SuperElement, OuterSurface)> {
-    let about: About = toml::from_str(&read_text(file, "about")?).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
+    let about: About =
+        toml::from_str(&read_text(file, "about")?).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
     let pairs = pairs(&about.pair);
     let surface = file.group("surface")?;
     let element = SuperElement {

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use crate::contact::{ContactPoint, Interface, Response, Status};
 use crate::mesh::Mesh;
+use crate::results::ContactFaces;
 
 use super::vtu::{Array, Values};
 
@@ -64,11 +65,12 @@ impl Fields {
 }
 
 impl ContactSurface {
-    /// The surfaces with the responses of their points.
+    /// The surfaces with the responses of their points; without any, no point touches.
     pub fn new(mesh: &Mesh, interface: &Interface, responses: &[Response]) -> ContactSurface {
         let mut surface = ContactSurface::default();
         for (number, pair) in interface.pairs.iter().enumerate() {
-            let own = interface.points[pair.points.clone()].iter().zip(&responses[pair.points.clone()]);
+            let own = interface.points[pair.points.clone()].iter();
+            let own = own.zip(responses.get(pair.points.clone()).unwrap_or_default());
             let of_nodes = |(point, response)| {
                 let values = at(point, response);
                 point.nodes.iter().map(move |&node| (node, values))
@@ -119,6 +121,21 @@ impl ContactSurface {
         }
     }
 
+    /// The surfaces as results keep them, each facet in four triangles between its six nodes.
+    pub fn faces(&self, mesh: &Mesh) -> ContactFaces {
+        const PARTS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
+        let mut pair_of_node = vec![0; self.nodes.len()];
+        for (facet, &pair) in self.facets.iter().zip(&self.pairs) {
+            facet.iter().for_each(|&node| pair_of_node[node as usize] = pair);
+        }
+        ContactFaces {
+            nodes: self.nodes.iter().map(|&n| mesh.nodes[n as usize]).collect(),
+            triangles: self.facets.iter().flat_map(|facet| PARTS.map(|part| part.map(|i| facet[i]))).collect(),
+            pair: self.pairs.iter().flat_map(|&pair| [pair; 4]).collect(),
+            pair_of_node,
+        }
+    }
+
     /// The fields at the nodes of the mesh; where surfaces meet, those of the higher pressure.
     pub fn on_mesh(&self, n_nodes: usize) -> Fields {
         let mut all = Fields::nothing(n_nodes);
@@ -136,13 +153,17 @@ impl ContactSurface {
 
 /// Pressure, traction and status of a point.
 fn at(point: &ContactPoint, response: &Response) -> (f64, [f64; 3], i32) {
-    let status = match response.status {
+    let weight = point.law.weight;
+    (response.normal_force / weight, response.force.map(|f| f / weight), status(response))
+}
+
+/// The status of a point as a number.
+pub fn status(response: &Response) -> i32 {
+    match response.status {
         Status::Open => 0,
         Status::Slip => 1,
         Status::Stick => 2,
-    };
-    let weight = point.law.weight;
-    (response.normal_force / weight, response.force.map(|f| f / weight), status)
+    }
 }
 
 #[cfg(test)]

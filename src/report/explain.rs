@@ -3,17 +3,8 @@
 use std::f64::consts::TAU;
 use std::io::Write;
 
+use crate::results::{ModeData, Results};
 use crate::sweep::{Kind, Source};
-
-use super::tables::ModeRow;
-
-/// A mode with what explains it.
-pub struct Explained {
-    /// The mode.
-    pub row: ModeRow,
-    /// Parts, connectors and contact pairs.
-    pub sources: Vec<Source>,
-}
 
 fn kind(kind: Kind) -> &'static str {
     match kind {
@@ -29,7 +20,7 @@ fn kind(kind: Kind) -> &'static str {
 ///
 /// # Errors
 /// The writer's.
-pub fn sources(out: &mut dyn Write, modes: &[Explained]) -> csv::Result<()> {
+pub fn sources(out: &mut dyn Write, results: &Results) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let fixed = ["friction", "mode", "frequency_hz", "kind", "name"];
     let shares = ["kinetic_share", "strain_share", "fed_per_s", "damped_per_s"];
@@ -37,9 +28,9 @@ pub fn sources(out: &mut dyn Write, modes: &[Explained]) -> csv::Result<()> {
         .map(|what| [format!("growth_per_{what}"), format!("frequency_per_{what}")]);
     let names = fixed.into_iter().chain(shares).map(String::from).chain(slopes.into_iter().flatten());
     table.write_record(names)?;
-    for Explained { row, sources } in modes {
-        for source in sources {
-            let mut record = vec![row.friction.to_string(), row.mode.to_string(), format!("{:.9e}", row.frequency)];
+    for (friction, number, mode) in results.modes() {
+        for source in &mode.sources {
+            let mut record = vec![friction.to_string(), number.to_string(), format!("{:.9e}", mode.frequency())];
             record.extend([kind(source.kind).to_owned(), source.name.clone()]);
             let share = source.share;
             record.extend([share.kinetic, share.strain, share.fed, share.damped].map(|x| format!("{x:.9e}")));
@@ -62,12 +53,11 @@ pub fn sources(out: &mut dyn Write, modes: &[Explained]) -> csv::Result<()> {
 }
 
 /// A line: what feeds a mode, what damps it, and where it moves, largest first.
-pub fn sentence(explained: &Explained) -> String {
-    let Explained { row, sources } = explained;
+pub fn sentence(friction: f64, mode: &ModeData) -> String {
+    let sources = &mode.sources;
     format!(
-        "{:.1} Hz at friction {}: fed by {}; damped by {}; moves {}",
-        row.frequency,
-        row.friction,
+        "{:.1} Hz at friction {friction}: fed by {}; damped by {}; moves {}",
+        mode.frequency(),
         largest(sources, |source| source.share.fed.max(0.0)),
         largest(sources, |source| -source.share.damped),
         largest(sources, |source| source.share.kinetic),
@@ -91,7 +81,10 @@ fn largest(sources: &[Source], of: impl Fn(&Source) -> f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use num_complex::Complex64;
+
     use super::*;
+    use crate::results::Value;
     use crate::stability::Share;
 
     fn source(name: &str, fed: f64, damped: f64, kinetic: f64) -> Source {
@@ -101,24 +94,15 @@ mod tests {
 
     #[test]
     fn the_largest_sources_are_named_and_what_takes_out_does_not_feed() {
-        let row = ModeRow {
-            friction: 0.5,
-            mode: 3,
-            frequency: 1786.04,
-            growth_rate: 8.0,
-            damping_ratio: -1e-3,
-            backward_error: 1e-14,
-            unstable: true,
-        };
         let sources = vec![source("a / b", 30.0, 0.0, 0.2), source("c", 10.0, -2.0, 0.8), source("d", -5.0, -6.0, 0.0)];
-        let explained = Explained { row, sources };
-        let line = sentence(&explained);
+        let mode = ModeData { lambda: Complex64::new(8.0, TAU * 1786.04), sources, ..ModeData::default() };
         assert_eq!(
-            line,
+            sentence(0.5, &mode),
             "1786.0 Hz at friction 0.5: fed by a / b 75 %, c 25 %; damped by d 75 %, c 25 %; moves c 80 %, a / b 20 %"
         );
+        let value = Value { friction: 0.5, asked: true, modes: vec![mode], ..Value::default() };
         let mut out = Vec::new();
-        super::sources(&mut out, &[explained]).unwrap();
+        super::sources(&mut out, &Results { values: vec![value], ..Results::default() }).unwrap();
         let text = String::from_utf8(out).unwrap();
         assert_eq!(text.lines().count(), 4);
         assert!(text.lines().all(|line| line.split(',').count() == 17), "{text}");

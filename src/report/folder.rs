@@ -98,6 +98,15 @@ impl Folder {
         write_file(&self.draft.join(name), body)
     }
 
+    /// A file of the folder that `body` writes to the path it is given.
+    ///
+    /// # Errors
+    /// The body's.
+    pub fn place(&self, name: &str, body: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+        self.files.borrow_mut().push(name.to_owned());
+        body(&self.draft.join(name))
+    }
+
     /// Gives the folder its name, in place of an earlier run's.
     ///
     /// # Errors

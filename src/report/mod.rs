@@ -3,7 +3,9 @@
 pub mod branches;
 pub mod contact_cells;
 pub mod contact_surface;
+pub mod details;
 pub mod explain;
 pub mod folder;
+pub mod summary;
 pub mod tables;
 pub mod vtu;

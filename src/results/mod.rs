@@ -32,7 +32,18 @@ pub struct Results {
     /// What the run cost, for people; whole only at the end.
     pub costs: String,
     /// Why the study went no further than its values; none where it came to its end.
-    pub failure: Option<String>,
+    pub failure: Option<Failure>,
+}
+
+/// Why a study ended early.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// For people.
+    pub reason: String,
+    /// The friction whose equilibrium was not reached, where it was that.
+    pub friction: Option<f64>,
+    /// The Newton steps towards it.
+    pub steps: Vec<Step>,
 }
 
 /// What was analysed, and by what.
@@ -174,6 +185,18 @@ pub struct Shape {
     pub re: Vec<[f32; 3]>,
     /// Imaginary part.
     pub im: Vec<[f32; 3]>,
+}
+
+impl Results {
+    /// The modes at the frictions asked for, with their frictions and their numbers there from 1.
+    pub fn modes(&self) -> impl Iterator<Item = (f64, usize, &ModeData)> {
+        self.asked().flat_map(|value| (1..).zip(&value.modes).map(|(number, mode)| (value.friction, number, mode)))
+    }
+
+    /// The frictions that were asked for.
+    pub fn asked(&self) -> impl Iterator<Item = &Value> {
+        self.values.iter().filter(|value| value.asked)
+    }
 }
 
 impl ModeData {

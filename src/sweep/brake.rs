@@ -133,7 +133,8 @@ impl Brake {
     /// Where the model does not have the part, against which it was checked.
     pub fn part_properties(&self, comm: &Comm, part: usize) -> MassProperties {
         let name = &self.mesh.parts[part];
-        let density = self.model.parts.iter().find(|p| p.name == *name).expect("checked against the mesh").material.density;
+        let density =
+            self.model.parts.iter().find(|p| p.name == *name).expect("checked against the mesh").material.density;
         let mut own = MassProperties::default();
         let tets = self.own_tets().filter(|&e| self.mesh.tet_part[e] as usize == part);
         tets.for_each(|e| own += mass_properties(&self.mesh.tet_nodes(e), density));

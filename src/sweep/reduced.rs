@@ -1,12 +1,12 @@
 //! From a brake at its equilibrium to a super-element.
 
+use crate::Result;
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
 use crate::petsc::Comm;
 use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Origin, SuperElement};
-use crate::Result;
 
 use super::Brake;
 use super::digest::digest;

@@ -1,14 +1,12 @@
-//! What the computing commands share: the equilibrium of one friction with its checks, tables and pictures.
+//! The equilibrium of a brake with its checks, and pictures of it and of modes.
 
-use std::io::Write;
-
+use crate::Result;
 use crate::equilibrium::{Balance, Equilibrium};
 use crate::petsc::{Comm, Vector};
 use crate::report::contact_surface::{ContactSurface, Fields};
 use crate::report::folder::Folder;
 use crate::report::vtu::{Cells, Grid, Values};
 use crate::stability::Mode;
-use crate::{Error, Result};
 
 use super::volume::Drawing;
 
@@ -153,21 +151,4 @@ pub fn write_last(folder: Option<&Folder>, brake: &Brake, system: &System, u: &V
     let drawing = Drawing::new(brake);
     let u = drawing.at_nodes(&system.nodal(&[u])?[0]);
     drawing.write(system.k.comm(), folder, LAST_STATE, vec![("displacement", Values::Vectors(&u))], vec![])
-}
-
-/// Writes the summary, which ends with what went wrong; the screen has that as the program's last word.
-pub fn write_summary(folder: &Folder, summary: &str, failure: Option<&Error>) -> Result<()> {
-    let failure = failure.map_or_else(String::new, |error| format!("\nnot converged: {error}\n"));
-    folder.write("summary.txt", |out| out.write_all((summary.to_owned() + &failure).as_bytes()))
-}
-
-/// Turns a CSV error into one of ours.
-pub fn csv_table(folder: &Folder, name: &str, body: impl FnOnce(&mut dyn Write) -> csv::Result<()>) -> Result<()> {
-    folder.write(name, |out| body(out).map_err(std::io::Error::other))
-}
-
-/// The folder on the root; the refusal on all ranks alike.
-pub fn folder(comm: &Comm, run: &super::Run, command: &str) -> Result<Option<Folder>> {
-    let made = if comm.is_root() { Folder::create(&run.folder(command), run.force).map(Some) } else { Ok(None) };
-    comm.agree(made)
 }

@@ -1,0 +1,45 @@
+//! From results to the files of a run's folder.
+
+use std::f64::consts::TAU;
+use std::io::Write;
+
+use crate::Result;
+use crate::report::folder::Folder;
+use crate::report::{branches, details, explain, tables};
+use crate::results::{Results, file};
+
+/// Name of the results file.
+const RESULTS: &str = "results.h5";
+
+/// Writes the results file, the tables that the results have rows for, and the summary, which ends with what went wrong. Not
+/// collective.
+///
+/// # Errors
+/// The system's and HDF5's, with the file's path.
+pub fn write(folder: &Folder, results: &Results, summary: &str) -> Result<()> {
+    folder.place(RESULTS, |path| file::write(path, results))?;
+    table(folder, "contact.csv", |out| tables::pairs(out, results))?;
+    table(folder, "convergence.csv", |out| tables::convergence(out, results))?;
+    if results.about.band[1] > 0.0 {
+        modes(folder, results)?;
+    }
+    let failure = results.failure.as_ref().map_or_else(String::new, |f| format!("\nnot converged: {}\n", f.reason));
+    folder.write("summary.txt", |out| out.write_all((summary.to_owned() + &failure).as_bytes()))
+}
+
+fn modes(folder: &Folder, results: &Results) -> Result<()> {
+    folder.write("modes.csv", |out| tables::modes(out, results))?;
+    folder.write("details.txt", |out| out.write_all(details::text(results).as_bytes()))?;
+    if results.modes().any(|(_, _, mode)| !mode.sources.is_empty()) {
+        table(folder, "explained.csv", |out| explain::sources(out, results))?;
+    }
+    let Some(diagram) = &results.diagram else { return Ok(()) };
+    let band = results.about.band.map(|f| TAU * f);
+    folder.write("branches.csv", |out| branches::points(out, diagram, band))?;
+    folder.write("hopf.csv", |out| branches::hopf(out, diagram))
+}
+
+/// Turns a CSV error into one of ours.
+fn table(folder: &Folder, name: &str, body: impl FnOnce(&mut dyn Write) -> csv::Result<()>) -> Result<()> {
+    folder.write(name, |out| body(out).map_err(std::io::Error::other))
+}

@@ -1,0 +1,59 @@
+//! What a run ends with on the screen.
+
+use super::{branches, details, explain, tables};
+use crate::results::Results;
+
+/// What the complex modes come to, and what is in the folder `place`.
+pub fn stability(results: &Results, place: &str) -> String {
+    let about = &results.about;
+    let [from, to] = about.band;
+    let mut summary = format!("{}: complex modes {from}-{to} Hz\n\n", about.title);
+    if results.asked().next().is_some() {
+        summary += &format!("{}\n{}\n", tables::sweep(results), tables::verdict(results));
+    }
+    let explained = results.modes().filter(|(_, _, mode)| !mode.sources.is_empty());
+    let strongest = explained.max_by(|(_, _, a), (_, _, b)| a.growth_rate().total_cmp(&b.growth_rate()));
+    summary += &strongest.map_or_else(String::new, |(friction, _, mode)| explain::sentence(friction, mode) + "\n");
+    summary += &results.diagram.as_ref().map_or_else(String::new, branches::summary);
+    summary + "\n" + &results.costs + &files(results, place)
+}
+
+/// The equilibria in words, and where their pictures are.
+pub fn statics(results: &Results, place: &str) -> String {
+    format!("{}\n{}\nresults in {place}\n", results.about.title, details::text(results))
+}
+
+/// What is in the results folder: pictures of equilibria, of unstable modes, explanations, branches where there are any.
+fn files(results: &Results, place: &str) -> String {
+    const TABLES: [(&str, &str); 6] = [
+        ("summary.txt", "this text"),
+        ("results.h5", "all of it, for programs"),
+        ("modes.csv", "all modes"),
+        ("contact.csv", "contact pairs"),
+        ("convergence.csv", "Newton iterations"),
+        ("details.txt", "equilibria and modes in words"),
+    ];
+    let is_super_element = results.about.n_nodes == 0;
+    let alone = is_super_element || results.about.n_ranks == 1;
+    let state = match (is_super_element, alone) {
+        (true, _) => "equilibrium_*.vtu",
+        (_, true) => "equilibrium_*.vtu, contact_*.vtu",
+        (_, false) => "equilibrium_*.pvtu, contact_*.vtu",
+    };
+    let states = [(state, "displacements and contact, for ParaView")];
+    let shape = if alone { "mode_*.vtu" } else { "mode_*.pvtu" };
+    let shapes = [(shape, "shapes of the unstable modes, for ParaView")];
+    let reasons = [("explained.csv", "energies, feed, damping, sensitivities")];
+    let curves = [("branches.csv", "modes followed over friction"), ("hopf.csv", "where they become unstable")];
+    let any_equilibrium = results.asked().next().is_some();
+    let any_unstable = results.modes().any(|(_, _, mode)| mode.unstable);
+    let any_explained = results.modes().any(|(_, _, mode)| !mode.sources.is_empty());
+    let lines = TABLES
+        .iter()
+        .chain(curves.iter().filter(|_| results.diagram.is_some()))
+        .chain(reasons.iter().filter(|_| any_explained))
+        .chain(states.iter().filter(|_| any_equilibrium))
+        .chain(shapes.iter().filter(|_| any_unstable))
+        .map(|(name, what)| format!("  {name:36}{what}\n"));
+    format!("\nresults in {place}:\n{}", lines.collect::<String>())
+}
