@@ -22,6 +22,14 @@ pub enum Error {
     /// PETSc, SLEPc, MUMPS or METIS reported an error. Exit code 1.
     #[error("{0}")]
     Library(String),
+    /// A signal has ended the work before its end. Exit code 128 and the signal's number, as shells have it.
+    #[error("{text}")]
+    Interrupted {
+        /// Number of the signal.
+        signal: i32,
+        /// How far the work has come, and how it goes on.
+        text: String,
+    },
     /// What all ranks know to have gone wrong on one of them, with that error's exit code.
     #[error("{text}")]
     Agreed {
@@ -36,12 +44,16 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// The process's exit code: 2 for input, 3 for no convergence, 1 for everything else.
+    /// Exit codes of what a signal ends begin here.
+    pub const SIGNAL: i32 = 128;
+
+    /// The process's exit code: 2 for input, 3 for no convergence, 128 and its number for a signal, 1 for everything else.
     pub fn exit_code(&self) -> i32 {
         match self {
             Error::Input(_) => 2,
             Error::NotConverged(_) => 3,
             Error::Io { .. } | Error::Library(_) => 1,
+            Error::Interrupted { signal, .. } => Error::SIGNAL + signal,
             Error::Agreed { code, .. } => *code,
         }
     }

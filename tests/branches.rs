@@ -23,7 +23,7 @@ fn followed(comm: &Comm, values: &[f64], band: [f64; 2]) -> Diagram {
         let modes = sweep.modes(&equilibrium, wider(band), &mut |_| ())?;
         Snapshot::new(&mut sweep, &modes, band[1])
     };
-    let mut family = Friction { solve: &mut solve, m: &system.m, c: &system.c };
+    let mut family = Friction { solutions: &mut solve, m: &system.m, c: &system.c };
     let (diagram, outcome) = track(&mut family, values, &tracking_options(band));
     outcome.unwrap();
     assert_eq!(diagram.doubtful, Vec::<[f64; 2]>::new());

@@ -1,8 +1,10 @@
 //! The command line: arguments, one file a command, exit codes.
 
 mod check;
+mod checkpoint;
 mod friction;
 mod full;
+mod interrupt;
 mod motion;
 mod output;
 mod progress;
@@ -23,6 +25,7 @@ use std::time::Duration;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use serde_json::{Value as Json, json};
 
 use crate::model::NormalLaw;
 use crate::petsc::{Comm, Session};
@@ -33,7 +36,9 @@ use friction::Frictions;
 ///
 /// Runs alone or under mpirun. Results go to one folder: tables as CSV, shapes as VTU for ParaView.
 ///
-/// Exit codes: 0 done, 2 the input cannot be analysed, 3 no convergence, 1 anything else.
+/// A run that is killed, or ended by Ctrl-C, goes on with the same command.
+///
+/// Exit codes: 0 done, 2 the input cannot be analysed, 3 no convergence, 130 ended by Ctrl-C, 1 anything else.
 #[derive(Parser)]
 #[command(name = "squeal", version, max_term_width = 110)]
 struct Arguments {
@@ -42,6 +47,33 @@ struct Arguments {
     /// An option for PETSc, SLEPc or MUMPS, e.g. --petsc "-equilibrium_snes_monitor" (may be repeated)
     #[arg(long, global = true, value_name = "OPTION", allow_hyphen_values = true)]
     petsc: Vec<String>,
+    /// Tell results as one JSON document on standard output, errors as one on standard error
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+/// What every command is run with.
+struct Shell<'a> {
+    comm: &'a Comm,
+    /// Options for PETSc as typed.
+    petsc: &'a [String],
+    /// Whether results are told as JSON.
+    json: bool,
+}
+
+impl Shell<'_> {
+    /// Tells a text, or the document in its place. The root does. That a reader has seen enough (`squeal check model.toml | head`) is no
+    /// error.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn tell(&self, text: &str, document: impl FnOnce() -> Json) -> Result<()> {
+        match (self.comm.is_root(), self.json) {
+            (false, _) => Ok(()),
+            (true, true) => tell(&format!("{:#}\n", document())),
+            (true, false) => tell(text),
+        }
+    }
 }
 
 #[derive(Subcommand)]
@@ -125,7 +157,7 @@ struct Run {
     /// Folder of the results (default: the model file's name with the command's)
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Replace the results of an earlier run
+    /// Replace the results of an earlier run, and what another command or model has left unfinished
     #[arg(long)]
     force: bool,
     /// Tell of each finished friction on a line of standard error, with the time left (a terminal shows a bar anyway)
@@ -134,6 +166,17 @@ struct Run {
 }
 
 impl Run {
+    /// The options that the numbers depend on, but for friction.
+    fn options(&self) -> String {
+        let contacts = self.contacts.map(|n| format!(" --contacts {n}"));
+        let law = self.law.map(|law| match law {
+            NormalLaw::Linear { stiffness } => format!(" --law linear:{stiffness}"),
+            NormalLaw::Cubic { k1, k3 } => format!(" --law cubic:{k1},{k3}"),
+        });
+        let pressure = (self.pressure != 1.0).then(|| format!(" --pressure {}", self.pressure));
+        [contacts, law, pressure].into_iter().flatten().collect()
+    }
+
     fn folder(&self, command: &str) -> PathBuf {
         let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
         self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-{command}")))
@@ -147,9 +190,12 @@ pub fn main() -> i32 {
         Err(usage) => return tell_usage(&usage),
     };
     match Session::start(&options) {
-        Ok(comm) => guard(&comm, || run(&arguments.command, &comm)),
+        Ok(comm) => {
+            let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json };
+            guard_as(&comm, shell.json, || run(&arguments.command, &shell))
+        }
         Err(error) => {
-            tell_error("error", &error);
+            tell_error("error", &error, arguments.json);
             error.exit_code()
         }
     }
@@ -179,37 +225,43 @@ fn tell_usage(usage: &clap::Error) -> i32 {
     usage.exit_code()
 }
 
-fn run(command: &Command, comm: &Comm) -> Result<()> {
+fn run(command: &Command, shell: &Shell) -> Result<()> {
     match command {
-        Command::Check { model, contacts, output } => check::run(comm, model, *contacts, output.as_deref()),
-        Command::Static { run } => statics::run(comm, run),
-        Command::Reduce { reduce } => reduce::run(comm, reduce),
-        Command::Stability { run, band, anew, no_branches } => stability::run(comm, run, *band, *anew, !no_branches),
+        Command::Check { model, contacts, output } => check::run(shell, model, *contacts, output.as_deref()),
+        Command::Static { run } => statics::run(shell, run),
+        Command::Reduce { reduce } => reduce::run(shell, reduce),
+        Command::Stability { run, band, anew, no_branches } => stability::run(shell, run, *band, *anew, !no_branches),
     }
 }
 
 /// Runs what all ranks do together and gives the exit code. An error is told once; whatever befalls one rank alone, be it a
 /// panic, ends all of them, so that none waits for ever.
 pub fn guard(comm: &Comm, work: impl FnOnce() -> Result<()>) -> i32 {
+    guard_as(comm, false, work)
+}
+
+/// The same, with errors as JSON where that is asked for.
+fn guard_as(comm: &Comm, json: bool, work: impl FnOnce() -> Result<()>) -> i32 {
     const PANICKED: i32 = 101;
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => 0,
-        Ok(Err(error)) => end(comm, &error),
+        Ok(Err(error)) => end(comm, &error, json),
         Err(_) if comm.size() > 1 => comm.abort(PANICKED),
         Err(_) => PANICKED,
     }
 }
 
-/// Tells the error once and ends all ranks. Input and convergence are judged alike everywhere, so that ranks end in order;
+/// Tells the error once and ends all ranks. Input, convergence and signals are judged alike everywhere, so that ranks end in order;
 /// anything else may have happened on this rank alone, so that the others are ended.
-fn end(comm: &Comm, error: &Error) -> i32 {
-    let together = matches!(error, Error::Input(_) | Error::NotConverged(_) | Error::Agreed { .. });
+fn end(comm: &Comm, error: &Error, json: bool) -> i32 {
+    let together =
+        matches!(error, Error::Input(_) | Error::NotConverged(_) | Error::Interrupted { .. } | Error::Agreed { .. });
     if comm.is_root() {
-        tell_error("error", error);
+        tell_error("error", error, json);
     } else if !together {
         // The root may be about to say the same.
         std::thread::sleep(Duration::from_millis(500));
-        tell_error(&format!("error on rank {}", comm.rank()), error);
+        tell_error(&format!("error on rank {}", comm.rank()), error, json);
     }
     if comm.size() > 1 && !together {
         comm.abort(error.exit_code());
@@ -218,11 +270,17 @@ fn end(comm: &Comm, error: &Error) -> i32 {
 }
 
 /// Writes to standard error, as far as anyone listens.
-fn tell_error(what: &str, error: &Error) {
-    let _ = writeln!(io::stderr(), "{what}: {error}");
+fn tell_error(what: &str, error: &Error, as_json: bool) {
+    let text = match (as_json, error) {
+        (true, _) => json!({"error": error.to_string(), "exit_code": error.exit_code()}).to_string(),
+        // That a run was stopped is no mistake.
+        (false, Error::Interrupted { .. }) => error.to_string(),
+        (false, _) => format!("{what}: {error}"),
+    };
+    let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Writes to standard output. That a reader has seen enough (`squeal check model.toml | head`) is no error.
+/// Writes to standard output, as far as anyone reads.
 fn tell(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -17,7 +17,7 @@ const RESULTS: &str = "results.h5";
 /// # Errors
 /// The system's and HDF5's, with the file's path.
 pub fn write(folder: &Folder, results: &Results, summary: &str) -> Result<()> {
-    folder.place(RESULTS, |path| file::write(path, results))?;
+    file::write(&folder.draft().join(RESULTS), results)?;
     table(folder, "contact.csv", |out| tables::pairs(out, results))?;
     table(folder, "convergence.csv", |out| tables::convergence(out, results))?;
     if results.about.band[1] > 0.0 {

@@ -1,5 +1,6 @@
 //! What a person sees of long work: a bar where standard error is a terminal, else lines if they were asked for, else nothing.
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -10,6 +11,8 @@ use crate::petsc::Comm;
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,
+    /// Values that took no time.
+    skipped: Cell<u64>,
     /// Whether finished values are told on lines of their own.
     lines: bool,
 }
@@ -21,7 +24,7 @@ impl Progress {
         let template = "{spinner} [{elapsed}] {wide_bar} {pos}/{len} {msg} {eta} left";
         bar.set_style(ProgressStyle::with_template(template).expect("a valid template"));
         bar.enable_steady_tick(Duration::from_millis(200));
-        Progress { bar, start: Instant::now(), lines: verbose && comm.is_root() }
+        Progress { bar, start: Instant::now(), skipped: Cell::new(0), lines: verbose && comm.is_root() }
     }
 
     /// Says what is being done.
@@ -34,12 +37,23 @@ impl Progress {
         self.bar.inc_length(1);
     }
 
+    /// One more value was done before, one of those to come or one more.
+    pub fn skip(&self, was_to_come: bool) {
+        if !was_to_come {
+            self.lengthen();
+        }
+        self.skipped.set(self.skipped.get() + 1);
+        self.bar.inc(1);
+        self.bar.reset_eta();
+    }
+
     /// One more value is done, which the text describes.
     pub fn advance(&self, done: &str) {
         self.bar.inc(1);
         let (position, length) = (self.bar.position(), self.bar.length().unwrap_or(0));
         let elapsed = self.start.elapsed().as_secs_f64();
-        let left = elapsed / position as f64 * length.saturating_sub(position) as f64;
+        let computed = (position - self.skipped.get()) as f64;
+        let left = elapsed / computed * length.saturating_sub(position) as f64;
         if self.lines {
             self.bar.suspend(|| eprintln!("[{elapsed:.0} s] {position}/{length} {done}; about {left:.0} s left"));
         }

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use serde_json::{Value as Json, json};
+
 use crate::petsc::{Comm, FactorStats};
 use crate::reduction::craig_bampton::{Costs, Event};
 use crate::reduction::file;
@@ -10,11 +12,11 @@ use crate::reduction::super_element::SuperElement;
 use crate::sweep::{Brake, Sweep};
 use crate::{Error, Result};
 
-use super::Reduce;
 use super::progress::Progress;
+use super::{Reduce, Shell};
 
-pub fn run(comm: &Comm, arguments: &Reduce) -> Result<()> {
-    let start = Instant::now();
+pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
+    let (comm, start) = (shell.comm, Instant::now());
     let brake = read(comm, arguments)?;
     brake.require_held(comm)?;
     let friction = match arguments.friction {
@@ -35,8 +37,8 @@ pub fn run(comm: &Comm, arguments: &Reduce) -> Result<()> {
         brake.reduce(comm, &system, &equilibrium, limit, &mut |event| say(&progress, event))?;
     comm.agree(if comm.is_root() { file::write(&place, &element, &surface) } else { Ok(()) })?;
     progress.finish();
-    let text = text(&element, &costs, seconds, start.elapsed().as_secs_f64(), &place);
-    if comm.is_root() { super::tell(&text) } else { Ok(()) }
+    let in_all = start.elapsed().as_secs_f64();
+    shell.tell(&text(&element, &costs, seconds, in_all, &place), || document(&element, &costs, in_all, &place))
 }
 
 /// The brake with its reference nodes: as many as the command line says, else the model.
@@ -75,6 +77,30 @@ fn say(progress: &Progress, event: Event) {
         Event::Fixed(size) => format!("fixed-interface modes: a space of {size} vectors"),
         Event::Project => "projecting".into(),
     });
+}
+
+/// The same as JSON: what was made, and the seconds that its steps took.
+fn document(element: &SuperElement, costs: &Costs, seconds: f64, place: &Path) -> Json {
+    let origin = &element.origin;
+    json!({
+        "title": origin.title,
+        "model": origin.model,
+        "mesh": origin.mesh,
+        "mesh_sha256": origin.mesh_hash,
+        "friction": origin.friction,
+        "limit_hz": origin.limit,
+        "contacts": element.contacts.len(),
+        "retained_points": element.points.len(),
+        "fixed_interface_modes": element.frequencies.len(),
+        "inertia_modes": element.n_inertia_modes(),
+        "coordinates": element.n_coordinates(),
+        "equations_of_the_model": origin.n_equations,
+        "constraint_seconds": costs.constraint_seconds,
+        "fixed_interface_seconds": costs.fixed_seconds,
+        "projection_seconds": costs.projection_seconds,
+        "seconds": seconds,
+        "file": place.display().to_string(),
+    })
 }
 
 /// What was made, and what each step cost.

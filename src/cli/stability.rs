@@ -1,18 +1,24 @@
 //! `squeal stability`: complex modes for one friction or a sweep, followed from one to the next.
 
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
 use crate::Result;
 use crate::petsc::{Comm, Vector};
 use crate::report::summary;
 use crate::stability::{Band, Complex, Mode};
-use crate::sweep::{Friction, Snapshot, Source, Sweep, tracking_options, wider};
+use crate::sweep::{Friction, Snapshot, Solutions, Source, Sweep, Vectors, tracking_options, wider};
 use crate::tracking::track;
 
-use super::Run;
 use super::motion;
 use super::study::{Found, Study, Visit, Walk};
+use super::{Run, Shell};
 
-pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>, anew: bool, branches: bool) -> Result<()> {
-    let mut study = Study::new(comm, run, "stability", |subject| subject.band(band))?;
+pub fn run(shell: &Shell, run: &Run, band: Option<[f64; 2]>, anew: bool, branches: bool) -> Result<()> {
+    let comm = shell.comm;
+    let options = [(anew, " --anew"), (!branches, " --no-branches")];
+    let options: String = options.iter().filter(|(given, _)| *given).map(|(_, name)| *name).collect();
+    let mut study = Study::new(shell, run, ("stability", &options), |subject| subject.band(band))?;
     // Super-elements that are made anew have coordinates of their own, so that their modes cannot be compared.
     let follows = branches && !anew && study.frictions().len() > 1;
     if follows && !study.frictions().is_sorted_by(|a, b| a > b) {
@@ -23,7 +29,7 @@ pub fn run(comm: &Comm, run: &Run, band: Option<[f64; 2]>, anew: bool, branches:
         (false, false) => each(walk, &find),
         (true, _) => each(walk, &|visit| find_reduced(comm, visit)),
     })?;
-    study.finish(outcome, summary::stability)
+    study.finish(shell, outcome, summary::stability)
 }
 
 /// Only the frictions asked for, one by one.
@@ -36,8 +42,17 @@ fn each(walk: &mut Walk, find: &dyn Fn(Visit) -> Result<Found>) -> Result<()> {
 fn follow(walk: &mut Walk) -> Result<()> {
     let (system, study) = (walk.system, walk.study);
     let band = study.about.band;
-    let mut solve = |friction: f64| {
-        let snapshot = walk.visit(friction, |mut visit| {
+    let mut family = Friction { solutions: walk, m: &system.m, c: &system.c };
+    let (diagram, outcome) = track(&mut family, study.frictions(), &tracking_options(band));
+    walk.results.diagram = Some(diagram);
+    outcome
+}
+
+/// The modes of each friction that tracking asks for.
+impl Solutions for Walk<'_, '_> {
+    fn solve(&mut self, friction: f64) -> Result<Snapshot> {
+        let snapshot = self.visit(friction, |mut visit| {
+            let (study, band) = (visit.study, visit.study.about.band);
             let modes = visit.sweep.modes(visit.equilibrium, wider(band), &mut |event| study.say(&event))?;
             let snapshot = Snapshot::new(visit.sweep, &modes, band[1])?;
             let found = found(&mut visit, &modes, |visit, i, number| {
@@ -46,11 +61,19 @@ fn follow(walk: &mut Walk) -> Result<()> {
             Ok(Found { snapshot: Some(snapshot), ..found })
         })?;
         Ok(snapshot.expect("a visit without error has made it"))
-    };
-    let mut family = Friction { solve: &mut solve, m: &system.m, c: &system.c };
-    let (diagram, outcome) = track(&mut family, study.frictions(), &tracking_options(band));
-    walk.results.diagram = Some(diagram);
-    outcome
+    }
+
+    fn vectors(&mut self, number: usize) -> Result<Vectors> {
+        Walk::vectors(self, number)
+    }
+
+    fn known(&mut self, numbers: [usize; 2]) -> Result<Option<DMatrix<Complex64>>> {
+        self.checkpoint().products(numbers)
+    }
+
+    fn keep(&mut self, numbers: [usize; 2], products: &DMatrix<Complex64>) -> Result<()> {
+        self.checkpoint().keep_products(numbers, products)
+    }
 }
 
 /// The modes at one friction.

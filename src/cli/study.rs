@@ -1,6 +1,7 @@
 //! What the computing commands share: a brake, its frictions, a results folder, and one equilibrium after the other. All that is found goes
 //! into [`Results`], of which everything that is written is made.
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -8,15 +9,18 @@ use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
 use crate::petsc::{Comm, libraries};
 use crate::report::folder::Folder;
+use crate::report::json;
 use crate::results::{About, Failure, ModeData, Results, Value};
 use crate::stability::Count;
-use crate::sweep::{Costs, Event, Snapshot, Sweep};
+use crate::sweep::{Costs, Event, Snapshot, Sweep, Vectors};
 use crate::{Error, Result};
 
+use super::checkpoint::{Checkpoint, Earlier};
+use super::interrupt::Interrupt;
 use super::motion::Motion;
 use super::progress::Progress;
 use super::subject::{self, Subject, Told};
-use super::{Run, output};
+use super::{Run, Shell, output};
 
 /// A brake about to be analysed over friction.
 pub struct Study {
@@ -24,6 +28,9 @@ pub struct Study {
     pub folder: Option<Folder>,
     pub about: About,
     place: PathBuf,
+    /// All that the numbers depend on, by name.
+    identity: Vec<(&'static str, String)>,
+    force: bool,
     progress: Progress,
     start: Instant,
 }
@@ -35,6 +42,10 @@ pub struct Walk<'w, 's> {
     pub results: Results,
     sweep: Sweep<'s>,
     motion: Box<dyn Motion + 's>,
+    checkpoint: Checkpoint,
+    /// What an earlier run has finished and this one has not come to yet.
+    earlier: VecDeque<Earlier>,
+    interrupt: Interrupt,
 }
 
 /// One friction of a study, its equilibrium found.
@@ -65,19 +76,20 @@ pub struct Outcome {
 }
 
 impl Study {
-    /// Reads and checks everything before anything is computed; `band` gives the band (Hz) to analyse. Collective.
+    /// Reads and checks everything before anything is computed; `band` gives the band (Hz) to analyse, `options` are those of the
+    /// command that others do not have. Collective.
     pub fn new(
-        comm: &Comm,
+        shell: &Shell,
         run: &Run,
-        command: &str,
+        (command, options): (&str, &str),
         band: impl FnOnce(&dyn Subject) -> Result<[f64; 2]>,
     ) -> Result<Study> {
-        let start = Instant::now();
+        let (comm, start) = (shell.comm, Instant::now());
         let subject = subject::read(comm, run)?;
         let frictions = subject.frictions(run.friction.as_ref().map(|list| list.0.as_slice()))?;
         let band = band(&*subject)?;
         let place = run.folder(command);
-        let folder = comm.agree(if comm.is_root() { Folder::create(&place, run.force).map(Some) } else { Ok(None) })?;
+        let folder = comm.agree(if comm.is_root() { Folder::open(&place, run.force).map(Some) } else { Ok(None) })?;
         let progress = Progress::new(comm, frictions.len(), run.verbose);
         let about = About {
             program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
@@ -88,7 +100,17 @@ impl Study {
             frictions,
             ..subject.about(comm)?
         };
-        Ok(Study { subject, folder, about, place, progress, start })
+        let identity = vec![
+            ("program", about.program.clone()),
+            ("command", format!("{command}{options}{}", run.options())),
+            ("options for PETSc", shell.petsc.join(" ")),
+            ("frictions", numbers(&about.frictions)),
+            ("band", numbers(&band)),
+            ("SHA-256 of the model", about.model_digest.clone()),
+            ("SHA-256 of the mesh", about.mesh_digest.clone()),
+            ("number of ranks", comm.size().to_string()),
+        ];
+        Ok(Study { subject, folder, about, place, identity, force: run.force, progress, start })
     }
 
     /// The values asked for.
@@ -99,6 +121,11 @@ impl Study {
     /// Does the work of a command, which visits one friction after the other. Where that does not converge, what was found is kept.
     /// Collective.
     pub fn run(&self, comm: &Comm, work: impl FnOnce(&mut Walk) -> Result<()>) -> Result<Outcome> {
+        let (checkpoint, earlier) =
+            Checkpoint::open(comm, self.folder.as_ref(), &self.place, &self.identity, self.force)?;
+        let n_earlier = earlier.len();
+        self.tell_earlier(comm, n_earlier);
+        let interrupt = Interrupt::listen()?;
         self.progress.say("assembling");
         let system = self.subject.assemble(comm)?;
         let mut sweep = Sweep::new(&system, self.subject.interface())?;
@@ -110,30 +137,45 @@ impl Study {
             contact: self.subject.contact_faces(),
             ..Results::default()
         };
-        let mut walk = Walk { study: self, system: &system, results, sweep, motion };
-        let error = match work(&mut walk) {
+        let mut walk = Walk { study: self, system: &system, results, sweep, motion, checkpoint, earlier, interrupt };
+        let outcome = work(&mut walk);
+        self.progress.finish();
+        let error = match outcome {
             Ok(()) => None,
             Err(error @ Error::NotConverged(_)) => Some(error),
             Err(error) => return Err(error),
         };
-        self.progress.finish();
         let (costs, mut results) = (walk.sweep.costs(), walk.results);
         results.costs = costs_text(&costs, self.start.elapsed().as_secs_f64(), comm.size());
+        if n_earlier > 0 {
+            results.costs += &format!("without {n_earlier} frictions that an earlier run has found\n");
+        }
         if let Some(error) = &error {
             results.failure.get_or_insert_default().reason = error.to_string();
         }
         Ok(Outcome { results, error })
     }
 
-    /// Writes what was found, gives the folder its name, and tells the summary.
-    pub fn finish(self, outcome: Outcome, summary: fn(&Results, &str) -> String) -> Result<()> {
-        if let Some(folder) = self.folder {
-            let text = summary(&outcome.results, &self.place.display().to_string());
-            output::write(&folder, &outcome.results, &text)?;
-            folder.finish()?;
-            super::tell(&text)?;
+    /// Writes what was found, gives the folder its name, and tells the summary. Collective.
+    pub fn finish(self, shell: &Shell, outcome: Outcome, summary: fn(&Results, &str) -> String) -> Result<()> {
+        let Outcome { results, error } = outcome;
+        let place = self.place.display().to_string();
+        let text = summary(&results, &place);
+        let written = self.folder.map_or(Ok(()), |folder| {
+            output::write(&folder, &results, &text)?;
+            folder.finish()
+        });
+        shell.comm.agree(written)?;
+        shell.tell(&text, || json::document(&results, &place))?;
+        error.map_or(Ok(()), Err)
+    }
+
+    /// Tells what need not be done again.
+    fn tell_earlier(&self, comm: &Comm, n: usize) {
+        if n > 0 && comm.is_root() {
+            let place = self.place.display();
+            eprintln!("{place}: going on after {n} frictions that an earlier run has finished");
         }
-        outcome.error.map_or(Ok(()), Err)
     }
 
     /// What a sweep is doing, for a person who waits.
@@ -153,6 +195,9 @@ impl Walk<'_, '_> {
     /// Finds the equilibrium at a friction; `each` makes of it what the command is for. Pictures are of the frictions asked for. Gives the
     /// snapshot that was found. Collective.
     pub fn visit(&mut self, friction: f64, each: impl FnOnce(Visit) -> Result<Found>) -> Result<Option<Snapshot>> {
+        if let Some(earlier) = self.earlier.pop_front() {
+            return self.replay(friction, earlier);
+        }
         let (study, system, start) = (self.study, self.system, Instant::now());
         let asked = study.frictions().contains(&friction);
         if !asked {
@@ -167,12 +212,56 @@ impl Walk<'_, '_> {
         let (sweep, motion) = (&mut self.sweep, &mut *self.motion);
         let found = each(Visit { study, system, sweep, motion, equilibrium: &equilibrium, asked })?;
         let (pressure, status) = study.subject.contact_fields(&equilibrium.responses);
-        let Found { modes, count, snapshot } = found;
+        let Found { modes, count, mut snapshot } = found;
         let (steps, seconds) = (equilibrium.steps, start.elapsed().as_secs_f64());
         let value = Value { friction, asked, pairs, checks, steps, pressure, status, modes, count, seconds };
+        self.checkpoint.commit(&value, &self.sweep, snapshot.as_mut())?;
+        study.folder.as_ref().inspect(|folder| folder.keep());
         study.progress.advance(&done(&value));
         self.results.values.push(value);
+        self.may_go_on(friction)?;
         Ok(snapshot)
+    }
+
+    /// Takes a friction as an earlier run has left it; after the last of them the path goes on from there.
+    fn replay(&mut self, friction: f64, mut earlier: Earlier) -> Result<Option<Snapshot>> {
+        let snapshot = self.checkpoint.replay(&mut earlier);
+        let value = earlier.value;
+        if value.friction.to_bits() != friction.to_bits() {
+            let place = self.study.place.display();
+            return Err(Error::input(format!(
+                "{place} is unfinished, and friction {} stands in it where {friction} is due. Use --force to start anew",
+                value.friction
+            )));
+        }
+        self.study.progress.skip(value.asked);
+        self.results.values.push(value);
+        if self.earlier.is_empty() {
+            self.sweep.restore(self.checkpoint.path(&self.system.load)?);
+        }
+        Ok(snapshot)
+    }
+
+    /// Ends the work where a signal has asked for it.
+    fn may_go_on(&self, friction: f64) -> Result<()> {
+        let Some(signal) = self.interrupt.heard(self.system.k.comm()) else { return Ok(()) };
+        let (n, place) = (self.checkpoint.n_done(), self.study.place.display());
+        let text = format!(
+            "stopped after friction {friction:.4}; {n} frictions are done. The same command goes on from there to {place}"
+        );
+        Err(Error::Interrupted { signal, text })
+    }
+
+    /// The vectors of a snapshot of an earlier run. Collective.
+    pub fn vectors(&mut self, number: usize) -> Result<Vectors> {
+        let ([right, left], u) = self.checkpoint.vectors(number)?;
+        let c = self.sweep.damping_at(self.results.values[number].friction, &u)?;
+        Ok(Vectors { right, left, c })
+    }
+
+    /// The files from which the study can go on.
+    pub fn checkpoint(&self) -> &Checkpoint {
+        &self.checkpoint
     }
 
     /// Keeps the steps towards an equilibrium that was not reached and the state in which they ended, and says where that is.
@@ -185,6 +274,11 @@ impl Walk<'_, '_> {
         let file = study.place.join(name);
         Ok(Error::NotConverged(format!("{reason}. The last state is in {}", file.display())))
     }
+}
+
+/// Numbers as people give them.
+fn numbers(list: &[f64]) -> String {
+    list.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// A finished friction in a few words.

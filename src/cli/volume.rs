@@ -71,7 +71,6 @@ impl Drawing {
         comm.agree(folder::write_file(&draft.join(piece(comm.rank())), |mut out| grid.write(&mut out)))?;
         let pieces: Vec<String> = (0..comm.size()).map(piece).collect();
         let list = folder.map_or(Ok(()), |folder| {
-            folder.adopt(&pieces);
             folder.write(&format!("{name}.pvtu"), |mut out| grid.write_list(&pieces, &mut out))
         });
         comm.agree(list)

@@ -97,6 +97,21 @@ impl<'a> Path<'a> {
         self.state.as_ref().map(|(_, u)| u)
     }
 
+    /// The equilibria from which the path goes on, each with its friction, the last one last.
+    pub fn states(&self) -> Vec<(f64, &Vector)> {
+        self.before.iter().chain(&self.state).map(|(friction, u)| (*friction, u)).collect()
+    }
+
+    /// Puts the path back to where [`Path::states`] was asked for: the next equilibrium is sought as it would have been then.
+    ///
+    /// # Panics
+    /// Where there is no state.
+    pub fn restore(&mut self, mut states: Vec<(f64, Vector)>) {
+        self.state = Some(states.pop().expect("a path under way has a state"));
+        self.before = states.pop();
+        self.is_settled_only = false;
+    }
+
     /// The solves since the last equilibrium: those of a step that failed.
     pub fn steps(&self) -> &[Step] {
         &self.steps

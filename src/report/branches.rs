@@ -39,7 +39,8 @@ pub fn hopf(out: &mut dyn Write, diagram: &Diagram) -> std::io::Result<()> {
     Ok(())
 }
 
-fn becomes(hopf: &Hopf) -> &'static str {
+/// What a branch becomes there as friction rises.
+pub fn becomes(hopf: &Hopf) -> &'static str {
     if hopf.onset { "unstable" } else { "stable" }
 }
 

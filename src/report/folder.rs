@@ -1,52 +1,57 @@
 //! The folder of a run: it appears as a whole or not at all, and is replaced only where all in it is ours.
+//!
+//! Until then its files are in a hidden neighbour, `.NAME.unfinished`, which a run that is killed leaves behind and the next run to the
+//! same place finds. What a run needs to go on is in that neighbour's folder [`RESUME`].
 
-use std::cell::RefCell;
-use std::fs::{self, File};
+use std::cell::Cell;
+use std::fs::{self, File, TryLockError};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::{Error, Result};
 
-/// A results folder under construction: files go to a hidden neighbour that takes the folder's name at the end.
+/// A results folder under construction, whose hidden neighbour takes its name at the end.
 pub struct Folder {
     target: PathBuf,
     draft: PathBuf,
-    /// Files written so far.
-    files: RefCell<Vec<String>>,
+    /// Whether the neighbour stays where the run ends early.
+    keeps: Cell<bool>,
     done: bool,
+    /// Held as long as the process lives.
+    _lock: File,
 }
 
-/// Marks a folder as one of ours and lists its files, a line each: `--force` removes nothing else.
+/// Marks a folder as one of ours and lists what is in it, a line each: `--force` removes nothing else.
 const MARK: &str = ".squeal";
+/// What a run needs to go on, in an unfinished folder.
+pub const RESUME: &str = ".resume";
+/// Is locked by the run that writes.
+const LOCK: &str = "lock";
 
 impl Folder {
-    /// Starts a folder; nothing is created at `target` yet.
+    /// Starts a folder, or finds what an earlier run has left of it; nothing is created at `target` yet.
     ///
     /// # Errors
     /// [`Error::Input`] where `target` holds something already, unless it is an earlier run's, holds nothing else,
-    /// and `force` is set.
-    pub fn create(target: &Path, force: bool) -> Result<Folder> {
+    /// and `force` is set; where another run is writing it.
+    pub fn open(target: &Path, force: bool) -> Result<Folder> {
         Self::may_write(target, force)?;
-        let name = target
-            .file_name()
-            .and_then(|name| name.to_str())
-            .ok_or_else(|| Error::input(format!("{} cannot be an output folder: give it a name", target.display())))?;
-        let prefix = format!(".{name}.partial-");
-        remove_orphans(target, &prefix);
-        let draft = target.with_file_name(format!("{prefix}{}", std::process::id()));
-        fs::create_dir_all(&draft).map_err(|reason| {
+        let draft = unfinished(target)?;
+        let resume = draft.join(RESUME);
+        fs::create_dir_all(&resume).map_err(|reason| {
             Error::input(format!(
                 "cannot create the output folder {}: {reason}. Choose another with --output",
                 target.display()
             ))
         })?;
-        Ok(Folder { target: target.to_owned(), draft, files: RefCell::default(), done: false })
+        let lock = lock(&resume.join(LOCK), target)?;
+        Ok(Folder { target: target.to_owned(), draft, keeps: Cell::new(false), done: false, _lock: lock })
     }
 
     /// Whether a run may write to `target`; asked before a long computation.
     ///
     /// # Errors
-    /// See [`Folder::create`].
+    /// See [`Folder::open`].
     pub fn may_write(target: &Path, force: bool) -> Result<()> {
         let occupied = fs::read_dir(target).map_or(target.exists(), |mut entries| entries.next().is_some());
         if !occupied {
@@ -74,19 +79,31 @@ impl Folder {
         }
     }
 
-    /// The name that the folder will have.
-    pub fn target(&self) -> &Path {
-        &self.target
-    }
-
     /// Where files are until the folder has its name.
     pub fn draft(&self) -> &Path {
         &self.draft
     }
 
-    /// Counts files as the folder's that others have written to its draft.
-    pub fn adopt(&self, names: &[String]) {
-        self.files.borrow_mut().extend_from_slice(names);
+    /// From now on the neighbour stays where the run ends early.
+    pub fn keep(&self) {
+        self.keeps.set(true);
+    }
+
+    /// Removes all that an earlier run has left.
+    ///
+    /// # Errors
+    /// The system's, with the path.
+    pub fn clear(&self) -> Result<()> {
+        self.keeps.set(false);
+        for entry in names(&self.draft).map_err(Error::io(&self.draft))? {
+            let within = if entry == RESUME { names(&self.draft.join(RESUME)) } else { Ok(vec![String::new()]) };
+            let within = within.map_err(Error::io(&self.draft))?;
+            for name in within.iter().filter(|name| *name != LOCK) {
+                let path = self.draft.join(&entry).join(name);
+                remove(&path).map_err(Error::io(&path))?;
+            }
+        }
+        Ok(())
     }
 
     /// Writes one file of the folder.
@@ -94,17 +111,7 @@ impl Folder {
     /// # Errors
     /// The system's, with the file's path.
     pub fn write(&self, name: &str, body: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-        self.files.borrow_mut().push(name.to_owned());
         write_file(&self.draft.join(name), body)
-    }
-
-    /// A file of the folder that `body` writes to the path it is given.
-    ///
-    /// # Errors
-    /// The body's.
-    pub fn place(&self, name: &str, body: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-        self.files.borrow_mut().push(name.to_owned());
-        body(&self.draft.join(name))
     }
 
     /// Gives the folder its name, in place of an earlier run's.
@@ -113,15 +120,59 @@ impl Folder {
     /// The system's, with the folder's path.
     pub fn finish(mut self) -> Result<()> {
         let mark = self.draft.join(MARK);
-        let files = self.files.borrow().iter().map(|name| format!("{name}\n")).collect::<String>();
-        fs::write(&mark, files).map_err(Error::io(&mark))?;
+        let files = names(&self.draft).map_err(Error::io(&self.draft))?;
+        // What a run has half written when it was killed.
+        for file in files.iter().filter(|name| name.contains(".partial-")) {
+            remove(&self.draft.join(file)).map_err(Error::io(&self.draft))?;
+        }
+        let kept = files.iter().filter(|name| !name.contains(".partial-"));
+        fs::write(&mark, kept.map(|name| format!("{name}\n")).collect::<String>()).map_err(Error::io(&mark))?;
         if self.target.exists() {
             fs::remove_dir_all(&self.target).map_err(Error::io(&self.target))?;
         }
         fs::rename(&self.draft, &self.target).map_err(Error::io(&self.target))?;
         self.done = true;
-        Ok(())
+        let resume = self.target.join(RESUME);
+        fs::remove_dir_all(&resume).map_err(Error::io(&resume))
     }
+}
+
+/// The hidden neighbour in which a folder is made.
+///
+/// # Errors
+/// [`Error::Input`] where the folder has no name.
+pub fn unfinished(target: &Path) -> Result<PathBuf> {
+    let name = target
+        .file_name()
+        .and_then(|name| name.to_str())
+        .ok_or_else(|| Error::input(format!("{} cannot be an output folder: give it a name", target.display())))?;
+    Ok(target.with_file_name(format!(".{name}.unfinished")))
+}
+
+/// Takes the lock of an unfinished folder.
+fn lock(path: &Path, target: &Path) -> Result<File> {
+    let file = File::options().create(true).append(true).open(path).map_err(Error::io(path))?;
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(Error::input(format!(
+            "another run is writing {}. Wait for its end, or choose another folder with --output",
+            target.display()
+        ))),
+        // Not every file system has locks.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+    }
+}
+
+/// Names of what is in a folder.
+fn names(folder: &Path) -> std::io::Result<Vec<String>> {
+    let entries = fs::read_dir(folder)?;
+    let mut names =
+        entries.map(|e| Ok(e?.file_name().to_string_lossy().into_owned())).collect::<std::io::Result<Vec<_>>>()?;
+    names.sort();
+    Ok(names)
+}
+
+fn remove(path: &Path) -> std::io::Result<()> {
+    if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
 /// Writes a file, and the folders to it where they are missing.
@@ -136,38 +187,16 @@ pub fn write_file(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Res
     body(&mut out).and_then(|()| out.flush()).map_err(Error::io(path))
 }
 
-/// Removes the drafts of runs that were killed: their processes are gone. Best effort; a draft in the way of nobody may stay.
-fn remove_orphans(target: &Path, prefix: &str) {
-    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let Ok(entries) = fs::read_dir(parent) else { return };
-    for entry in entries.flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let Some(process) = name.strip_prefix(prefix).and_then(|id| id.parse::<u32>().ok()) else { continue };
-        if Path::new("/proc").is_dir() && !Path::new(&format!("/proc/{process}")).exists() {
-            let _ = fs::remove_dir_all(entry.path());
-        }
-    }
-}
-
 /// The first entry of a folder that its list of our files does not have.
 fn stranger(folder: &Path, ours: &str) -> std::io::Result<Option<String>> {
-    let is_ours = |name: &str| {
-        let mut files = ours.lines();
-        name == MARK || files.any(|file| file == name || file.split_once('/').is_some_and(|(first, _)| first == name))
-    };
-    for entry in fs::read_dir(folder)? {
-        let name = entry?.file_name().to_string_lossy().into_owned();
-        if !is_ours(&name) {
-            return Ok(Some(name));
-        }
-    }
-    Ok(None)
+    let is_ours = |name: &String| name == MARK || name == RESUME || ours.lines().any(|file| file == name);
+    Ok(names(folder)?.into_iter().find(|name| !is_ours(name)))
 }
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        if !self.done {
-            // Best effort: the draft of a run that failed is of no use to anyone.
+        if !self.done && !self.keeps.get() {
+            // Best effort: the draft of a run that has found nothing is of no use to anyone.
             let _ = fs::remove_dir_all(&self.draft);
         }
     }
@@ -183,13 +212,13 @@ mod tests {
     fn a_folder_appears_at_the_end_and_is_replaced_only_by_force() {
         let place = tempfile::tempdir().unwrap();
         let target = place.path().join("run");
-        let folder = Folder::create(&target, false).unwrap();
+        let folder = Folder::open(&target, false).unwrap();
         folder.write(FILE, |out| writeln!(out, "first")).unwrap();
         assert!(!target.exists());
         folder.finish().unwrap();
-        let message = Folder::create(&target, false).err().unwrap().to_string();
+        let message = Folder::open(&target, false).err().unwrap().to_string();
         assert!(message.contains("--force"), "{message}");
-        let folder = Folder::create(&target, true).unwrap();
+        let folder = Folder::open(&target, true).unwrap();
         folder.write(FILE, |out| writeln!(out, "second")).unwrap();
         folder.finish().unwrap();
         assert_eq!(fs::read_to_string(target.join(FILE)).unwrap(), "second\n");
@@ -199,33 +228,58 @@ mod tests {
     #[test]
     fn a_failed_run_leaves_nothing() {
         let place = tempfile::tempdir().unwrap();
-        let folder = Folder::create(&place.path().join("run"), false).unwrap();
+        let folder = Folder::open(&place.path().join("run"), false).unwrap();
         folder.write(FILE, |out| writeln!(out, "half")).unwrap();
         drop(folder);
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
     }
 
     #[test]
-    fn the_draft_of_a_killed_run_goes_with_the_next() {
+    fn what_a_run_keeps_is_found_by_the_next() {
         let place = tempfile::tempdir().unwrap();
-        // Above the largest process number of Linux, so that no process has it.
-        let orphan = place.path().join(".run.partial-4194305");
-        let alive = place.path().join(format!(".run.partial-{}", std::os::unix::process::parent_id()));
-        fs::create_dir_all(&orphan).unwrap();
-        fs::create_dir_all(&alive).unwrap();
-        drop(Folder::create(&place.path().join("run"), false).unwrap());
-        assert!(!orphan.exists() && alive.exists());
+        let target = place.path().join("run");
+        let folder = Folder::open(&target, false).unwrap();
+        folder.write(FILE, |out| writeln!(out, "half")).unwrap();
+        folder.write(".resume/value", |out| writeln!(out, "1")).unwrap();
+        folder.write(".results.h5.partial-12", |out| writeln!(out, "half")).unwrap();
+        folder.keep();
+        drop(folder);
+        assert!(!target.exists());
+        let folder = Folder::open(&target, false).unwrap();
+        assert_eq!(fs::read_to_string(folder.draft().join(".resume/value")).unwrap(), "1\n");
+        folder.finish().unwrap();
+        assert_eq!(names(&target).unwrap(), [MARK, FILE]);
+        // It may be replaced.
+        let folder = Folder::open(&target, true).unwrap();
+        folder.write("pieces/a", |out| writeln!(out, "half")).unwrap();
+        folder.write(".resume/value", |out| writeln!(out, "2")).unwrap();
+        folder.clear().unwrap();
+        assert_eq!(
+            (names(folder.draft()).unwrap(), names(&folder.draft().join(RESUME)).unwrap()),
+            (vec![RESUME.into()], vec![LOCK.into()])
+        );
+    }
+
+    #[test]
+    fn two_runs_do_not_write_one_folder() {
+        let place = tempfile::tempdir().unwrap();
+        let target = place.path().join("run");
+        let folder = Folder::open(&target, false).unwrap();
+        let message = Folder::open(&target, false).err().unwrap().to_string();
+        assert!(message.contains("another run is writing"), "{message}");
+        drop(folder);
+        Folder::open(&target, false).unwrap();
     }
 
     #[test]
     fn a_strangers_folder_is_left_alone() {
         let place = tempfile::tempdir().unwrap();
         fs::write(place.path().join("thesis.tex"), "").unwrap();
-        assert!(Folder::create(place.path(), true).is_err());
+        assert!(Folder::open(place.path(), true).is_err());
         let target = place.path().join("run");
-        Folder::create(&target, false).unwrap().finish().unwrap();
+        Folder::open(&target, false).unwrap().finish().unwrap();
         fs::write(target.join("notes.txt"), "").unwrap();
-        let message = Folder::create(&target, true).err().unwrap().to_string();
+        let message = Folder::open(&target, true).err().unwrap().to_string();
         assert!(message.contains("holds notes.txt"), "{message}");
     }
 }

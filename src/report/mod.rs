@@ -6,6 +6,7 @@ pub mod contact_surface;
 pub mod details;
 pub mod explain;
 pub mod folder;
+pub mod json;
 pub mod summary;
 pub mod tables;
 pub mod vtu;

@@ -21,8 +21,7 @@ pub struct Linearised {
 
 impl Linearised {
     /// Linearises about `equilibrium`, with `k = K + B^T D B`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`,
-    /// all other closed points stick. With `friction_damping`, `C += B^T [mu p / |v| (I - n n^T - t t^T)] B` of the sliding points.
-    /// Collective.
+    /// all other closed points stick. With `friction_damping`, C is [`with_friction_damping`]. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -37,11 +36,7 @@ impl Linearised {
         let gaps = contacts.gaps(&equilibrium.u)?;
         let (frictions, none) = (interface.frictions_at(equilibrium.friction), vec![0.0; interface.pairs.len()]);
         if friction_damping {
-            let mut c = system.c.duplicate()?;
-            let force = |a: usize| equilibrium.responses[a].normal_force;
-            let block = |a: usize| interface.friction_damping(a, force(a), &frictions);
-            contacts.add_blocks((0..gaps.len()).map(block), &mut c)?;
-            self.c = Some(c);
+            self.c = Some(with_friction_damping(system, contacts, equilibrium.friction, &equilibrium.responses)?);
         }
         let blocks = |frictions: &[f64]| -> Vec<[[f64; 3]; 3]> {
             let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, frictions);
@@ -72,4 +67,22 @@ impl Linearised {
         let points = Some(Points { contacts, tangents });
         Pencil { m: &system.m, c, k, k_symmetric: &system.k, points }
     }
+}
+
+/// `C + B^T [mu p / |v| (I - n n^T - t t^T)] B` with the responses of all points: friction turns with the velocity of sliding points.
+/// Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn with_friction_damping(
+    system: &System,
+    contacts: &Contacts,
+    friction: f64,
+    responses: &[Response],
+) -> Result<Matrix> {
+    let (interface, mut c) = (contacts.interface(), system.c.duplicate()?);
+    let frictions = interface.frictions_at(friction);
+    let block = |(a, response): (usize, &Response)| interface.friction_damping(a, response.normal_force, &frictions);
+    contacts.add_blocks(responses.iter().enumerate().map(block), &mut c)?;
+    Ok(c)
 }

@@ -18,6 +18,6 @@ pub use band::{Band, Count, Solver, solve};
 pub use explain::{Sensitivity, Share, self_product, sensitivity, shares};
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::{left_vectors, right_vectors};
-pub use linearise::Linearised;
+pub use linearise::{Linearised, with_friction_damping};
 pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO, growth_threshold};
 pub use space::Problem;

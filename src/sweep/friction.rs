@@ -1,6 +1,8 @@
 //! The family of pencils along friction, as tracking sees it.
 
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
+use std::rc::{Rc, Weak};
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -13,25 +15,79 @@ use crate::tracking::{Family, Options};
 
 /// The modes at one friction with right and left vectors, and what their products need.
 pub struct Snapshot {
-    /// Modes as the eigensolver gave them, then the conjugates of low ones.
-    lambdas: Vec<Complex64>,
-    /// For each of them its place among the eigensolver's, and whether it is the conjugate.
-    places: Vec<(usize, bool)>,
-    /// Real and imaginary parts, two columns a mode, `x^H M x = y^H M y = 1`.
-    right: Block,
-    left: Block,
-    /// The damping, where it is not the system's.
-    c: Option<Matrix>,
+    /// Its number among those of a study, from 0.
+    pub number: usize,
+    spectrum: Spectrum,
+    vectors: OnceCell<Vectors>,
+    life: Rc<()>,
 }
 
-/// Pencils along the friction of the swept pairs. `solve` finds equilibrium and modes.
+/// The eigenvalues of a snapshot.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Spectrum {
+    /// Modes as the eigensolver gave them, then the conjugates of low ones.
+    pub lambdas: Vec<Complex64>,
+    /// For each of them its place among the eigensolver's, and whether it is the conjugate.
+    pub places: Vec<(usize, bool)>,
+}
+
+/// The vectors of a snapshot.
+pub struct Vectors {
+    /// Real and imaginary parts of the right vectors, two columns a mode, `x^H M x = 1`.
+    pub right: Block,
+    /// The left ones, `y^H M y = 1`.
+    pub left: Block,
+    /// The damping, where it is not the system's.
+    pub c: Option<Matrix>,
+}
+
+/// Pencils along the friction of the swept pairs.
 pub struct Friction<'f> {
-    /// Equilibrium, modes and their snapshot at a friction.
-    pub solve: &'f mut dyn FnMut(f64) -> Result<Snapshot>,
+    /// Finds equilibrium and modes.
+    pub solutions: &'f mut dyn Solutions,
     /// Mass.
     pub m: &'f Matrix,
     /// Damping of the system.
     pub c: &'f Matrix,
+}
+
+/// Where the modes at a friction come from: a solve, and what an earlier run has kept. All are collective.
+pub trait Solutions {
+    /// Equilibrium, modes and their snapshot at a friction.
+    ///
+    /// # Errors
+    /// Those of the solution, with which tracking ends.
+    fn solve(&mut self, friction: f64) -> Result<Snapshot>;
+
+    /// The vectors of a snapshot that was made without, by its number.
+    ///
+    /// # Errors
+    /// Where they cannot be had.
+    fn vectors(&mut self, number: usize) -> Result<Vectors> {
+        Err(crate::Error::Library(format!("the vectors of snapshot {number} were not kept")))
+    }
+
+    /// The products of two snapshots' left and right vectors, where they are known.
+    ///
+    /// # Errors
+    /// Where they cannot be read.
+    fn known(&mut self, _numbers: [usize; 2]) -> Result<Option<DMatrix<Complex64>>> {
+        Ok(None)
+    }
+
+    /// Hears of products.
+    ///
+    /// # Errors
+    /// Where they cannot be kept.
+    fn keep(&mut self, _numbers: [usize; 2], _products: &DMatrix<Complex64>) -> Result<()> {
+        Ok(())
+    }
+}
+
+impl<F: FnMut(f64) -> Result<Snapshot>> Solutions for F {
+    fn solve(&mut self, friction: f64) -> Result<Snapshot> {
+        self(friction)
+    }
 }
 
 /// Modes are solved for up to this fraction beyond the band's end, and conjugates kept down to as far below zero: there modes come and
@@ -86,15 +142,51 @@ impl Snapshot {
             let lambda = band.modes[i].lambda;
             if conjugate { lambda.conj() } else { lambda }
         };
-        Ok(Snapshot { lambdas: places.iter().map(lambda).collect(), places, right, left, c: sweep.own_damping()? })
+        let spectrum = Spectrum { lambdas: places.iter().map(lambda).collect(), places };
+        let vectors = OnceCell::from(Vectors { right, left, c: sweep.own_damping()? });
+        Ok(Snapshot { vectors, ..Snapshot::kept(0, spectrum) })
+    }
+
+    /// A snapshot whose vectors come from [`Solutions::vectors`] when they are needed.
+    pub fn kept(number: usize, spectrum: Spectrum) -> Snapshot {
+        Snapshot { number, spectrum, vectors: OnceCell::new(), life: Rc::new(()) }
+    }
+
+    /// The eigenvalues.
+    pub fn spectrum(&self) -> &Spectrum {
+        &self.spectrum
+    }
+
+    /// The vectors, where they are here.
+    pub fn vectors(&self) -> Option<&Vectors> {
+        self.vectors.get()
+    }
+
+    /// What dies with the snapshot.
+    pub fn life(&self) -> Weak<()> {
+        Rc::downgrade(&self.life)
     }
 
     /// Real and imaginary part of the left vector of the i-th mode that the eigensolver gave.
     ///
     /// # Errors
     /// PETSc's.
+    ///
+    /// # Panics
+    /// Where the snapshot has no vectors; that of [`Snapshot::new`] has.
     pub fn left(&self, i: usize) -> Result<[Vector; 2]> {
-        Ok([self.left.vector(2 * i)?, self.left.vector(2 * i + 1)?])
+        let left = &self.vectors().expect("made with its vectors").left;
+        Ok([left.vector(2 * i)?, left.vector(2 * i + 1)?])
+    }
+}
+
+impl Friction<'_> {
+    fn vectors<'s>(&mut self, snapshot: &'s Snapshot) -> Result<&'s Vectors> {
+        if snapshot.vectors.get().is_none() {
+            let vectors = self.solutions.vectors(snapshot.number)?;
+            return Ok(snapshot.vectors.get_or_init(|| vectors));
+        }
+        Ok(snapshot.vectors.get().expect("looked at above"))
     }
 }
 
@@ -102,24 +194,32 @@ impl Family for Friction<'_> {
     type Modes = Snapshot;
 
     fn solve(&mut self, value: f64) -> Result<Snapshot> {
-        (self.solve)(value)
+        self.solutions.solve(value)
     }
 
     fn eigenvalues<'m>(&self, modes: &'m Snapshot) -> &'m [Complex64] {
-        &modes.lambdas
+        &modes.spectrum.lambdas
     }
 
     fn products(&mut self, left: &Snapshot, right: &Snapshot) -> Result<DMatrix<Complex64>> {
-        let c = left.c.as_ref().unwrap_or(self.c);
+        let numbers = [left.number, right.number];
+        if let Some(known) = self.solutions.known(numbers)? {
+            return Ok(known);
+        }
+        let (y, x) = (self.vectors(left)?, self.vectors(right)?);
+        let c = y.c.as_ref().unwrap_or(self.c);
         let [m, c] = [self.m, c].map(|matrix| {
-            let product = left.left.gram(&right.right.multiplied_by(matrix)?);
-            Ok(DMatrix::from_vec(left.left.n_columns(), right.right.n_columns(), product))
+            let product = y.left.gram(&x.right.multiplied_by(matrix)?);
+            Ok(DMatrix::from_vec(y.left.n_columns(), x.right.n_columns(), product))
         });
         let (m, c): (DMatrix<f64>, DMatrix<f64>) = (m?, c?);
-        Ok(DMatrix::from_fn(left.lambdas.len(), right.lambdas.len(), |i, j| {
+        let [left, right] = [&left.spectrum, &right.spectrum];
+        let products = DMatrix::from_fn(left.lambdas.len(), right.lambdas.len(), |i, j| {
             let [with_m, with_c] = [&m, &c].map(|a| hermitian(a, left.places[i], right.places[j]));
             (left.lambdas[i] + right.lambdas[j]) * with_m + with_c
-        }))
+        });
+        self.solutions.keep(numbers, &products)?;
+        Ok(products)
     }
 }
 

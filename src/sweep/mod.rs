@@ -13,7 +13,7 @@ mod reduced;
 pub use brake::{Brake, Families, frictions_of};
 pub use digest::digest;
 pub use explain::{Kind, Source};
-pub use friction::{Friction, Snapshot, tracking_options, wider};
+pub use friction::{Friction, Snapshot, Solutions, Spectrum, Vectors, tracking_options, wider};
 
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
-use crate::petsc::{Block, FactorStats, Matrix};
+use crate::petsc::{Block, FactorStats, Matrix, Vector};
 use crate::stability::{self, Band, Linearised, Mode, Problem, Solver};
 
 /// A structure under analysis at one friction after the other.
@@ -137,6 +137,27 @@ impl<'a> Sweep<'a> {
     /// PETSc's.
     pub fn own_damping(&self) -> Result<Option<Matrix>> {
         self.linearised.c.as_ref().map(Matrix::duplicate).transpose()
+    }
+
+    /// The damping about an equilibrium that is known by its displacements, where friction has its part in it. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn damping_at(&mut self, friction: f64, u: &Vector) -> Result<Option<Matrix>> {
+        let contacts = self.path.contacts_mut();
+        let responses = contacts.respond(u, &contacts.interface().stage(friction))?;
+        let damped = || stability::with_friction_damping(self.system, contacts, friction, &responses);
+        self.friction_damping.then(damped).transpose()
+    }
+
+    /// The equilibria from which the path goes on: [`Path::states`].
+    pub fn states(&self) -> Vec<(f64, &Vector)> {
+        self.path.states()
+    }
+
+    /// Puts the path back to where it was: [`Path::restore`].
+    pub fn restore(&mut self, states: Vec<(f64, Vector)>) {
+        self.path.restore(states);
     }
 
     /// The last state tried, for output after a failure.

@@ -1,0 +1,303 @@
+//! What a study needs to go on after its process has ended, at whatever moment.
+//!
+//! ```text
+//! .NAME.unfinished/.resume/
+//!   study.txt                 what the numbers depend on, a line each: a run that differs does not go on
+//!   value-0003.h5             a finished friction, whole: the group of the results file, and the eigenvalues that tracking knows
+//!   path-0003.RANK.h5         the last equilibria of a path of frictions that ends there
+//!   vectors-0003.RANK.h5      right and left vectors of a snapshot that tracking still needs, single precision, and its equilibrium
+//!   products-0003-0005.h5     products of two snapshots' vectors
+//! ```
+//!
+//! Every file appears when it is complete, a value after all that it needs. So the values in the folder are what is done, and tracking that
+//! starts anew is given their eigenvalues and products until it asks for what no file has: there it goes on with a solve. Vectors
+//! that tracking has dropped have gone with the next value, as all their products are known.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::rc::Weak;
+
+use hdf5::Group;
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+use crate::hdf::{self, Format, array, list, table, values};
+use crate::petsc::{Block, Comm, Vector};
+use crate::report::folder::{self, Folder, RESUME};
+use crate::results::{Value, file};
+use crate::sweep::{Snapshot, Spectrum, Sweep};
+use crate::{Error, Result};
+
+const FORMAT: Format = Format { name: "squeal checkpoint", version: 1, advice: "Start anew with --force" };
+/// What the numbers of a study depend on.
+const STUDY: &str = "study.txt";
+
+/// A finished friction as an earlier run has left it.
+pub struct Earlier {
+    pub value: Value,
+    /// Where modes are followed.
+    spectrum: Option<Spectrum>,
+}
+
+/// The files from which a study can go on.
+pub struct Checkpoint {
+    comm: Comm,
+    folder: PathBuf,
+    /// Frictions that an earlier run has finished.
+    n_earlier: usize,
+    n_done: usize,
+    /// Snapshots of which there are vectors.
+    kept: Vec<(usize, Weak<()>)>,
+}
+
+impl Checkpoint {
+    /// Opens the checkpoint of an unfinished folder, which the root has, and gives what is done. A folder that was begun with another
+    /// `identity` (name and value of all that the numbers depend on) is emptied with `force`. Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where another study was begun, or files are damaged; the system's.
+    pub fn open(
+        comm: &Comm,
+        folder: Option<&Folder>,
+        target: &Path,
+        identity: &[(&str, String)],
+        force: bool,
+    ) -> Result<(Checkpoint, VecDeque<Earlier>)> {
+        let place = folder::unfinished(target)?.join(RESUME);
+        let n = folder.map_or(Ok(0), |folder| prepare(folder, &place, target, identity, force));
+        let n_earlier = comm.from_root(&[comm.agree(n)? as f64])[0] as usize;
+        let earlier = comm.agree((0..n_earlier).map(|i| read_value(&place.join(value_name(i)))).collect())?;
+        Ok((Checkpoint { comm: comm.clone(), folder: place, n_earlier, n_done: 0, kept: Vec::new() }, earlier))
+    }
+
+    /// Frictions that are done, those of earlier runs among them.
+    pub fn n_done(&self) -> usize {
+        self.n_done
+    }
+
+    /// Takes note that a friction of an earlier run is done once more, and gives its snapshot.
+    pub fn replay(&mut self, earlier: &mut Earlier) -> Option<Snapshot> {
+        let number = self.n_done;
+        self.n_done += 1;
+        let snapshot = Snapshot::kept(number, earlier.spectrum.take()?);
+        self.kept.push((number, snapshot.life()));
+        Some(snapshot)
+    }
+
+    /// Keeps a finished friction with the sweep's path to it and the snapshot where modes are followed, which gets its number, and removes
+    /// what is needed no more. Collective.
+    ///
+    /// # Errors
+    /// The system's and HDF5's, with the path.
+    pub fn commit(&mut self, value: &Value, sweep: &Sweep, mut snapshot: Option<&mut Snapshot>) -> Result<()> {
+        let number = self.n_done;
+        snapshot.as_mut().into_iter().for_each(|snapshot| snapshot.number = number);
+        let snapshot = snapshot.as_deref();
+        self.comm.agree(self.write_own(number, sweep, snapshot))?;
+        let spectrum = snapshot.map(Snapshot::spectrum);
+        let file = self.folder.join(value_name(number));
+        self.comm.agree(if self.comm.is_root() { write_value(&file, value, spectrum) } else { Ok(()) })?;
+        self.n_done += 1;
+        self.kept.extend(snapshot.map(|snapshot| (number, snapshot.life())));
+        self.tidy(number);
+        Ok(())
+    }
+
+    /// Writes what each rank has its own part of.
+    fn write_own(&self, number: usize, sweep: &Sweep, snapshot: Option<&Snapshot>) -> Result<()> {
+        let states = sweep.states();
+        let local = states.iter().map(|(_, u)| u.to_vec()).collect::<Result<Vec<_>>>()?;
+        let frictions: Vec<f64> = states.iter().map(|(friction, _)| *friction).collect();
+        hdf::create(&self.own("path", number), &FORMAT, |file| {
+            list(file, "frictions", &frictions)?;
+            table(file, "u", local.first().map_or(0, Vec::len), &local.concat())
+        })?;
+        let Some(vectors) = snapshot.and_then(Snapshot::vectors) else { return Ok(()) };
+        hdf::create(&self.own("vectors", number), &FORMAT, |file| {
+            write_block(file, "right", &vectors.right)?;
+            write_block(file, "left", &vectors.left)?;
+            list(file, "u", local.last().map_or(&[], Vec::as_slice))
+        })
+    }
+
+    /// Removes, best effort, the path to the value before and the vectors of snapshots that live no more.
+    fn tidy(&mut self, number: usize) {
+        if number > 0 {
+            let _ = std::fs::remove_file(self.own("path", number - 1));
+        }
+        let (alive, dead) = std::mem::take(&mut self.kept).into_iter().partition(|(_, life)| life.strong_count() > 0);
+        self.kept = alive;
+        for (number, _) in dead as Vec<(usize, Weak<()>)> {
+            let _ = std::fs::remove_file(self.own("vectors", number));
+        }
+    }
+
+    /// The last equilibria of the path to the last friction that is done, each with its friction. `like` has the system's layout.
+    /// Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the file is damaged.
+    pub fn path(&self, like: &Vector) -> Result<Vec<(f64, Vector)>> {
+        let path = self.own("path", self.n_done - 1);
+        let read = read(&path, |file| Ok((values::<f64>(file, "frictions")?, values::<f64>(file, "u")?)));
+        let (frictions, u) = self.comm.agree(read.and_then(|(frictions, u)| {
+            if u.len() == frictions.len() * like.n_local() {
+                return Ok((frictions, u));
+            }
+            Err(hdf::damaged(&path, &FORMAT, "it is of another numbering of the equations"))
+        }))?;
+        let state = |(i, friction): (usize, f64)| {
+            let n = like.n_local();
+            Ok((friction, Vector::from_local(&self.comm, &u[i * n..(i + 1) * n])?))
+        };
+        frictions.into_iter().enumerate().map(state).collect()
+    }
+
+    /// Right and left vectors of a snapshot, and its equilibrium. Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the file is damaged.
+    pub fn vectors(&self, number: usize) -> Result<([Block; 2], Vector)> {
+        let path = self.own("vectors", number);
+        let parts = |file: &Group| {
+            Ok((
+                [read_block(&self.comm, file, "right")?, read_block(&self.comm, file, "left")?],
+                values::<f64>(file, "u")?,
+            ))
+        };
+        let (blocks, u) = self.comm.agree(read(&path, parts))?;
+        Ok((blocks, Vector::from_local(&self.comm, &u)?))
+    }
+
+    /// Products that an earlier run has kept. Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the file is damaged.
+    pub fn products(&self, numbers: [usize; 2]) -> Result<Option<DMatrix<Complex64>>> {
+        if numbers.iter().any(|&number| number >= self.n_earlier) {
+            return Ok(None);
+        }
+        let path = self.folder.join(products_name(numbers));
+        let known = if self.comm.is_root() && path.exists() {
+            read(&path, |file| Ok([values::<f64>(file, "rows")?, values::<f64>(file, "products")?].concat()))
+        } else {
+            Ok(Vec::new())
+        };
+        let bytes = self.comm.agree(known)?.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let bytes = self.comm.broadcast(0, bytes);
+        let numbers: Vec<f64> = bytes.as_chunks().0.iter().map(|&eight| f64::from_le_bytes(eight)).collect();
+        let Some((&rows, products)) = numbers.split_first() else { return Ok(None) };
+        let products: Vec<Complex64> = products.as_chunks().0.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
+        let rows = rows as usize;
+        Ok(Some(DMatrix::from_vec(rows, products.len() / rows.max(1), products)))
+    }
+
+    /// Keeps products. Collective.
+    ///
+    /// # Errors
+    /// The system's and HDF5's, with the path.
+    pub fn keep_products(&self, numbers: [usize; 2], products: &DMatrix<Complex64>) -> Result<()> {
+        let path = self.folder.join(products_name(numbers));
+        let flat: Vec<f64> = products.iter().flat_map(|z| [z.re, z.im]).collect();
+        let write = || {
+            hdf::create(&path, &FORMAT, |file| {
+                list(file, "rows", &[products.nrows() as f64])?;
+                table(file, "products", 2, &flat)
+            })
+        };
+        self.comm.agree(if self.comm.is_root() { write() } else { Ok(()) })
+    }
+
+    fn own(&self, what: &str, number: usize) -> PathBuf {
+        self.folder.join(format!("{what}-{number:04}.{}.h5", self.comm.rank()))
+    }
+}
+
+fn value_name(number: usize) -> String {
+    format!("value-{number:04}.h5")
+}
+
+fn products_name([left, right]: [usize; 2]) -> String {
+    format!("products-{left:04}-{right:04}.h5")
+}
+
+/// How many frictions are done in an unfinished folder, which is emptied where they are of no use.
+fn prepare(folder: &Folder, place: &Path, target: &Path, identity: &[(&str, String)], force: bool) -> Result<usize> {
+    let n = (0..).find(|&i| !place.join(value_name(i)).exists()).expect("numbers do not end");
+    if n > 0 {
+        folder.keep();
+        match usable(place, target, identity, n) {
+            Ok(()) => return Ok(n),
+            Err(error) if !force => return Err(error),
+            Err(_) => (),
+        }
+    }
+    folder.clear()?;
+    let lines: String = identity.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
+    folder::write_file(&place.join(STUDY), |out| out.write_all(lines.as_bytes()))?;
+    Ok(0)
+}
+
+/// Refuses what another study has left, and what cannot be read.
+fn usable(place: &Path, target: &Path, identity: &[(&str, String)], n: usize) -> Result<()> {
+    let file = place.join(STUDY);
+    let begun = std::fs::read_to_string(&file).map_err(Error::io(&file))?;
+    for (name, value) in identity {
+        let before = begun.lines().find_map(|line| line.strip_prefix(&format!("{name}: "))).unwrap_or("unknown");
+        if before != value {
+            let what = format!("{} is unfinished ({n} frictions are done), and was begun otherwise", target.display());
+            let advice =
+                "Go on with the command that began it, use --force to start anew, or --output for another folder";
+            return Err(Error::input(format!("{what}: {name} was {before}, is {value}. {advice}")));
+        }
+    }
+    (0..n).try_for_each(|i| read_value(&place.join(value_name(i))).map(|_| ()))
+}
+
+fn write_value(path: &Path, value: &Value, spectrum: Option<&Spectrum>) -> Result<()> {
+    hdf::create(path, &FORMAT, |file| {
+        file::write_value(&file.create_group("value")?, value)?;
+        let Some(Spectrum { lambdas, places }) = spectrum else { return Ok(()) };
+        let group = file.create_group("spectrum")?;
+        table(&group, "lambdas", 2, &lambdas.iter().flat_map(|z| [z.re, z.im]).collect::<Vec<_>>())?;
+        list(&group, "places", &places.iter().map(|(place, _)| *place as u32).collect::<Vec<_>>())?;
+        list(&group, "conjugate", &places.iter().map(|(_, conjugate)| u8::from(*conjugate)).collect::<Vec<_>>())
+    })
+}
+
+fn read_value(path: &Path) -> Result<Earlier> {
+    read(path, |file| {
+        let value = file::read_value(&file.group("value")?)?;
+        let spectrum = file.link_exists("spectrum").then(|| read_spectrum(&file.group("spectrum")?)).transpose()?;
+        Ok(Earlier { value, spectrum })
+    })
+}
+
+fn read_spectrum(group: &Group) -> hdf5::Result<Spectrum> {
+    let lambdas: Vec<f64> = values(group, "lambdas")?;
+    let (places, conjugate): (Vec<u32>, Vec<u8>) = (values(group, "places")?, values(group, "conjugate")?);
+    Ok(Spectrum {
+        lambdas: lambdas.as_chunks().0.iter().map(|&[re, im]| Complex64::new(re, im)).collect(),
+        places: places.iter().zip(conjugate).map(|(&place, conjugate)| (place as usize, conjugate != 0)).collect(),
+    })
+}
+
+/// Opens a file and reads from it.
+fn read<T>(path: &Path, body: impl FnOnce(&Group) -> hdf5::Result<T>) -> Result<T> {
+    let file = hdf::open(path, &FORMAT)?;
+    body(&file).map_err(|reason| hdf::damaged(path, &FORMAT, reason))
+}
+
+fn read_block(comm: &Comm, group: &Group, name: &str) -> hdf5::Result<Block> {
+    let dataset = group.dataset(name)?;
+    let [n_columns, n_local] = dataset.shape()[..] else { return Err(format!("{name} is no table").into()) };
+    let mut block = Block::zeros(comm, n_local, n_columns);
+    let values: Vec<f32> = dataset.read_raw()?;
+    block.values_mut().iter_mut().zip(values).for_each(|(to, from)| *to = f64::from(from));
+    Ok(block)
+}
+
+fn write_block(group: &Group, name: &str, block: &Block) -> hdf5::Result<()> {
+    let values: Vec<f32> = block.values().iter().map(|&x| x as f32).collect();
+    array(group, name, &[block.n_columns(), block.n_local()], &values, hdf::Packing::Plain)
+}
