@@ -33,17 +33,23 @@ pub fn is_hdf5(path: &Path) -> bool {
     std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == MAGIC
 }
 
-/// Writes a file, which appears under its name when it is complete and on the disk. Not collective.
+/// Writes a file, which appears under its name when it is complete, and on the disk. Not collective.
 ///
 /// # Errors
 /// The system's and HDF5's, with the path.
 pub fn create(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<()> {
+    create_passing(path, format, body)?;
+    std::fs::File::open(path).and_then(|file| file.sync_all()).map_err(Error::io(path))
+}
+
+/// The same for a file that a later one makes superfluous: it may be lost where the system itself goes down.
+///
+/// # Errors
+/// The system's and HDF5's, with the path.
+pub fn create_passing(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<()> {
     let draft = draft(path)?;
     let written = write_draft(&draft, format, body).map_err(|reason| failure(path, &reason));
-    let named = written.and_then(|()| {
-        std::fs::File::open(&draft).and_then(|file| file.sync_data()).map_err(Error::io(path))?;
-        std::fs::rename(&draft, path).map_err(Error::io(path))
-    });
+    let named = written.and_then(|()| std::fs::rename(&draft, path).map_err(Error::io(path)));
     if named.is_err() {
         // Best effort: half a file is of no use.
         let _ = std::fs::remove_file(&draft);

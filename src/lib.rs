@@ -35,8 +35,8 @@
 //! | [`reduction`] | reference nodes for contacts, super-elements and their files | [`reduction::craig_bampton::reduce`] |
 //! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
 //! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
-//! | [`results`] | what a study found, as plain data | [`results::Results`] |
-//! | [`report`] | tables, CSV, VTU | |
+//! | [`results`] | what a study found, as plain data, and its file | [`results::Results`], [`results::file`] |
+//! | [`report`] | tables, CSV, JSON, VTU | |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
 //! | [`petsc`] | the only `unsafe`: PETSc, SLEPc, MUMPS, METIS | |
 //!

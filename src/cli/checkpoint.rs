@@ -108,12 +108,12 @@ impl Checkpoint {
         let states = sweep.states();
         let local = states.iter().map(|(_, u)| u.to_vec()).collect::<Result<Vec<_>>>()?;
         let frictions: Vec<f64> = states.iter().map(|(friction, _)| *friction).collect();
-        hdf::create(&self.own("path", number), &FORMAT, |file| {
+        hdf::create_passing(&self.own("path", number), &FORMAT, |file| {
             list(file, "frictions", &frictions)?;
             table(file, "u", local.first().map_or(0, Vec::len), &local.concat())
         })?;
         let Some(vectors) = snapshot.and_then(Snapshot::vectors) else { return Ok(()) };
-        hdf::create(&self.own("vectors", number), &FORMAT, |file| {
+        hdf::create_passing(&self.own("vectors", number), &FORMAT, |file| {
             write_block(file, "right", &vectors.right)?;
             write_block(file, "left", &vectors.left)?;
             list(file, "u", local.last().map_or(&[], Vec::as_slice))
@@ -200,7 +200,7 @@ impl Checkpoint {
         let path = self.folder.join(products_name(numbers));
         let flat: Vec<f64> = products.iter().flat_map(|z| [z.re, z.im]).collect();
         let write = || {
-            hdf::create(&path, &FORMAT, |file| {
+            hdf::create_passing(&path, &FORMAT, |file| {
                 list(file, "rows", &[products.nrows() as f64])?;
                 table(file, "products", 2, &flat)
             })
@@ -255,7 +255,7 @@ fn usable(place: &Path, target: &Path, identity: &[(&str, String)], n: usize) ->
 }
 
 fn write_value(path: &Path, value: &Value, spectrum: Option<&Spectrum>) -> Result<()> {
-    hdf::create(path, &FORMAT, |file| {
+    hdf::create_passing(path, &FORMAT, |file| {
         file::write_value(&file.create_group("value")?, value)?;
         let Some(Spectrum { lambdas, places }) = spectrum else { return Ok(()) };
         let group = file.create_group("spectrum")?;

@@ -13,6 +13,7 @@ pub struct Progress {
     start: Instant,
     /// Values that took no time.
     skipped: Cell<u64>,
+    is_root: bool,
     /// Whether finished values are told on lines of their own.
     lines: bool,
 }
@@ -24,12 +25,22 @@ impl Progress {
         let template = "{spinner} [{elapsed}] {wide_bar} {pos}/{len} {msg} {eta} left";
         bar.set_style(ProgressStyle::with_template(template).expect("a valid template"));
         bar.enable_steady_tick(Duration::from_millis(200));
-        Progress { bar, start: Instant::now(), skipped: Cell::new(0), lines: verbose && comm.is_root() }
+        Progress { bar, start: Instant::now(), skipped: Cell::new(0), is_root: comm.is_root(), lines: verbose && comm.is_root() }
     }
 
     /// Says what is being done.
     pub fn say(&self, message: impl Into<String>) {
         self.bar.set_message(message.into());
+    }
+
+    /// Something that writes a line whenever it is called, from any thread; nothing but on the first rank.
+    pub fn teller(&self, line: &'static str) -> impl Fn() + Send + 'static {
+        let (bar, is_root) = (self.bar.clone(), self.is_root);
+        move || {
+            if is_root {
+                bar.suspend(|| eprintln!("{line}"));
+            }
+        }
     }
 
     /// One more value is to come than was said.

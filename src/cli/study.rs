@@ -125,7 +125,8 @@ impl Study {
             Checkpoint::open(comm, self.folder.as_ref(), &self.place, &self.identity, self.force)?;
         let n_earlier = earlier.len();
         self.tell_earlier(comm, n_earlier);
-        let interrupt = Interrupt::listen()?;
+        let interrupt =
+            Interrupt::listen(self.progress.teller("ending after this friction; a second signal ends at once"))?;
         self.progress.say("assembling");
         let system = self.subject.assemble(comm)?;
         let mut sweep = Sweep::new(&system, self.subject.interface())?;
@@ -173,8 +174,7 @@ impl Study {
     /// Tells what need not be done again.
     fn tell_earlier(&self, comm: &Comm, n: usize) {
         if n > 0 && comm.is_root() {
-            let place = self.place.display();
-            eprintln!("{place}: going on after {n} frictions that an earlier run has finished");
+            eprintln!("{}: an earlier run has finished {n} frictions, from where this one goes on", self.place.display());
         }
     }
 

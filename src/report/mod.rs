@@ -1,4 +1,4 @@
-//! Results on disk and on screen: tables, CSV, VTU. Reads results, computes nothing of its own.
+//! Results on disk and on screen: tables, CSV, JSON, VTU. Reads results, computes nothing of its own.
 
 pub mod branches;
 pub mod contact_cells;
