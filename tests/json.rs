@@ -34,7 +34,8 @@ fn check_tells_what_a_model_is() {
     assert!((check["pairs"][0]["area_m2"].as_f64().unwrap() - 4e-4).abs() < 1e-12);
     assert_eq!(check["layouts"][0]["reference_nodes"], 4);
     assert!((check["sum_of_loads_n"][2].as_f64().unwrap() + 1000.0).abs() < 1e-9);
-    let two: Value = serde_json::from_str(&place.run_on(2, &["check", "brake.toml", "--json", "--contacts", "4"]).out).unwrap();
+    let two: Value =
+        serde_json::from_str(&place.run_on(2, &["check", "brake.toml", "--json", "--contacts", "4"]).out).unwrap();
     assert_eq!(two["parts"][1]["tetrahedra"], check["parts"][1]["tetrahedra"]);
 }
 
@@ -50,7 +51,8 @@ fn a_run_tells_its_tables() {
     let rows = |name: &str| {
         let mut table = csv::Reader::from_path(place.path(name)).unwrap();
         let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
-        let rows: Vec<Vec<String>> = table.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect();
+        let rows: Vec<Vec<String>> =
+            table.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect();
         (header, rows)
     };
     let asked = run["frictions"].as_array().unwrap().iter().filter(|friction| friction["asked"] == true);
@@ -59,7 +61,9 @@ fn a_run_tells_its_tables() {
     let (header, modes) = rows("run/modes.csv");
     let listed = asked.iter().flat_map(|friction| friction["modes"].as_array().unwrap());
     for (row, mode) in modes.iter().zip(listed) {
-        for (name, field) in header.iter().zip(row).filter(|(name, _)| !["friction", "unstable"].contains(&name.as_str())) {
+        for (name, field) in
+            header.iter().zip(row).filter(|(name, _)| !["friction", "unstable"].contains(&name.as_str()))
+        {
             let (x, y): (f64, f64) = (field.parse().unwrap(), mode[name].as_f64().unwrap());
             assert!((x - y).abs() <= 1e-2 * y.abs(), "{name}: {x} {y}");
         }

@@ -88,7 +88,10 @@ fn assert_same(found: &Results, expected: &Results) {
         for (x, y) in a.modes.iter().zip(&b.modes) {
             let error = (x.lambda - y.lambda).norm() / y.lambda.norm();
             assert!(error < 1e-9, "{} and {} at {}: {error:.1e}", x.lambda, y.lambda, a.friction);
-            assert_eq!((x.unstable, x.shape.is_some(), x.sources.len()), (y.unstable, y.shape.is_some(), y.sources.len()));
+            assert_eq!(
+                (x.unstable, x.shape.is_some(), x.sources.len()),
+                (y.unstable, y.shape.is_some(), y.sources.len())
+            );
         }
     }
     for (a, b) in between.iter().zip(&others) {
@@ -141,7 +144,11 @@ fn kill_and_go_on(place: &Place, expected: &Results, chance: &mut Chance, n_kill
     }
     assert_same(&results(place, "run"), expected);
     assert!(!place.path(".run.unfinished").exists());
-    assert!(place.list("run").iter().all(|name| name == ".squeal" || !name.starts_with('.')), "{:?}", place.list("run"));
+    assert!(
+        place.list("run").iter().all(|name| name == ".squeal" || !name.starts_with('.')),
+        "{:?}",
+        place.list("run")
+    );
     moments
 }
 
@@ -216,7 +223,9 @@ fn ctrl_c_ends_after_the_friction_at_hand() {
         signal(name, child.id());
         let Said { code: found, out, err } = end(child);
         assert_eq!((found, out.as_str()), (code, ""), "{err}");
-        for part in ["ending after this friction; a second signal", "stopped after friction 0.", "The same command goes on"] {
+        for part in
+            ["ending after this friction; a second signal", "stopped after friction 0.", "The same command goes on"]
+        {
             assert!(err.contains(part), "{part}: {err}");
         }
         assert!(!err.contains("error") && n_done(&place) > n && !place.path("run").exists(), "{err}");

@@ -25,7 +25,13 @@ impl Progress {
         let template = "{spinner} [{elapsed}] {wide_bar} {pos}/{len} {msg} {eta} left";
         bar.set_style(ProgressStyle::with_template(template).expect("a valid template"));
         bar.enable_steady_tick(Duration::from_millis(200));
-        Progress { bar, start: Instant::now(), skipped: Cell::new(0), is_root: comm.is_root(), lines: verbose && comm.is_root() }
+        Progress {
+            bar,
+            start: Instant::now(),
+            skipped: Cell::new(0),
+            is_root: comm.is_root(),
+            lines: verbose && comm.is_root(),
+        }
     }
 
     /// Says what is being done.

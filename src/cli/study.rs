@@ -174,7 +174,10 @@ impl Study {
     /// Tells what need not be done again.
     fn tell_earlier(&self, comm: &Comm, n: usize) {
         if n > 0 && comm.is_root() {
-            eprintln!("{}: an earlier run has finished {n} frictions, from where this one goes on", self.place.display());
+            eprintln!(
+                "{}: an earlier run has finished {n} frictions, from where this one goes on",
+                self.place.display()
+            );
         }
     }
 

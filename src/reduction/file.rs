@@ -15,7 +15,7 @@
 //! surface/basis     n x 3 n_s   displacements of the corners for a unit of each coordinate, single precision
 //! ```
 //!
-//! [`crate::hdf`] tells how a text is kept, and that the file appears when it is complete.
+//! Texts are arrays of bytes, UTF-8; all arrays are checksummed. The file appears when it is complete.
 
 use std::path::Path;
 

@@ -38,6 +38,10 @@ impl Folder {
         Self::may_write(target, force)?;
         let draft = unfinished(target)?;
         let resume = draft.join(RESUME);
+        if !resume.exists() && names(&draft).is_ok_and(|names| !names.is_empty()) {
+            let what = format!("{} holds something that is not of squeal", draft.display());
+            return Err(Error::input(format!("{what}. Move it, or choose another output folder with --output")));
+        }
         fs::create_dir_all(&resume).map_err(|reason| {
             Error::input(format!(
                 "cannot create the output folder {}: {reason}. Choose another with --output",
@@ -95,11 +99,10 @@ impl Folder {
     /// The system's, with the path.
     pub fn clear(&self) -> Result<()> {
         self.keeps.set(false);
-        for entry in names(&self.draft).map_err(Error::io(&self.draft))? {
-            let within = if entry == RESUME { names(&self.draft.join(RESUME)) } else { Ok(vec![String::new()]) };
-            let within = within.map_err(Error::io(&self.draft))?;
-            for name in within.iter().filter(|name| *name != LOCK) {
-                let path = self.draft.join(&entry).join(name);
+        let resume = self.draft.join(RESUME);
+        for (folder, stays) in [(&self.draft, RESUME), (&resume, LOCK)] {
+            let names = names(folder).map_err(Error::io(folder))?;
+            for path in names.iter().filter(|name| *name != stays).map(|name| folder.join(name)) {
                 remove(&path).map_err(Error::io(&path))?;
             }
         }
@@ -121,11 +124,10 @@ impl Folder {
     pub fn finish(mut self) -> Result<()> {
         let mark = self.draft.join(MARK);
         let files = names(&self.draft).map_err(Error::io(&self.draft))?;
-        // What a run has half written when it was killed.
-        for file in files.iter().filter(|name| name.contains(".partial-")) {
-            remove(&self.draft.join(file)).map_err(Error::io(&self.draft))?;
-        }
-        let kept = files.iter().filter(|name| !name.contains(".partial-"));
+        // What a run had half written when it was killed.
+        let (half, kept): (Vec<_>, Vec<_>) = files.iter().partition(|name| name.contains(".partial-"));
+        half.iter().try_for_each(|name| remove(&self.draft.join(name))).map_err(Error::io(&self.draft))?;
+        let kept = kept.iter().filter(|name| **name != RESUME);
         fs::write(&mark, kept.map(|name| format!("{name}\n")).collect::<String>()).map_err(Error::io(&mark))?;
         if self.target.exists() {
             fs::remove_dir_all(&self.target).map_err(Error::io(&self.target))?;
@@ -277,6 +279,10 @@ mod tests {
         fs::write(place.path().join("thesis.tex"), "").unwrap();
         assert!(Folder::open(place.path(), true).is_err());
         let target = place.path().join("run");
+        fs::create_dir(unfinished(&target).unwrap()).unwrap();
+        fs::write(unfinished(&target).unwrap().join("thesis.tex"), "").unwrap();
+        assert!(Folder::open(&target, true).is_err());
+        fs::remove_file(unfinished(&target).unwrap().join("thesis.tex")).unwrap();
         Folder::open(&target, false).unwrap().finish().unwrap();
         fs::write(target.join("notes.txt"), "").unwrap();
         let message = Folder::open(&target, true).err().unwrap().to_string();
