@@ -279,7 +279,7 @@ pub fn read_value(group: &Group) -> hdf5::Result<Value> {
 fn read_shapes(group: &Group, name: &str, n: usize) -> hdf5::Result<Vec<Shape>> {
     let numbers: Vec<f32> = values(group, name)?;
     let length = numbers.len() / n.max(1);
-    if numbers.len() != n * length || length % 6 != 0 {
+    if numbers.len() != n * length || !length.is_multiple_of(6) {
         return Err(format!("{name} has {} numbers for {n} modes", numbers.len()).into());
     }
     let part = |shape: &[f32], k: usize| shape.chunks_exact(6).map(|v| [v[k], v[2 + k], v[4 + k]]).collect();
