@@ -1,12 +1,24 @@
-//! Results on disk and on screen: tables, CSV, JSON, VTU. Reads results, computes nothing of its own.
+//! Results on disk and on screen: tables, CSV, VTU, and the report with its figures. Reads results, computes nothing of its own.
+//!
+//! ```text
+//! Results -> Findings (instabilities) --> words, figures (SVG -> PNG) --+
+//!        \-> drawing: geometry, shapes, flat faces, as packed numbers --+-> one HTML page
+//!         \-> ParaView: shapes that move
+//! ```
 
 pub mod branches;
 pub mod contact_cells;
 pub mod contact_surface;
 pub mod details;
 pub mod explain;
+pub mod findings;
 pub mod folder;
 pub mod json;
+pub mod plots;
 pub mod summary;
+pub mod svg;
 pub mod tables;
+#[cfg(test)]
+mod testing;
 pub mod vtu;
+pub mod words;

@@ -1,0 +1,258 @@
+//! The answer in words: does it squeal, where, why, and what would help.
+
+use std::f64::consts::TAU;
+
+use super::explain::largest;
+use super::findings::{End, Findings, Instability, Range};
+use crate::sweep::{Kind, Source};
+
+/// What is said of one instability.
+pub struct Answer {
+    /// The frequency and the frictions.
+    pub squeals: String,
+    /// Where it moves.
+    pub moves: String,
+    /// The modes that couple.
+    pub couples: String,
+    /// Which contacts feed it.
+    pub fed: String,
+    /// Which damping holds it.
+    pub held: String,
+    /// What would make it grow less, the most effective first.
+    pub helps: Vec<String>,
+}
+
+/// Instabilities named in the first sentence.
+const NAMED: usize = 3;
+
+/// Does it squeal: one sentence.
+pub fn headline(findings: &Findings) -> String {
+    let found = &findings.instabilities;
+    if found.is_empty() {
+        return quiet(findings);
+    }
+    let named: Vec<String> = found.iter().take(NAMED).map(|one| squeals(findings, one)).collect();
+    let more = match found.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        1 => ", and at one more frequency".into(),
+        n => format!(", and at {n} more frequencies"),
+    };
+    format!("Squeals at {}{more}.", listed(&named, if more.is_empty() { ", and at " } else { ", at " }))
+}
+
+fn quiet(findings: &Findings) -> String {
+    let values: Vec<_> = findings.asked.iter().map(|&v| &findings.results.values[v]).collect();
+    let (Some(first), Some(last)) = (values.first(), values.last()) else {
+        return "No friction has been analysed yet.".into();
+    };
+    let n = values.iter().map(|value| value.modes.len()).max().unwrap_or(0);
+    let [from, to] = findings.results.about.band.map(frequency);
+    if n == 0 {
+        return format!("Quiet: there is no mode from {from} to {to}.");
+    }
+    let frictions = interval(first.friction, last.friction);
+    format!("Quiet: all {n} modes from {from} to {to} are damped {frictions}.")
+}
+
+/// `2.40 kHz above mu = 0.27`.
+fn squeals(findings: &Findings, one: &Instability) -> String {
+    let all = [findings.asked.first(), findings.asked.last()].map(|v| v.map(|&v| findings.results.values[v].friction));
+    let ranges: Vec<String> = one.ranges.iter().map(|range| reach(range, all)).collect();
+    format!("{} {}", frequency(findings.mode(one.worst).frequency()), listed(&ranges, " and "))
+}
+
+/// The frictions of a range.
+fn reach(range: &Range, all: [Option<f64>; 2]) -> String {
+    let [from, to] = [range.from.value(), range.to.value()];
+    match (range.from, range.to) {
+        (End::Edge(_), End::Edge(_)) if from < to && all == [Some(from), Some(to)] => {
+            format!("at every friction from {from} to {to}")
+        }
+        (End::Hopf(_), End::Edge(_)) => format!("above \u{3bc} = {from:.2}"),
+        (End::Edge(_), End::Hopf(_)) => format!("below \u{3bc} = {to:.2}"),
+        (End::Hopf(_), End::Hopf(_)) => format!("between \u{3bc} = {from:.2} and {to:.2}"),
+        (End::Seen(_, before), End::Edge(_)) => format!("from \u{3bc} = {from} on (not at {before})"),
+        _ => interval(from, to),
+    }
+}
+
+fn interval(from: f64, to: f64) -> String {
+    if from == to { format!("at \u{3bc} = {from}") } else { format!("from \u{3bc} = {from} to {to}") }
+}
+
+/// What is said of an instability, at the friction where it grows fastest.
+pub fn answer(findings: &Findings, one: &Instability) -> Answer {
+    let mode = findings.mode(one.worst);
+    let known = |words: String| if mode.sources.is_empty() { String::new() } else { words };
+    let squeals = format!(
+        "{}; fastest at \u{3bc} = {}, by {:+.0} /s (damping ratio {:.2} %)",
+        squeals(findings, one),
+        findings.friction(one.worst),
+        mode.growth_rate(),
+        100.0 * mode.damping_ratio()
+    );
+    Answer {
+        squeals,
+        moves: known(largest(&mode.sources, |source| source.share.kinetic)),
+        couples: couples(findings, one),
+        fed: known(largest(&mode.sources, |source| source.share.fed.max(0.0))),
+        held: known(largest(&mode.sources, |source| -source.share.damped)),
+        helps: helps(&mode.sources),
+    }
+}
+
+/// The two modes that meet.
+fn couples(findings: &Findings, one: &Instability) -> String {
+    let Some(own) = one.branch else { return String::new() };
+    let start = |b: usize| {
+        let point = &findings.branches()[b].points[0];
+        format!("{:.0} Hz", point.lambda.im / TAU)
+    };
+    let first = findings.branches()[own].points[0].value;
+    match findings.onset(one) {
+        Some(hopf) => match hopf.partner {
+            Some(partner) => format!(
+                "the modes at {} and {} (at \u{3bc} = {first}) meet at {} and \u{3bc} = {:.3}",
+                start(own),
+                start(partner.branch),
+                frequency(hopf.omega / TAU),
+                hopf.value
+            ),
+            None => format!("the mode at {} (at \u{3bc} = {first}) begins to grow by itself at \u{3bc} = {:.3}", start(own), hopf.value),
+        },
+        None => "it grows from the first friction on, so that its partner is not known".into(),
+    }
+}
+
+/// What is offered as a remedy changes by this much, relative.
+const CHANGE: f64 = 0.1;
+/// Friction falls by this much.
+const LESS_FRICTION: f64 = 0.05;
+/// Remedies named.
+const OFFERED: usize = 4;
+/// Remedies are worth naming from this fraction of the largest on.
+const WORTH: f64 = 0.02;
+
+/// The changes that lower the growth rate most, to first order.
+fn helps(sources: &[Source]) -> Vec<String> {
+    let mut all: Vec<(f64, String)> = sources.iter().flat_map(remedies).filter(|(effect, _)| *effect < 0.0).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = all.first().map_or(0.0, |(effect, _)| *effect);
+    all.retain(|(effect, _)| *effect <= WORTH * best);
+    all.iter().take(OFFERED).map(|(effect, what)| format!("{what}: {effect:+.0} /s")).collect()
+}
+
+/// Changes of a source, each with what it does to the growth rate, 1/s.
+fn remedies(source: &Source) -> Vec<(f64, String)> {
+    let name = &source.name;
+    let mut all = Vec::new();
+    if let Some(s) = source.sensitivity {
+        let percent = 100.0 * CHANGE;
+        let stiffer = if s.stiffness.re < 0.0 { "stiffer" } else { "softer" };
+        all.push((-CHANGE * s.stiffness.re.abs(), format!("{name} {percent} % {stiffer}")));
+        all.push((CHANGE * s.damping.re, format!("{percent} % more damping of {name}")));
+        if source.kind == Kind::Part {
+            let heavier = if s.mass.re < 0.0 { "heavier" } else { "lighter" };
+            all.push((-CHANGE * s.mass.re.abs(), format!("{name} {percent} % {heavier}")));
+        }
+    }
+    all.extend(source.friction.map(|slope| (-LESS_FRICTION * slope.re, format!("friction of {name} lower by {LESS_FRICTION}"))));
+    all
+}
+
+/// What a reader should know before he relies on the rest.
+pub fn cautions(findings: &Findings) -> Vec<String> {
+    let mut all = Vec::new();
+    let results = findings.results;
+    let missing = results.about.frictions.len().saturating_sub(findings.asked.len());
+    if missing > 0 {
+        all.push(format!("The study is not complete: {missing} of {} frictions are missing.", results.about.frictions.len()));
+    }
+    for &v in &findings.asked {
+        let value = &results.values[v];
+        if let Some(count) = value.count.filter(|count| !count.agrees()) {
+            all.push(format!(
+                "At \u{3bc} = {} the number of modes is not confirmed: {} found below {:.0} Hz, {} expected.",
+                value.friction, count.found, count.below, count.expected
+            ));
+        }
+        if value.steps.last().is_some_and(|step| !step.converged) {
+            all.push(format!("At \u{3bc} = {} the equilibrium has not converged.", value.friction));
+        }
+    }
+    let diagram = results.diagram.as_ref();
+    for [low, high] in diagram.iter().flat_map(|diagram| &diagram.doubtful) {
+        all.push(format!("Not all branches could be followed from \u{3bc} = {low:.4} to {high:.4}."));
+    }
+    if diagram.is_none() && findings.asked.len() > 1 && !findings.instabilities.is_empty() {
+        all.push("Modes were not followed over friction: instabilities are told apart by their frequency alone.".into());
+    }
+    all
+}
+
+/// Three digits in Hz or kHz.
+pub fn frequency(hertz: f64) -> String {
+    let (value, unit) = if hertz < 999.5 { (hertz, "Hz") } else { (hertz / 1000.0, "kHz") };
+    let decimals = if unit == "Hz" || value >= 99.95 { 0 } else if value >= 9.995 { 1 } else { 2 };
+    format!("{value:.decimals$} {unit}")
+}
+
+/// `a, b` and a last separator.
+fn listed(items: &[String], last: &str) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., end] => format!("{}{last}{end}", first.join(", at ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+    use crate::results::Results;
+
+    #[test]
+    fn the_first_sentence_says_where_and_from_which_friction_on() {
+        let results = testing::results();
+        let said = headline(&Findings::new(&results));
+        assert_eq!(said, "Squeals at 2.40 kHz above \u{3bc} = 0.27, and at 3.70 kHz between \u{3bc} = 0.13 and 0.62.");
+        let alone = Results { diagram: None, ..results.clone() };
+        let said = headline(&Findings::new(&alone));
+        assert_eq!(said, "Squeals at 2.40 kHz from \u{3bc} = 0.3 on (not at 0.2), and at 3.70 kHz from \u{3bc} = 0.2 to 0.6.");
+        let mut one = alone.clone();
+        one.values.retain(|value| value.friction == 0.5);
+        assert!(headline(&Findings::new(&one)).starts_with("Squeals at 2.40 kHz at \u{3bc} = 0.5, and at"));
+        one.values[0].modes.retain(|mode| !mode.unstable);
+        assert_eq!(headline(&Findings::new(&one)), "Quiet: all 6 modes from 0 Hz to 6.00 kHz are damped at \u{3bc} = 0.5.");
+    }
+
+    #[test]
+    fn an_answer_names_partner_parts_contacts_and_remedies() {
+        let results = testing::results();
+        let findings = Findings::new(&results);
+        let said = answer(&findings, &findings.instabilities[0]);
+        assert!(said.couples.starts_with("the modes at 2380 Hz and 2420 Hz (at \u{3bc} = 0) meet at 2.40 kHz"), "{}", said.couples);
+        assert_eq!(said.moves, "disc 70 %, pad 30 %");
+        assert_eq!(said.fed, "disc / pad 100 %");
+        assert_eq!(said.held, "disc 50 %, pad 40 %, pin 10 %");
+        assert!(said.helps[0].starts_with("friction of disc / pad lower by 0.05: \u{2d}"), "{:?}", said.helps);
+        assert_eq!(said.helps[1], "disc 10 % stiffer: -4 /s");
+    }
+
+    #[test]
+    fn cautions_come_with_doubt_only() {
+        let mut results = testing::results();
+        assert_eq!(cautions(&Findings::new(&results)), Vec::<String>::new());
+        results.values[3].count.as_mut().unwrap().found -= 1;
+        results.values[4].steps[0].converged = false;
+        results.diagram.as_mut().unwrap().doubtful.push([0.1, 0.2]);
+        results.about.frictions.push(0.9);
+        let said = cautions(&Findings::new(&results)).join("\n");
+        for part in ["1 of 10 frictions", "7 found", "0.4 the equilibrium", "0.1000 to 0.2000"] {
+            assert!(said.contains(part), "{said}");
+        }
+        results.diagram = None;
+        assert!(cautions(&Findings::new(&results)).last().unwrap().contains("not followed"));
+    }
+}
