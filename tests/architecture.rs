@@ -43,7 +43,19 @@ const ROOMS: [(&str, &[&str]); 17] = [
     ("results", &["error", "hdf", "tracking", "equilibrium", "stability", "sweep"]),
     (
         "report",
-        &["error", "tracking", "model", "mesh", "element", "contact", "equilibrium", "stability", "sweep", "results"],
+        &[
+            "error",
+            "algebra",
+            "tracking",
+            "model",
+            "mesh",
+            "element",
+            "contact",
+            "equilibrium",
+            "stability",
+            "sweep",
+            "results",
+        ],
     ),
     (
         "cli",

@@ -17,6 +17,13 @@ pub struct Place {
     pub mode: usize,
 }
 
+impl Place {
+    /// What the page and its figures call the mode.
+    pub fn name(self) -> String {
+        format!("{}-{}", self.value, self.mode)
+    }
+}
+
 /// A growing mode, followed over friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instability {

@@ -9,11 +9,14 @@
 pub mod branches;
 pub mod contact_cells;
 pub mod contact_surface;
+pub mod data;
 pub mod details;
+pub mod drawing;
 pub mod explain;
 pub mod findings;
 pub mod folder;
 pub mod json;
+pub mod page;
 pub mod plots;
 pub mod summary;
 pub mod svg;

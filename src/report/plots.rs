@@ -219,7 +219,7 @@ fn thin(colour: &str) -> String {
 
 /// What tells a program which mode a mark stands for.
 fn tag(place: Place) -> String {
-    format!(r#"data-mode="{}-{}""#, place.value, place.mode)
+    format!(r#"data-mode="{}""#, place.name())
 }
 
 fn frictions(findings: &Findings) -> Scale {

@@ -37,8 +37,11 @@ pub fn escaped(text: &str) -> String {
 /// Where text stands relative to its point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
+    /// It begins there.
     Start,
+    /// Its middle is there.
     Middle,
+    /// It ends there.
     End,
 }
 

@@ -1,0 +1,160 @@
+// The mode shape in motion, and what the reader can do with it.
+
+const PERIOD = 1600; // ms
+const LARGEST = 0.15; // of the model's size
+const VIEWS = { iso: [0.55, 0.42], x: [-Math.PI / 2, 0], y: [0, Math.PI / 2], z: [0, 0] };
+
+function startShape() {
+  const names = data.asked.flatMap((value) => data.values[value].modes.map((_, mode) => `${value}-${mode}`)).filter((name) => data.shapes[name]);
+  if (!data.surface || !names.length) {
+    document.querySelector("#answer .split").style.gridTemplateColumns = "minmax(0, 1fr)";
+    return;
+  }
+  byId("shape").hidden = false;
+  let viewer;
+  try {
+    viewer = new Viewer(byId("view"), data.surface);
+  } catch (error) {
+    byId("shape-note").textContent = `No picture: ${error.message}.`;
+    byId("stage").hidden = true;
+    return;
+  }
+  fillPictures(viewer);
+  const motion = new Motion(viewer);
+  startControls(viewer, motion, names);
+  startTurning(viewer, motion);
+  paintScale(document.querySelector("#legend canvas"));
+  motion.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+}
+
+/** Draws again when something has changed, and all the time while the shape moves in sight. */
+class Motion {
+  constructor(viewer) {
+    Object.assign(this, { viewer, isPlaying: false, isSeen: true, isAsked: false, last: null });
+    new IntersectionObserver(([entry]) => { this.isSeen = entry.isIntersecting; this.redraw(); }).observe(viewer.canvas);
+    new ResizeObserver(() => this.redraw()).observe(viewer.canvas);
+    addEventListener("beforeprint", () => this.viewer.draw());
+  }
+
+  play(isPlaying) {
+    this.isPlaying = isPlaying;
+    this.last = null;
+    byId("play").textContent = isPlaying ? "Pause" : "Play";
+    byId("play").setAttribute("aria-pressed", isPlaying);
+    this.redraw();
+  }
+
+  redraw() {
+    if (this.isAsked) return;
+    this.isAsked = true;
+    requestAnimationFrame((now) => this.frame(now));
+  }
+
+  frame(now) {
+    this.isAsked = false;
+    if (this.isPlaying && this.last !== null) this.viewer.phase = (this.viewer.phase + (2 * Math.PI * (now - this.last)) / PERIOD) % (2 * Math.PI);
+    this.last = now;
+    this.viewer.draw();
+    if (this.isPlaying && this.isSeen) this.redraw();
+    else this.last = null;
+  }
+}
+
+/** A picture of each instability for its card. */
+function fillPictures(viewer) {
+  document.querySelectorAll(".instability").forEach((card, i) => {
+    const packed = data.shapes[data.instabilities[i].worst];
+    if (!packed) return;
+    const image = card.querySelector("img");
+    image.src = viewer.picture(packed, 520, 340);
+    image.alt = `Mode shape: ${modeLabel(modeOf(data.instabilities[i].worst))}`;
+    image.hidden = false;
+  });
+}
+
+function startControls(viewer, motion, names) {
+  const select = byId("shape-mode");
+  names.forEach((name) => {
+    const mode = modeOf(name);
+    select.append(make("option", { value: name }, `${mode.frequency.toFixed(1)} Hz, \u03bc = ${mode.friction}`));
+  });
+  select.addEventListener("change", () => choice.set(select.value));
+  choice.onChange((name) => showShape(viewer, motion, name));
+  showShape(viewer, motion, names.includes(data.instabilities[0]?.worst) ? data.instabilities[0].worst : names[0]);
+  byId("play").addEventListener("click", () => motion.play(!motion.isPlaying));
+  const amplitude = byId("amplitude");
+  const setAmplitude = () => {
+    viewer.amplitude = (LARGEST * amplitude.value) / 100;
+    motion.redraw();
+  };
+  amplitude.addEventListener("input", setAmplitude);
+  setAmplitude();
+  byId("colouring").addEventListener("change", (event) => {
+    viewer.bySize = event.target.value === "size";
+    byId("legend").hidden = !viewer.bySize;
+    motion.redraw();
+  });
+  document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => {
+    [viewer.yaw, viewer.pitch] = VIEWS[button.dataset.view];
+    Object.assign(viewer, { pan: [0, 0], zoom: 1 });
+    motion.redraw();
+  }));
+  data.surface.parts.forEach(([name], i) => {
+    const box = make("input", { type: "checkbox" });
+    box.checked = true;
+    box.addEventListener("change", () => { viewer.shown[i] = box.checked; motion.redraw(); });
+    const swatch = make("span", { class: "swatch" });
+    swatch.style.background = PARTS[i % PARTS.length];
+    byId("parts").append(make("label", {}, box, " ", swatch, ` ${name}`));
+  });
+}
+
+function showShape(viewer, motion, name) {
+  const isKept = Boolean(data.shapes[name]);
+  byId("shape-note").textContent = isKept ? "" : `(the results keep no shape of the mode chosen, ${modeOf(name).frequency.toFixed(1)} Hz at \u03bc = ${modeOf(name).friction})`;
+  if (!isKept) return;
+  const mode = modeOf(name);
+  byId("shape-title").textContent = `Mode shape at ${mode.frequency.toFixed(1)} Hz, \u03bc = ${mode.friction}`;
+  byId("shape-mode").value = name;
+  viewer.setShape(data.shapes[name]);
+  motion.redraw();
+}
+
+/** Turning, shifting and zooming by pointer, wheel and keys. */
+function startTurning(viewer, motion) {
+  const { canvas } = viewer;
+  const turnBy = (dx, dy) => {
+    viewer.yaw += dx;
+    viewer.pitch = Math.min(Math.max(viewer.pitch + dy, -Math.PI / 2), Math.PI / 2);
+    motion.redraw();
+  };
+  const zoomBy = (factor) => {
+    viewer.zoom = Math.min(Math.max(viewer.zoom * factor, 0.3), 20);
+    motion.redraw();
+  };
+  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("pointermove", (event) => {
+    if (!canvas.hasPointerCapture(event.pointerId)) return;
+    if (event.shiftKey || event.buttons === 2) {
+      const step = 2 / canvas.clientHeight / viewer.zoom;
+      viewer.pan = [viewer.pan[0] + step * event.movementX, viewer.pan[1] - step * event.movementY];
+      motion.redraw();
+    } else turnBy(0.008 * event.movementX, 0.008 * event.movementY);
+  });
+  // The page scrolls over the picture unless the reader has turned to it.
+  canvas.addEventListener("wheel", (event) => {
+    if (document.activeElement !== canvas && !event.ctrlKey) return;
+    event.preventDefault();
+    zoomBy(Math.exp(-0.0015 * event.deltaY));
+  }, { passive: false });
+  const keys = {
+    ArrowLeft: () => turnBy(-0.1, 0), ArrowRight: () => turnBy(0.1, 0), ArrowUp: () => turnBy(0, -0.1), ArrowDown: () => turnBy(0, 0.1),
+    "+": () => zoomBy(1.15), "=": () => zoomBy(1.15), "-": () => zoomBy(1 / 1.15), " ": () => motion.play(!motion.isPlaying),
+  };
+  canvas.addEventListener("keydown", (event) => {
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  });
+}
