@@ -195,7 +195,7 @@ impl Panel {
                 sheet.text([x, bottom + 18.0], Anchor::Middle, &self.x.label(tick, &ticks), "");
             }
         }
-        let ticks = self.y.ticks((height / 45.0).max(2.0));
+        let ticks = self.y.ticks((height / 36.0).max(3.0));
         for &tick in &ticks {
             let [_, y] = self.at(self.x.from, tick);
             sheet.line([left, y], [right, y], &grid);

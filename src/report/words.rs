@@ -85,11 +85,11 @@ pub fn answer(findings: &Findings, one: &Instability) -> Answer {
     let mode = findings.mode(one.worst);
     let known = |words: String| if mode.sources.is_empty() { String::new() } else { words };
     let squeals = format!(
-        "{}; fastest at \u{3bc} = {}, by {:+.0} /s (damping ratio {:.2} %)",
+        "{}; fastest at \u{3bc} = {}, by {} /s (damping ratio {} %)",
         squeals(findings, one),
         findings.friction(one.worst),
-        mode.growth_rate(),
-        100.0 * mode.damping_ratio()
+        signed(format!("{:+.0}", mode.growth_rate())),
+        signed(format!("{:.2}", 100.0 * mode.damping_ratio()))
     );
     Answer {
         squeals,
@@ -139,7 +139,7 @@ fn helps(sources: &[Source]) -> Vec<String> {
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best = all.first().map_or(0.0, |(effect, _)| *effect);
     all.retain(|(effect, _)| *effect <= WORTH * best);
-    all.iter().take(OFFERED).map(|(effect, what)| format!("{what}: {effect:+.0} /s")).collect()
+    all.iter().take(OFFERED).map(|(effect, what)| format!("{what}: {} /s", signed(three(*effect)))).collect()
 }
 
 /// Changes of a source, each with what it does to the growth rate, 1/s.
@@ -197,6 +197,16 @@ pub fn frequency(hertz: f64) -> String {
     format!("{value:.decimals$} {unit}")
 }
 
+/// A number with a true minus sign.
+fn signed(number: String) -> String {
+    number.replace('-', "\u{2212}")
+}
+
+/// A small number with a digit more than a large one.
+fn three(x: f64) -> String {
+    if x.abs() < 9.95 { format!("{x:+.1}") } else { format!("{x:+.0}") }
+}
+
 /// `a, b` and a last separator.
 fn listed(items: &[String], last: &str) -> String {
     match items {
@@ -236,8 +246,8 @@ mod tests {
         assert_eq!(said.moves, "disc 70 %, pad 30 %");
         assert_eq!(said.fed, "disc / pad 100 %");
         assert_eq!(said.held, "disc 50 %, pad 40 %, pin 10 %");
-        assert!(said.helps[0].starts_with("friction of disc / pad lower by 0.05: \u{2d}"), "{:?}", said.helps);
-        assert_eq!(said.helps[1], "disc 10 % stiffer: -4 /s");
+        assert!(said.helps[0].starts_with("friction of disc / pad lower by 0.05: \u{2212}"), "{:?}", said.helps);
+        assert_eq!(said.helps[1], "disc 10 % stiffer: \u{2212}4.2 /s");
     }
 
     #[test]

@@ -25,7 +25,7 @@ function startExplain() {
 }
 
 function explained(sources, mode) {
-  const energies = sources.filter((s) => Math.max(s.kinetic, Math.abs(s.strain)) > 5e-4);
+  const energies = sources.filter((s) => Math.max(s.kinetic, Math.abs(s.strain)) > 5e-3);
   const powers = sources.filter((s) => Math.max(Math.abs(s.fed), Math.abs(s.damped)) > 1e-3 * Math.max(...sources.map((t) => Math.abs(t.fed))));
   return [
     make("h4", {}, `Energy at \u03bc = ${mode.friction}`, key([["a", "kinetic"], ["b", "strain"]])),
@@ -47,12 +47,11 @@ function bar(style, from, to) {
 }
 
 function energyBars(sources) {
-  const body = sources.flatMap((s) => {
-    const row = (style, share, name) => make("tr", {}, make("td", { class: "left" }, name),
-      make("td", { class: "bar" }, make("div", { class: "track" }, bar(style, 0, 100 * Math.min(Math.max(share, 0), 1)))), make("td", {}, percent(share)));
-    return [row("a", s.kinetic, s.name), row("b", s.strain, "")];
-  });
-  return make("table", { class: "bars" }, make("tbody", {}, ...body));
+  const track = (style, share) => make("div", { class: "track" }, bar(style, 0, 100 * Math.min(Math.max(share, 0), 1)));
+  const rows = sources.map((s) => make("tr", {}, make("td", { class: "left" }, s.name),
+    make("td", { class: "bar" }, make("div", { class: "twin" }, track("a", s.kinetic), track("b", s.strain))),
+    make("td", {}, percent(s.kinetic)), make("td", {}, percent(s.strain))));
+  return make("table", { class: "bars" }, make("tbody", {}, ...rows));
 }
 
 function powerBars(sources, mode) {
@@ -85,7 +84,8 @@ function slopes(sources) {
     return make("td", { title: `frequency ${signed(hertz, 1)} Hz` }, Math.abs(growth) < 5e-4 * most ? "0" : signed(growth, 2));
   };
   const weight = (s) => Math.max(...s.slopes.map((slope, i) => (slope ? Math.abs(AMOUNTS[i] * slope[0]) : 0)));
-  const rows = told.sort((a, b) => weight(b) - weight(a)).map((s) => make("tr", {}, make("td", { class: "left" }, s.name), ...s.slopes.map(cell)));
+  const worth = told.filter((s) => weight(s) > 5e-3 * most).sort((a, b) => weight(b) - weight(a));
+  const rows = worth.map((s) => make("tr", {}, make("td", { class: "left" }, s.name), ...s.slopes.map(cell)));
   const head = make("tr", {}, make("th", { class: "left" }, "to first order"), ...SLOPES.map((name) => make("th", {}, name)));
   return make("details", { open: "" }, make("summary", {}, "What would change the growth rate, 1/s"),
     make("div", { class: "over" }, make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows))));

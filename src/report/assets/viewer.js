@@ -11,7 +11,7 @@ out float moved;
 void main() {
   vec3 u = re * cos(phase) - im * sin(phase);
   vec3 q = turn * (origin + size * place + amplitude * u - centre);
-  float far = 6.0 * radius, near = 2.0 * radius, lens = 3.8 * zoom * min(1.0, aspect);
+  float far = 6.0 * radius, near = 2.0 * radius, lens = 4.4 * zoom * min(1.0, aspect);
   q += vec3(pan * radius, -4.0 * radius);
   eye = q;
   moved = sqrt(dot(re, re) + dot(im, im));
