@@ -6,22 +6,8 @@ use std::io::Write;
 use crate::results::{ModeData, Results};
 use crate::sweep::{Kind, Source};
 
-<<<<<<< HEAD
-fn kind(kind: Kind) -> &'static str {
-=======
-use super::tables::ModeRow;
-
-/// A mode with what explains it.
-pub struct Explained {
-    /// The mode.
-    pub row: ModeRow,
-    /// Parts, connectors and contact pairs.
-    pub sources: Vec<Source>,
-}
-
 /// The word for a kind.
 pub(super) fn kind(kind: Kind) -> &'static str {
->>>>>>> c8473e0 (report: one HTML page, self-contained, with figures, moving shapes, contact maps and tables)
     match kind {
         Kind::Part => "part",
         Kind::Connector => "connector",

@@ -64,6 +64,7 @@ pub fn results() -> Results {
         costs: "12.3 s on 2 ranks: equilibria 4.5 s, modes 7.8 s".into(),
         surface,
         contact,
+        failure: None,
     }
 }
 

@@ -162,8 +162,9 @@ fn remedies(source: &Source) -> Vec<(f64, String)> {
 
 /// What a reader should know before he relies on the rest.
 pub fn cautions(findings: &Findings) -> Vec<String> {
-    let mut all = Vec::new();
     let results = findings.results;
+    let failed = results.failure.as_ref().map(|failure| format!("The study ended early: {}", failure.reason));
+    let mut all: Vec<String> = failed.into_iter().collect();
     let missing = results.about.frictions.len().saturating_sub(findings.asked.len());
     if missing > 0 {
         all.push(format!("The study is not complete: {missing} of {} frictions are missing.", results.about.frictions.len()));
