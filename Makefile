@@ -19,8 +19,9 @@ export OMPI_MCA_rmaps_base_oversubscribe := 1
 help: ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
-demo: setup results/demo/summary.txt ## the main job on the demo brake (medium mesh): table and paths of the results
+demo: setup results/demo/report.html ## the main job on the demo brake (medium mesh): table, paths of the results, report
 	@cat results/demo/summary.txt
+	@echo "\nopen results/demo/report.html in a browser"
 
 test: setup meshes/build/brake-small.msh ## all tests
 	@scripts/setup.sh --tests
@@ -58,3 +59,6 @@ meshes/build/brake-%.msh: meshes/brake.geo | setup
 
 results/demo/summary.txt: $(BINARY) meshes/brake-medium.toml meshes/build/brake-medium.msh
 	$(MPIRUN) $(BINARY) stability meshes/brake-medium.toml --friction 0.1:0.9:0.1 --output results/demo --force --verbose > /dev/null
+
+results/demo/report.html: results/demo/summary.txt
+	$(BINARY) report results/demo --force > /dev/null

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Installs what debian-packages.txt lists and cargo-nextest, as far as they are missing. Works as root or with sudo.
+# Installs what debian-packages.txt lists, with --tests also debian-packages-tests.txt and cargo-nextest, as far as they are missing. Works as root or with sudo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-mapfile -t packages < <(grep -vE '^[[:space:]]*(#|$)' debian-packages.txt)
+lists=(debian-packages.txt)
+[ "${1:-}" = "--tests" ] && lists+=(debian-packages-tests.txt)
+mapfile -t packages < <(grep -hvE '^[[:space:]]*(#|$)' "${lists[@]}")
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")

@@ -11,6 +11,7 @@ mod progress;
 mod ranked;
 mod reduce;
 mod reduced;
+mod report;
 mod stability;
 mod state;
 mod statics;
@@ -112,6 +113,11 @@ enum Command {
         /// Do not follow the modes over friction, which solves at more values to find where they become unstable
         #[arg(long)]
         no_branches: bool,
+    },
+    /// Make a page of a stability run's results: does it squeal, where, why, what would help; figures, moving shapes, tables
+    Report {
+        #[command(flatten)]
+        report: report::Report,
     },
 }
 
@@ -230,6 +236,7 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::Check { model, contacts, output } => check::run(shell, model, *contacts, output.as_deref()),
         Command::Static { run } => statics::run(shell, run),
         Command::Reduce { reduce } => reduce::run(shell, reduce),
+        Command::Report { report } => report::run(shell, report),
         Command::Stability { run, band, anew, no_branches } => stability::run(shell, run, *band, *anew, !no_branches),
     }
 }

@@ -9,7 +9,7 @@ use crate::report::{branches, details, explain, tables};
 use crate::results::{Results, file};
 
 /// Name of the results file.
-const RESULTS: &str = "results.h5";
+pub const RESULTS: &str = "results.h5";
 
 /// Writes the results file, the tables that the results have rows for, and the summary, which ends with what went wrong. Not
 /// collective.

@@ -177,6 +177,23 @@ fn remove(path: &Path) -> std::io::Result<()> {
     if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
+/// Counts files that lie in a results folder as the folder's own, so that `--force` may replace them with it. Other folders and
+/// files are left as they are.
+///
+/// # Errors
+/// The system's, with the path.
+pub fn adopt(folder: &Path, files: &[PathBuf]) -> Result<()> {
+    let mark = folder.join(MARK);
+    let Ok(mut ours) = fs::read_to_string(&mark) else { return Ok(()) };
+    for file in files {
+        let Some(name) = file.strip_prefix(folder).ok().and_then(Path::to_str) else { continue };
+        if !ours.lines().any(|known| known == name) {
+            ours += &format!("{name}\n");
+        }
+    }
+    fs::write(&mark, ours).map_err(Error::io(&mark))
+}
+
 /// Writes a file, and the folders to it where they are missing.
 ///
 /// # Errors
@@ -225,6 +242,22 @@ mod tests {
         folder.finish().unwrap();
         assert_eq!(fs::read_to_string(target.join(FILE)).unwrap(), "second\n");
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_is_adopted_goes_with_the_folder() {
+        let place = tempfile::tempdir().unwrap();
+        let target = place.path().join("run");
+        Folder::open(&target, false).unwrap().finish().unwrap();
+        let files = ["plots/a.svg", "report.html"].map(|name| target.join(name));
+        files.iter().for_each(|file| write_file(file, |_| Ok(())).unwrap());
+        assert!(Folder::may_write(&target, true).is_err());
+        adopt(&target, &files).unwrap();
+        adopt(&target, &files).unwrap();
+        Folder::may_write(&target, true).unwrap();
+        assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "plots/a.svg\nreport.html\n");
+        adopt(place.path(), &files).unwrap();
+        assert!(!place.path().join(MARK).exists());
     }
 
     #[test]
