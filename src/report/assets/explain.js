@@ -25,10 +25,10 @@ function startExplain() {
 }
 
 function explained(sources, mode) {
-  const energies = sources.filter((s) => Math.max(s.kinetic, Math.abs(s.strain)) > 5e-3);
-  const powers = sources.filter((s) => Math.max(Math.abs(s.fed), Math.abs(s.damped)) > 1e-3 * Math.max(...sources.map((t) => Math.abs(t.fed))));
+  const energies = sources.filter((s) => Math.max(s.kinetic, Math.abs(s.strain)) > 0.01);
+  const powers = sources.filter((s) => Math.max(Math.abs(s.fed), Math.abs(s.damped)) > 0.01 * Math.max(...sources.map((t) => Math.abs(t.fed))));
   return [
-    make("h4", {}, `Energy at \u03bc = ${mode.friction}`, key([["a", "kinetic"], ["b", "strain"]])),
+    make("h4", {}, `Energy at \u03bc = ${mode.friction}, shares from 1 % on`, key([["a", "kinetic"], ["b", "strain"]])),
     energyBars(energies.sort((a, b) => b.kinetic + b.strain - a.kinetic - a.strain)),
     make("h4", {}, "What feeds and what holds it, 1/s of growth rate", key([["feed", "feeds"], ["hold", "holds"]])),
     powerBars(powers.sort((a, b) => Math.abs(b.fed + b.damped) - Math.abs(a.fed + a.damped)), mode),
@@ -84,7 +84,7 @@ function slopes(sources) {
     return make("td", { title: `frequency ${signed(hertz, 1)} Hz` }, Math.abs(growth) < 5e-4 * most ? "0" : signed(growth, 2));
   };
   const weight = (s) => Math.max(...s.slopes.map((slope, i) => (slope ? Math.abs(AMOUNTS[i] * slope[0]) : 0)));
-  const worth = told.filter((s) => weight(s) > 5e-3 * most).sort((a, b) => weight(b) - weight(a));
+  const worth = told.filter((s) => weight(s) > 0.03 * most).sort((a, b) => weight(b) - weight(a));
   const rows = worth.map((s) => make("tr", {}, make("td", { class: "left" }, s.name), ...s.slopes.map(cell)));
   const head = make("tr", {}, make("th", { class: "left" }, "to first order"), ...SLOPES.map((name) => make("th", {}, name)));
   return make("details", { open: "" }, make("summary", {}, "What would change the growth rate, 1/s"),
