@@ -152,7 +152,7 @@ fn face(findings: &Findings, pair: usize) -> Option<Face> {
     })
 }
 
-/// Two axes of the plane that a face lies in on the whole, as one sees it who looks at the face: to the right that global axis which lies in
+/// Two axes of the plane that a face lies in on the whole, as one sees it who looks at the face: sideways that global axis which lies in
 /// it most. A face of single points is seen along z.
 fn mean_plane(nodes: &[[f64; 3]], triangles: &[[u32; 3]]) -> ([f64; 3], [f64; 3]) {
     let mut normal = [0.0; 3];
@@ -168,7 +168,10 @@ fn mean_plane(nodes: &[[f64; 3]], triangles: &[[u32; 3]]) -> ([f64; 3], [f64; 3]
     let axis = (1..3).fold(0, |best, i| if n[i].abs() < n[best].abs() - 1e-6 { i } else { best });
     let mut right: [f64; 3] = std::array::from_fn(|i| f64::from(u8::from(i == axis)) - n[axis] * n[i]);
     right = right.map(|x| x / norm(right));
-    (right, cross(n, right))
+    let up = cross(n, right);
+    // Up is never down: a face seen from the other side is turned about the vertical.
+    let is_down = up.iter().sum::<f64>() < 0.0;
+    if is_down { (right.map(|x| -x), up.map(|x| -x)) } else { (right, up) }
 }
 
 /// The global axis that a direction is close to, else its components.
@@ -236,11 +239,11 @@ mod tests {
     }
 
     #[test]
-    fn a_face_is_seen_from_outside_with_x_to_the_right() {
+    fn a_face_is_seen_from_outside_and_upright() {
         let nodes = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         assert_eq!(mean_plane(&nodes, &[[0, 1, 2]]), ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
         let (right, up) = mean_plane(&nodes, &[[0, 2, 1]]);
-        assert_eq!([right, up].map(axis_name), ["x", "\u{2212}y"]);
+        assert_eq!([right, up].map(axis_name), ["\u{2212}x", "y"]);
         let (right, up) = mean_plane(&[[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &[[0, 1, 2]]);
         assert_eq!([right, up].map(axis_name), ["y", "z"]);
     }

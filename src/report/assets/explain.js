@@ -71,7 +71,7 @@ function powerBars(sources, mode) {
   return make("table", { class: "bars" }, make("tbody", {}, ...rows, total));
 }
 
-const SLOPES = ["friction +0.05", "damping +10 %", "stiffness +10 %", "mass +10 %"];
+const SLOPES = ["friction +0.05", "damping +10\u00a0%", "stiffness +10\u00a0%", "mass +10\u00a0%"];
 const AMOUNTS = [0.05, 0.1, 0.1, 0.1];
 
 function slopes(sources) {
