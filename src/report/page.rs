@@ -116,7 +116,7 @@ fn answer(findings: &Findings, i: usize, one: &Instability) -> String {
     };
     let helps = match &helps[..] {
         [] => String::new(),
-        _ => format!("<dt>Would help</dt><dd>{}</dd>\n", list("", &helps)),
+        _ => format!("<dt>Would help, to first order</dt><dd>{}</dd>\n", list("", &helps)),
     };
     format!(
         "<article class=\"card answer own{}\"><h2>{}</h2>\n<dl>\n{}{}{}{}{}{helps}</dl></article>\n",
