@@ -84,7 +84,8 @@ fn shape(page: &mut Browser) {
 
 /// The column of a table.
 fn column(page: &mut Browser, place: usize) -> Vec<f64> {
-    let cells = format!("[...document.querySelectorAll('#mode-table tbody tr')].map((row) => row.cells[{place}].textContent)");
+    let cells =
+        format!("[...document.querySelectorAll('#mode-table tbody tr')].map((row) => row.cells[{place}].textContent)");
     let minus = |text: &str| text.replace('\u{2212}', "-").parse().unwrap();
     page.value(&cells).as_array().unwrap().iter().map(|cell| minus(cell.as_str().unwrap())).collect()
 }
@@ -112,7 +113,9 @@ fn table(page: &mut Browser) {
     page.value("document.getElementById('mode-clear').click()");
     page.value("document.getElementById('mode-unstable').click()");
     assert_eq!(column(page, GROWTH).len(), growing.len());
-    page.value("{ const s = document.getElementById('mode-friction'); s.value = '3'; s.dispatchEvent(new Event('change')); }");
+    page.value(
+        "{ const s = document.getElementById('mode-friction'); s.value = '3'; s.dispatchEvent(new Event('change')); }",
+    );
     assert_eq!(column(page, 0), [0.6]);
 }
 
@@ -150,11 +153,17 @@ fn figures_and_motion_come_beside_the_page() {
     let place = reported();
     for name in ["stability-chart", "growth-rates", "instability-1", "convergence"] {
         let svg = place.read(&format!("run/plots/{name}.svg"));
-        assert!(roxmltree::Document::parse(&svg).unwrap().root_element().has_tag_name(("http://www.w3.org/2000/svg", "svg")));
+        assert!(
+            roxmltree::Document::parse(&svg)
+                .unwrap()
+                .root_element()
+                .has_tag_name(("http://www.w3.org/2000/svg", "svg"))
+        );
         let png = std::fs::read(place.path(&format!("run/plots/{name}.png"))).unwrap();
         assert_eq!(&png[1..4], b"PNG");
     }
-    let moving: Vec<_> = std::fs::read_dir(place.path("run/moving")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let moving: Vec<_> =
+        std::fs::read_dir(place.path("run/moving")).unwrap().map(|entry| entry.unwrap().path()).collect();
     let is_collection = |path: &&std::path::PathBuf| path.extension().is_some_and(|kind| kind == "pvd");
     let text = std::fs::read_to_string(moving.iter().find(is_collection).unwrap()).unwrap();
     let xml = roxmltree::Document::parse(&text).unwrap();

@@ -54,7 +54,10 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     targets.into_iter().flatten().try_for_each(|target| may_write(target, report.force))?;
     let results = file::read(&source)?;
     if results.about.band[1] <= 0.0 {
-        return Err(Error::input(format!("{} has no modes: squeal report tells of squeal stability", source.display())));
+        return Err(Error::input(format!(
+            "{} has no modes: squeal report tells of squeal stability",
+            source.display()
+        )));
     }
     let findings = Findings::new(&results);
     let page = page::page(&results)?;
@@ -72,7 +75,9 @@ fn may_write(target: &Path, force: bool) -> Result<()> {
     let is_free = fs::read_dir(target).map_or(!target.exists(), |mut entries| entries.next().is_none());
     match is_free || force {
         true => Ok(()),
-        false => Err(Error::input(format!("{} exists. Use --force to replace it, or choose another", target.display()))),
+        false => {
+            Err(Error::input(format!("{} exists. Use --force to replace it, or choose another", target.display())))
+        }
     }
 }
 

@@ -147,7 +147,10 @@ fn face(findings: &Findings, pair: usize) -> Option<Face> {
         triangles: packed(triangles.iter().flatten().flat_map(|&n| place[n as usize].to_le_bytes())),
         axes: [right, up].map(axis_name),
         peak,
-        pressure: values.iter().map(|v| packed(own.iter().flat_map(|&n| step(of(&v.pressure, n)).to_le_bytes()))).collect(),
+        pressure: values
+            .iter()
+            .map(|v| packed(own.iter().flat_map(|&n| step(of(&v.pressure, n)).to_le_bytes())))
+            .collect(),
         status: values.iter().map(|v| packed(own.iter().flat_map(|&n| status(&v.status, n).to_le_bytes()))).collect(),
     })
 }
@@ -256,7 +259,8 @@ mod tests {
         assert_eq!(faces.iter().map(|face| face.pair).collect::<Vec<_>>(), [0, 1]);
         for face in &faces {
             for (&v, packed) in findings.asked.iter().zip(&face.pressure) {
-                let own = (0..results.contact.nodes.len()).filter(|&n| results.contact.pair_of_node[n] as usize == face.pair);
+                let own =
+                    (0..results.contact.nodes.len()).filter(|&n| results.contact.pair_of_node[n] as usize == face.pair);
                 for (n, step) in own.zip(words(packed)) {
                     let back = face.peak * f64::from(u16::from_le_bytes(step)) / 65535.0;
                     assert!((back - results.values[v].pressure[n]).abs() < 1e-5 * face.peak);

@@ -197,14 +197,29 @@ fn model(results: &Results) -> String {
         rows += &row("Mesh", file(&about.mesh, &about.mesh_digest));
         rows += &row("Size", format!("{} nodes, {} tetrahedra", about.n_nodes, about.n_tets));
     }
-    rows += &row("Solved", format!("{} equations on {} rank{}", about.n_equations, about.n_ranks, if about.n_ranks == 1 { "" } else { "s" }));
+    rows += &row(
+        "Solved",
+        format!(
+            "{} equations on {} rank{}",
+            about.n_equations,
+            about.n_ranks,
+            if about.n_ranks == 1 { "" } else { "s" }
+        ),
+    );
     rows += &row("Command", format!("<code>squeal {}</code>", escaped(&about.command)));
     rows += &row("Program", escaped(&about.program));
     rows += &row("Libraries", escaped(&about.libraries));
     let parts: String = about
         .parts
         .iter()
-        .map(|p| format!("<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{:.3}</td></tr>", escaped(&p.name), escaped(&p.material), p.mass))
+        .map(|p| {
+            format!(
+                "<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{:.3}</td></tr>",
+                escaped(&p.name),
+                escaped(&p.material),
+                p.mass
+            )
+        })
         .collect();
     let kind = |sliding, swept| match (sliding, swept) {
         (true, true) => "slides, friction swept",
@@ -215,7 +230,14 @@ fn model(results: &Results) -> String {
     let pairs: String = about
         .pairs
         .iter()
-        .map(|p| format!("<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{}</td></tr>", escaped(&p.name), kind(p.sliding, p.swept), p.n_points))
+        .map(|p| {
+            format!(
+                "<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{}</td></tr>",
+                escaped(&p.name),
+                kind(p.sliding, p.swept),
+                p.n_points
+            )
+        })
         .collect();
     let table = |heads: [&str; 3], rows: String| match rows.is_empty() {
         true => String::new(),

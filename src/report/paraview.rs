@@ -51,7 +51,10 @@ impl Cycle<'_> {
     /// # Errors
     /// The writer's.
     pub fn write_collection(&self, out: &mut dyn Write) -> std::io::Result<()> {
-        writeln!(out, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>")?;
+        writeln!(
+            out,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>"
+        )?;
         for moment in 0..MOMENTS {
             let (time, file) = (moment as f64 / MOMENTS as f64, self.file(moment));
             writeln!(out, "<DataSet timestep=\"{time:.6}\" file=\"{file}\"/>")?;

@@ -54,7 +54,8 @@ fn stability_chart(findings: &Findings) -> String {
         for &place in instability.modes.iter().filter(|place| findings.results.values[place.value].asked) {
             let mode = findings.mode(place);
             let at = panel.at(findings.friction(place), mode.frequency() / 1000.0);
-            let style = format!(r#"fill="{0}" fill-opacity="0.45" stroke="{0}" stroke-width="1.5" {1}"#, colour(i), tag(place));
+            let style =
+                format!(r#"fill="{0}" fill-opacity="0.45" stroke="{0}" stroke-width="1.5" {1}"#, colour(i), tag(place));
             sheet.circle(at, radius(mode.growth_rate()).max(3.0), &style);
         }
     }
@@ -62,7 +63,11 @@ fn stability_chart(findings: &Findings) -> String {
     let legend = [1.0, 0.3, 0.1].map(|share| rounded(share * largest));
     for (k, &growth) in legend.iter().enumerate().filter(|_| !findings.instabilities.is_empty()) {
         let y = 70.0 + 38.0 * k as f64;
-        sheet.circle([658.0, y], radius(growth).min(RADIUS * 1.2), &format!(r#"class="ink" fill="none" stroke="{INK}""#));
+        sheet.circle(
+            [658.0, y],
+            radius(growth).min(RADIUS * 1.2),
+            &format!(r#"class="ink" fill="none" stroke="{INK}""#),
+        );
         sheet.text([680.0, y + 4.5], Anchor::Start, &format!("{growth} /s"), SMALL);
     }
     let below = if findings.instabilities.is_empty() { 70.0 } else { 190.0 };

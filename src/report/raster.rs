@@ -24,7 +24,9 @@ impl Painter {
         let mut fonts = fontdb::Database::new();
         fonts.load_system_fonts();
         let Some(any) = fonts.faces().next().map(|face| face.families[0].0.clone()) else {
-            return Err(Error::input("there is no font to write PNG figures with. Install one, e.g. fonts-dejavu-core"));
+            return Err(Error::input(
+                "there is no font to write PNG figures with. Install one, e.g. fonts-dejavu-core",
+            ));
         };
         const SANS: [&str; 3] = ["DejaVu Sans", "Liberation Sans", "Noto Sans"];
         let has = |name: &str| fonts.faces().any(|face| face.families.iter().any(|(family, _)| family == name));

@@ -236,7 +236,8 @@ mod tests {
 
     #[test]
     fn a_panel_puts_its_corners_where_they_belong() {
-        let panel = Panel { area: [10.0, 20.0, 100.0, 50.0], x: Scale::linear([0.0, 2.0]), y: Scale::linear([1.0, 3.0]) };
+        let panel =
+            Panel { area: [10.0, 20.0, 100.0, 50.0], x: Scale::linear([0.0, 2.0]), y: Scale::linear([1.0, 3.0]) };
         assert_eq!(panel.at(0.0, 1.0), [10.0, 70.0]);
         assert_eq!(panel.at(2.0, 3.0), [110.0, 20.0]);
     }

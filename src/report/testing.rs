@@ -26,7 +26,13 @@ struct Couple {
 const COUPLES: [Couple; 4] = [
     Couple { frequency: 950.0, gap: 30.0, force: |mu| 20.0 * mu, damping: 6.0, diameters: 2.0 },
     Couple { frequency: 2400.0, gap: 40.0, force: |mu| 150.0 * mu, damping: 12.0, diameters: 3.0 },
-    Couple { frequency: 3700.0, gap: 25.0, force: |mu| 240.0 * mu * (0.75 - mu).max(0.0), damping: 15.0, diameters: 4.0 },
+    Couple {
+        frequency: 3700.0,
+        gap: 25.0,
+        force: |mu| 240.0 * mu * (0.75 - mu).max(0.0),
+        damping: 15.0,
+        diameters: 4.0,
+    },
     Couple { frequency: 5200.0, gap: 60.0, force: |mu| 10.0 * mu, damping: 20.0, diameters: 5.0 },
 ];
 
@@ -51,8 +57,11 @@ impl Couple {
 /// The results of a study from 0 to 0.8.
 pub fn results() -> Results {
     let asked: Vec<f64> = (0..=8).map(|i| f64::from(i) / 10.0).collect();
-    let brackets: Vec<(usize, [f64; 2])> =
-        COUPLES.iter().enumerate().flat_map(|(c, couple)| couple.hopf(0.0, 0.8).into_iter().map(move |b| (c, b))).collect();
+    let brackets: Vec<(usize, [f64; 2])> = COUPLES
+        .iter()
+        .enumerate()
+        .flat_map(|(c, couple)| couple.hopf(0.0, 0.8).into_iter().map(move |b| (c, b)))
+        .collect();
     let between = brackets.iter().flat_map(|(_, bracket)| *bracket);
     let frictions: Vec<f64> = asked.iter().copied().chain(between).collect();
     let (surface, contact) = (surface(), contact());
@@ -160,7 +169,11 @@ fn value(mu: f64, asked: bool, surface: &Surface, contact: &ContactFaces) -> Val
         asked,
         pairs: vec![forces(6000.0, counts), forces(5000.0, Counts { open: 0, stick: 80, slip: 19 })],
         checks: "loads and supports balance to 4.0e-9 N and 6.2e-10 N m\n".into(),
-        steps: vec![Step { label: format!("friction {mu:.4}"), converged: true, iterations: (0..5).map(iterate).collect() }],
+        steps: vec![Step {
+            label: format!("friction {mu:.4}"),
+            converged: true,
+            iterations: (0..5).map(iterate).collect(),
+        }],
         status: pressure.iter().map(|&p| i32::from(p > 0.0)).collect(),
         pressure,
         count: Some(Count { below: 6000.0, expected: modes.len(), found: modes.len() }),

@@ -118,7 +118,11 @@ fn couples(findings: &Findings, one: &Instability) -> String {
                 frequency(hopf.omega / TAU),
                 hopf.value
             ),
-            None => format!("the mode at {} (at \u{3bc} = {first}) begins to grow by itself at \u{3bc} = {:.3}", start(own), hopf.value),
+            None => format!(
+                "the mode at {} (at \u{3bc} = {first}) begins to grow by itself at \u{3bc} = {:.3}",
+                start(own),
+                hopf.value
+            ),
         },
         None => "it grows from the first friction on, so that its partner is not known".into(),
     }
@@ -156,7 +160,11 @@ fn remedies(source: &Source) -> Vec<(f64, String)> {
             all.push((-CHANGE * s.mass.re.abs(), format!("{name} {percent} % {heavier}")));
         }
     }
-    all.extend(source.friction.map(|slope| (-LESS_FRICTION * slope.re, format!("friction of {name} lower by {LESS_FRICTION}"))));
+    all.extend(
+        source
+            .friction
+            .map(|slope| (-LESS_FRICTION * slope.re, format!("friction of {name} lower by {LESS_FRICTION}"))),
+    );
     all
 }
 
@@ -167,7 +175,10 @@ pub fn cautions(findings: &Findings) -> Vec<String> {
     let mut all: Vec<String> = failed.into_iter().collect();
     let missing = results.about.frictions.len().saturating_sub(findings.asked.len());
     if missing > 0 {
-        all.push(format!("The study is not complete: {missing} of {} frictions are missing.", results.about.frictions.len()));
+        all.push(format!(
+            "The study is not complete: {missing} of {} frictions are missing.",
+            results.about.frictions.len()
+        ));
     }
     for &v in &findings.asked {
         let value = &results.values[v];
@@ -186,7 +197,9 @@ pub fn cautions(findings: &Findings) -> Vec<String> {
         all.push(format!("Not all branches could be followed from \u{3bc} = {low:.4} to {high:.4}."));
     }
     if diagram.is_none() && findings.asked.len() > 1 && !findings.instabilities.is_empty() {
-        all.push("Modes were not followed over friction: instabilities are told apart by their frequency alone.".into());
+        all.push(
+            "Modes were not followed over friction: instabilities are told apart by their frequency alone.".into(),
+        );
     }
     all
 }
@@ -194,7 +207,13 @@ pub fn cautions(findings: &Findings) -> Vec<String> {
 /// Three digits in Hz or kHz.
 pub fn frequency(hertz: f64) -> String {
     let (value, unit) = if hertz < 999.5 { (hertz, "Hz") } else { (hertz / 1000.0, "kHz") };
-    let decimals = if unit == "Hz" || value >= 99.95 { 0 } else if value >= 9.995 { 1 } else { 2 };
+    let decimals = if unit == "Hz" || value >= 99.95 {
+        0
+    } else if value >= 9.995 {
+        1
+    } else {
+        2
+    };
     format!("{value:.decimals$} {unit}")
 }
 
@@ -230,12 +249,18 @@ mod tests {
         assert_eq!(said, "Squeals at 2.40 kHz above \u{3bc} = 0.27, and at 3.70 kHz between \u{3bc} = 0.19 and 0.56.");
         let alone = Results { diagram: None, ..results.clone() };
         let said = headline(&Findings::new(&alone));
-        assert_eq!(said, "Squeals at 2.40 kHz from \u{3bc} = 0.3 on (not at 0.2), and at 3.70 kHz from \u{3bc} = 0.2 to 0.5.");
+        assert_eq!(
+            said,
+            "Squeals at 2.40 kHz from \u{3bc} = 0.3 on (not at 0.2), and at 3.70 kHz from \u{3bc} = 0.2 to 0.5."
+        );
         let mut one = alone.clone();
         one.values.retain(|value| value.friction == 0.5);
         assert!(headline(&Findings::new(&one)).starts_with("Squeals at 2.40 kHz at \u{3bc} = 0.5, and at"));
         one.values[0].modes.retain(|mode| !mode.unstable);
-        assert_eq!(headline(&Findings::new(&one)), "Quiet: all 6 modes from 0 Hz to 6.00 kHz are damped at \u{3bc} = 0.5.");
+        assert_eq!(
+            headline(&Findings::new(&one)),
+            "Quiet: all 6 modes from 0 Hz to 6.00 kHz are damped at \u{3bc} = 0.5."
+        );
     }
 
     #[test]
@@ -243,7 +268,11 @@ mod tests {
         let results = testing::results();
         let findings = Findings::new(&results);
         let said = answer(&findings, &findings.instabilities[0]);
-        assert!(said.couples.starts_with("the modes at 2380 Hz and 2420 Hz (at \u{3bc} = 0) meet at 2.40 kHz"), "{}", said.couples);
+        assert!(
+            said.couples.starts_with("the modes at 2380 Hz and 2420 Hz (at \u{3bc} = 0) meet at 2.40 kHz"),
+            "{}",
+            said.couples
+        );
         assert_eq!(said.moves, "disc 70 %, pad 30 %");
         assert_eq!(said.fed, "disc / pad 100 %");
         assert_eq!(said.held, "disc 50 %, pad 40 %, pin 10 %");
