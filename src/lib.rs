@@ -36,6 +36,7 @@
 //! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
 //! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
 //! | [`results`] | what a study found, as plain data, and its file | [`results::Results`], [`results::file`] |
+//! | [`comparison`] | which modes of two results are the same, and by how much they differ | [`comparison::compare`] |
 //! | [`report`] | tables, CSV, JSON, VTU | |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
 //! | [`petsc`] | the only `unsafe`: PETSc, SLEPc, MUMPS, METIS | |
@@ -83,6 +84,7 @@
 mod algebra;
 pub mod assembly;
 pub mod cli;
+pub mod comparison;
 pub mod contact;
 pub mod element;
 pub mod equilibrium;

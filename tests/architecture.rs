@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each room with what it may import. `element` takes from `mesh` a test for good shapes, in its own tests.
-const ROOMS: [(&str, &[&str]); 17] = [
+const ROOMS: [(&str, &[&str]); 18] = [
     ("error", &[]),
     ("hdf", &["error"]),
     ("algebra", &[]),
@@ -41,6 +41,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
         ],
     ),
     ("results", &["error", "hdf", "tracking", "equilibrium", "stability", "sweep"]),
+    ("comparison", &["error", "algebra", "results"]),
     (
         "report",
         &[
@@ -55,6 +56,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "stability",
             "sweep",
             "results",
+            "comparison",
         ],
     ),
     (
@@ -75,6 +77,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "reduction",
             "sweep",
             "results",
+            "comparison",
             "report",
         ],
     ),

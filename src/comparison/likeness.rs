@@ -1,0 +1,173 @@
+//! How much the modes of two results are alike in shape.
+
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+/// Modes are one group where their eigenvalues are closer than this, relative.
+const ONE_EIGENVALUE: f64 = 1e-3;
+/// A direction of which so little is left beyond the others of its group adds nothing.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// The modal assurance criterion of every mode of A with every mode of B.
+///
+/// Modes of nearly one eigenvalue are a group, whose shapes may be any basis of the space that they span. Mode j of B is compared with
+/// the group of mode i of A, and mode i with the group of j; the larger value counts, so that it does not matter which of both results
+/// has split the doublet:
+///
+/// ```text
+/// mac_ij = max(|P_I y_j|^2 / |y_j|^2, |P_J x_i|^2 / |x_i|^2)        P: orthogonal projection on the span of a group
+/// ```
+///
+/// For groups of one that is `|x^H y|^2 / ((x^H x) (y^H y))`.
+pub struct Likeness {
+    table: DMatrix<f64>,
+}
+
+impl Likeness {
+    /// Compares all modes of A and B, given by eigenvalues and shapes at the same places.
+    ///
+    /// # Panics
+    /// Where a result has not as many eigenvalues as shapes, or shapes have not the same length.
+    pub fn new([lambdas_a, lambdas_b]: [&[Complex64]; 2], [a, b]: [&[Vec<Complex64>]; 2]) -> Likeness {
+        assert_eq!((lambdas_a.len(), lambdas_b.len()), (a.len(), b.len()));
+        let mut table = DMatrix::zeros(a.len(), b.len());
+        for group in groups(lambdas_a) {
+            let basis = orthonormal(group.iter().map(|&i| &a[i]));
+            for (j, y) in b.iter().enumerate() {
+                let share = share(&basis, y);
+                group.iter().for_each(|&i| table[(i, j)] = share);
+            }
+        }
+        for group in groups(lambdas_b) {
+            let basis = orthonormal(group.iter().map(|&j| &b[j]));
+            for (i, x) in a.iter().enumerate() {
+                let share = share(&basis, x);
+                group.iter().for_each(|&j| table[(i, j)] = share.max(table[(i, j)]));
+            }
+        }
+        Likeness { table }
+    }
+
+    /// Of mode i of A and mode j of B: between 0 and 1.
+    pub fn mac(&self, i: usize, j: usize) -> f64 {
+        self.table[(i, j)]
+    }
+}
+
+/// The distance of two eigenvalues relative to the larger one.
+pub fn distance(a: Complex64, b: Complex64) -> f64 {
+    (a - b).norm() / a.norm().max(b.norm()).max(f64::MIN_POSITIVE)
+}
+
+/// The modes of nearly one eigenvalue; each mode is in one group. Neighbours are linked.
+fn groups(lambdas: &[Complex64]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for i in 0..lambdas.len() {
+        let is_linked = |group: &Vec<usize>| group.iter().any(|&k| distance(lambdas[i], lambdas[k]) <= ONE_EIGENVALUE);
+        let (linked, mut others): (Vec<_>, Vec<_>) = groups.into_iter().partition(is_linked);
+        others.push(linked.into_iter().flatten().chain([i]).collect());
+        groups = others;
+    }
+    groups
+}
+
+/// `x^H y`
+fn product(x: &[Complex64], y: &[Complex64]) -> Complex64 {
+    assert_eq!(x.len(), y.len());
+    x.iter().zip(y).map(|(x, y)| x.conj() * y).sum()
+}
+
+fn norm(x: &[Complex64]) -> f64 {
+    product(x, x).re.sqrt()
+}
+
+/// An orthonormal basis of the span of some vectors, by Gram-Schmidt, twice for rounding.
+fn orthonormal<'a>(vectors: impl Iterator<Item = &'a Vec<Complex64>>) -> Vec<Vec<Complex64>> {
+    let mut basis: Vec<Vec<Complex64>> = Vec::new();
+    for vector in vectors {
+        let (mut q, whole) = (vector.clone(), norm(vector));
+        for _ in 0..2 {
+            for e in &basis {
+                let overlap = product(e, &q);
+                q.iter_mut().zip(e).for_each(|(q, e)| *q -= overlap * e);
+            }
+        }
+        let rest = norm(&q);
+        if rest > NEGLIGIBLE * whole {
+            basis.push(q.into_iter().map(|z| z / rest).collect());
+        }
+    }
+    basis
+}
+
+/// `|P y|^2 / |y|^2` with P the projection on an orthonormal basis.
+fn share(basis: &[Vec<Complex64>], y: &[Complex64]) -> f64 {
+    let inside: f64 = basis.iter().map(|e| product(e, y).norm_sqr()).sum();
+    inside / product(y, y).re.max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn c(re: f64, im: f64) -> Complex64 {
+        Complex64::new(re, im)
+    }
+
+    fn alone(x: &[Complex64], y: &[Complex64]) -> f64 {
+        let lambda = [c(0.0, 1.0)];
+        Likeness::new([&lambda, &lambda], [&[x.to_vec()], &[y.to_vec()]]).mac(0, 0)
+    }
+
+    fn vector() -> impl Strategy<Value = Vec<Complex64>> {
+        prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(re, im)| c(re, im)), 6)
+            .prop_filter("a shape is not zero", |x| norm(x) > 0.1)
+    }
+
+    proptest! {
+        #[test]
+        fn a_shape_is_itself_whatever_its_scale(x in vector(), re in -9.0..9.0_f64, im in 0.1..9.0_f64) {
+            prop_assert!((alone(&x, &x) - 1.0).abs() < 1e-14);
+            let scaled: Vec<Complex64> = x.iter().map(|z| z * c(re, im)).collect();
+            prop_assert!((alone(&x, &scaled) - 1.0).abs() < 1e-13);
+        }
+
+        #[test]
+        fn it_is_the_textbook_formula_and_symmetric(x in vector(), y in vector()) {
+            let mac = product(&x, &y).norm_sqr() / (product(&x, &x).re * product(&y, &y).re);
+            prop_assert!((alone(&x, &y) - mac).abs() < 1e-14 && (alone(&y, &x) - mac).abs() < 1e-14);
+        }
+
+        /// A doublet turned by any angle and phase is the same doublet.
+        #[test]
+        fn a_doublet_is_a_subspace(x in vector(), y in vector(), angle in 0.0..6.3_f64, phase in 0.0..6.3_f64) {
+            prop_assume!(alone(&x, &y) < 0.99);
+            let (sin, cos) = angle.sin_cos();
+            let turned = |s: f64, t: f64| -> Vec<Complex64> {
+                x.iter().zip(&y).map(|(x, y)| x * s + y * t * Complex64::cis(phase)).collect()
+            };
+            let lambdas = [c(0.0, 1.0), c(0.0, 1.0004)];
+            let split = [c(0.0, 1.0), c(0.0, 1.004)];
+            let (own, other) = ([x.clone(), y.clone()], [turned(cos, sin), turned(-sin, cos)]);
+            for others in [lambdas, split] {
+                let likeness = Likeness::new([&lambdas, &others], [&own, &other]);
+                let all = (0..4).map(|k| likeness.mac(k / 2, k % 2));
+                prop_assert!(all.into_iter().all(|mac| (mac - 1.0).abs() < 1e-9));
+            }
+        }
+    }
+
+    #[test]
+    fn orthogonal_shapes_have_nothing_in_common() {
+        assert_eq!(alone(&[c(1.0, 0.0), c(0.0, 1.0)], &[c(1.0, 0.0), c(0.0, -1.0)]), 0.0);
+        assert!((alone(&[c(1.0, 0.0), c(0.0, 0.0)], &[c(1.0, 0.0), c(1.0, 0.0)]) - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_growing_and_a_decaying_mode_of_one_frequency_are_two() {
+        let lambdas = [c(-0.1, 5.0), c(0.1, 5.0), c(0.0, 5.4)];
+        assert_eq!(groups(&lambdas), [[0], [1], [2]]);
+        assert_eq!(groups(&[c(0.0, 1.0), c(0.0, 2.0), c(0.0, 1.0005), c(0.0, 1.001)]), [vec![1], vec![0, 2, 3]]);
+    }
+}

@@ -1,0 +1,176 @@
+//! Two results, mode by mode: which modes are the same, and by how much they differ. Pure: plain data in, plain data out.
+//!
+//! The results may be of a full model, of one with fewer contacts, of a super-element, of another mesh. Their shapes are compared where both are
+//! known ([`Places`]). How much two complex shapes x and y have in common, whatever their scales, is the modal assurance criterion
+//!
+//! ```text
+//! MAC = |x^H y|^2 / ((x^H x) (y^H y))        1: one shape, 0: orthogonal
+//! ```
+//!
+//! Modes whose eigenvalues nearly agree, such as the doublets of a disc, have no shapes of their own: any mixture is as good. They are compared
+//! as subspaces ([`Likeness`]). Who is whose partner is then an optimal assignment over shape and eigenvalue ([`pairing::pairs`]); modes
+//! that have too little in common with every partner left stay without one.
+
+mod likeness;
+mod pairing;
+mod places;
+
+pub use likeness::Likeness;
+pub use places::Places;
+
+use num_complex::Complex64;
+use serde::Serialize;
+
+use crate::results::{ModeData, Results, Value};
+use crate::{Error, Result};
+
+/// What two results, A and B, have in common at each friction that both have.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The band of both, Hz.
+    pub band: [f64; 2],
+    /// Points at which shapes were compared.
+    pub n_points: usize,
+    /// Whether B's shapes were interpolated to A's points.
+    pub interpolated: bool,
+    /// What errors of growth rates are relative to, 1/s: the largest growth rate of A at these frictions or, where nothing grows, the largest
+    /// modulus of one.
+    pub largest_growth: f64,
+    /// One friction after the other, rising.
+    pub frictions: Vec<AtFriction>,
+}
+
+/// One friction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AtFriction {
+    /// Friction of the swept pairs.
+    pub friction: f64,
+    /// Modes that are the same, by A's frequency.
+    pub pairs: Vec<Pair>,
+    /// Modes of A and of B without partner, numbered from 0.
+    pub unmatched: [Vec<Lone>; 2],
+}
+
+/// A mode of A and its partner of B.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Pair {
+    /// Their numbers among the modes of the friction, from 0.
+    pub modes: [usize; 2],
+    /// Hz.
+    pub frequencies: [f64; 2],
+    /// 1/s.
+    pub growth_rates: [f64; 2],
+    /// Whether they grow.
+    pub unstable: [bool; 2],
+    /// `f_B / f_A - 1`
+    pub frequency_error: f64,
+    /// `(a_B - a_A) / a_largest`
+    pub growth_error: f64,
+    /// Modal assurance criterion, of subspaces where the mode is one of several with nearly one eigenvalue.
+    pub mac: f64,
+}
+
+/// A mode without partner.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Lone {
+    /// Its number among the modes of the friction, from 0.
+    pub mode: usize,
+    /// Hz.
+    pub frequency: f64,
+    /// 1/s.
+    pub growth_rate: f64,
+    /// Whether it grows.
+    pub unstable: bool,
+}
+
+/// Two frictions are one within this.
+const SAME_FRICTION: f64 = 1e-9;
+
+/// Compares two results at all frictions that both have.
+///
+/// # Errors
+/// [`Error::Input`] where they have no friction, no band or no surface in common.
+pub fn compare(a: &Results, b: &Results) -> Result<Comparison> {
+    let band = common_band(a.about.band, b.about.band)?;
+    let common = common_frictions(a, b)?;
+    let places = Places::new(a, b)?;
+    let of_a: Vec<f64> = common.iter().flat_map(|[a, _]| &a.modes).map(ModeData::growth_rate).collect();
+    let fastest = of_a.iter().copied().fold(0.0, f64::max);
+    let largest = of_a.iter().fold(f64::MIN_POSITIVE, |most, growth| most.max(growth.abs()));
+    let largest_growth =
+        if common.iter().any(|[a, _]| a.modes.iter().any(|mode| mode.unstable)) { fastest } else { largest };
+    let frictions = common.iter().map(|values| AtFriction::new(*values, &places, band, largest_growth)).collect();
+    Ok(Comparison { band, n_points: places.len(), interpolated: places.are_interpolated(), largest_growth, frictions })
+}
+
+fn common_band(a: [f64; 2], b: [f64; 2]) -> Result<[f64; 2]> {
+    let band = [a[0].max(b[0]), a[1].min(b[1])];
+    if band[0] < band[1] {
+        return Ok(band);
+    }
+    Err(Error::input(format!("no common band: {}-{} Hz and {}-{} Hz", a[0], a[1], b[0], b[1])))
+}
+
+/// The values at each common friction.
+fn common_frictions<'r>(a: &'r Results, b: &'r Results) -> Result<Vec<[&'r Value; 2]>> {
+    let partner =
+        |value: &Value| b.values.iter().find(|other| (other.friction - value.friction).abs() <= SAME_FRICTION);
+    let mut common: Vec<[&Value; 2]> =
+        a.values.iter().filter_map(|value| partner(value).map(|other| [value, other])).collect();
+    common.sort_by(|[p, _], [q, _]| p.friction.total_cmp(&q.friction));
+    if common.is_empty() {
+        let list = |results: &Results| {
+            let frictions: Vec<String> =
+                results.values.iter().filter(|value| value.asked).map(|value| value.friction.to_string()).collect();
+            if frictions.is_empty() { "none".to_owned() } else { frictions.join(", ") }
+        };
+        let what = format!("no common friction: {} and {}", list(a), list(b));
+        return Err(Error::input(format!("{what}. Run one of them at the frictions of the other (--friction)")));
+    }
+    Ok(common)
+}
+
+impl AtFriction {
+    fn new([a, b]: [&Value; 2], places: &Places, band: [f64; 2], largest_growth: f64) -> AtFriction {
+        let [lambdas_a, lambdas_b] = [a, b].map(|value| value.modes.iter().map(|mode| mode.lambda).collect::<Vec<_>>());
+        let shapes_a: Vec<Vec<Complex64>> = a.modes.iter().map(|mode| places.of_a(&mode.sampled)).collect();
+        let shapes_b: Vec<Vec<Complex64>> = b.modes.iter().map(|mode| places.of_b(&mode.sampled)).collect();
+        let likeness = Likeness::new([&lambdas_a, &lambdas_b], [&shapes_a, &shapes_b]);
+        let found = pairing::pairs(&likeness, [&lambdas_a, &lambdas_b]);
+        let pair =
+            |&[i, j]: &[usize; 2]| Pair::new([i, j], [&a.modes[i], &b.modes[j]], likeness.mac(i, j), largest_growth);
+        let inside = |f: f64| (band[0]..=band[1]).contains(&f);
+        let pairs = found.iter().map(pair).filter(|pair| pair.frequencies.iter().any(|&f| inside(f))).collect();
+        let unmatched = [0, 1].map(|side| {
+            let modes = &[a, b][side].modes;
+            let alone = |i: &usize| found.iter().all(|pair| pair[side] != *i) && inside(modes[*i].frequency());
+            (0..modes.len()).filter(alone).map(|i| Lone::new(i, &modes[i])).collect()
+        });
+        AtFriction { friction: a.friction, pairs, unmatched }
+    }
+}
+
+impl Pair {
+    fn new(modes: [usize; 2], [a, b]: [&ModeData; 2], mac: f64, largest_growth: f64) -> Pair {
+        let frequencies = [a.frequency(), b.frequency()];
+        let growth_rates = [a.growth_rate(), b.growth_rate()];
+        Pair {
+            modes,
+            frequencies,
+            growth_rates,
+            unstable: [a.unstable, b.unstable],
+            frequency_error: (frequencies[1] - frequencies[0]) / frequencies[0].max(f64::MIN_POSITIVE),
+            growth_error: (growth_rates[1] - growth_rates[0]) / largest_growth,
+            mac,
+        }
+    }
+}
+
+impl Lone {
+    fn new(mode: usize, data: &ModeData) -> Lone {
+        Lone { mode, frequency: data.frequency(), growth_rate: data.growth_rate(), unstable: data.unstable }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,126 @@
+//! Comparisons of results of a made-up brake: a plate of two parts, whose shapes are waves.
+
+use super::*;
+use crate::results::{About, Part, Shape, Surface};
+
+/// A square plate of 2 n x n cells, its halves two parts, whose nodes along the seam are apart; every node is a sample.
+fn plate(n: usize) -> Surface {
+    let mut surface = Surface::default();
+    for part in 0..2 {
+        let first = surface.nodes.len() as u32;
+        let place = |i: usize, j: usize| [part as f64 + i as f64 / n as f64, j as f64 / n as f64, 0.0];
+        (0..=n).for_each(|j| surface.nodes.extend((0..=n).map(|i| place(i, j))));
+        let node = |i: usize, j: usize| first + (i + j * (n + 1)) as u32;
+        for (i, j) in (0..n).flat_map(|j| (0..n).map(move |i| (i, j))) {
+            surface.triangles.push([node(i, j), node(i + 1, j), node(i, j + 1)]);
+            surface.triangles.push([node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
+            surface.part.extend([part; 2]);
+        }
+    }
+    surface.samples = (0..surface.nodes.len() as u32).collect();
+    surface
+}
+
+/// Mode `k`: a standing wave, which the phase makes a travelling one.
+fn wave(surface: &Surface, k: f64, phase: f64) -> Shape {
+    let at = |node: &u32| surface.nodes[*node as usize];
+    let shape = |f: &dyn Fn([f64; 3]) -> f64| {
+        surface.samples.iter().map(|node| [0.0, 0.0, f(at(node)) as f32]).collect::<Vec<[f32; 3]>>()
+    };
+    Shape { re: shape(&|x| (k * x[0]).cos() * (k * x[1]).sin()), im: shape(&|x| phase * (k * x[0]).sin()) }
+}
+
+fn results(surface: Surface, frictions: &[f64], modes: &[(f64, f64, f64)]) -> Results {
+    let part = |name: &str| Part { name: name.into(), ..Part::default() };
+    let mode = |&(k, hertz, growth): &(f64, f64, f64)| ModeData {
+        lambda: Complex64::new(growth, std::f64::consts::TAU * hertz),
+        unstable: growth > 0.0,
+        sampled: wave(&surface, k, 0.3),
+        ..ModeData::default()
+    };
+    let value =
+        |&friction: &f64| Value { friction, asked: true, modes: modes.iter().map(mode).collect(), ..Value::default() };
+    let values = frictions.iter().map(value).collect();
+    let about = About { band: [0.0, 3000.0], parts: vec![part("left"), part("right")], ..About::default() };
+    Results { about, surface, values, ..Results::default() }
+}
+
+const MODES: [(f64, f64, f64); 3] = [(1.0, 1000.0, -5.0), (2.0, 1500.0, 50.0), (4.0, 2000.0, -20.0)];
+
+#[test]
+fn errors_are_relative_to_the_first_result() {
+    let a = results(plate(6), &[0.1, 0.2], &MODES);
+    let b = results(plate(6), &[0.2, 0.3], &[(1.0, 1010.0, -5.0), (4.0, 1960.0, -10.0), (2.0, 1500.0, 45.0)]);
+    let found = compare(&a, &b).unwrap();
+    assert_eq!((found.n_points, found.interpolated, found.largest_growth), (98, false, 50.0));
+    assert_eq!(found.frictions.len(), 1);
+    let at = &found.frictions[0];
+    assert_eq!((at.friction, at.pairs.len(), &at.unmatched), (0.2, 3, &[vec![], vec![]]));
+    let expected = [([0, 0], 0.01, 0.0), ([1, 2], 0.0, -0.1), ([2, 1], -0.02, 0.2)];
+    for (pair, (modes, frequency, growth)) in at.pairs.iter().zip(expected) {
+        assert_eq!(pair.modes, modes);
+        assert!((pair.frequency_error - frequency).abs() < 1e-12 && (pair.growth_error - growth).abs() < 1e-12);
+        assert!((pair.mac - 1.0).abs() < 1e-6, "{}", pair.mac);
+    }
+    assert_eq!(at.pairs[1].unstable, [true, true]);
+}
+
+#[test]
+fn modes_without_partner_are_told() {
+    let a = results(plate(6), &[0.1], &MODES);
+    let b = results(plate(6), &[0.1], &[MODES[0], (2.0, 1800.0, 1.0), (9.0, 2000.0, 2.0)]);
+    let at = &compare(&a, &b).unwrap().frictions[0];
+    let lone = |side: usize| at.unmatched[side].iter().map(|lone| lone.mode).collect::<Vec<_>>();
+    assert_eq!((at.pairs.len(), lone(0), lone(1)), (2, vec![2], vec![2]), "{at:?}");
+    // Beyond the other's band a mode has no partner to miss.
+    let mut narrow = results(plate(6), &[0.1], &MODES[..2]);
+    narrow.about.band[1] = 1600.0;
+    assert_eq!(compare(&a, &narrow).unwrap().frictions[0].unmatched, [vec![], vec![]]);
+}
+
+#[test]
+fn samples_in_another_order_are_matched_by_their_places() {
+    let a = results(plate(6), &[0.1], &MODES);
+    let mut other = plate(6);
+    other.samples.reverse();
+    other.samples.truncate(80);
+    let found = compare(&a, &results(other, &[0.1], &MODES)).unwrap();
+    assert!(!found.interpolated && found.n_points == 80);
+    assert!(found.frictions[0].pairs.iter().all(|pair| (pair.mac - 1.0).abs() < 1e-6));
+}
+
+#[test]
+fn another_mesh_is_interpolated() {
+    let (a, b) = (results(plate(10), &[0.1], &MODES), results(plate(13), &[0.1], &MODES));
+    for [a, b] in [[&a, &b], [&b, &a]] {
+        let found = compare(a, b).unwrap();
+        assert!(found.interpolated && found.n_points == a.surface.samples.len());
+        let macs: Vec<f64> = found.frictions[0].pairs.iter().map(|pair| pair.mac).collect();
+        assert!(macs.len() == 3 && macs.iter().all(|mac| *mac > 0.999), "{macs:?}");
+    }
+}
+
+#[test]
+fn what_has_nothing_in_common_is_refused() {
+    let refusal = |a: &Results, b: &Results| match compare(a, b) {
+        Err(error @ Error::Input(_)) => error.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let a = results(plate(6), &[0.1, 0.2], &MODES);
+    let said = refusal(&a, &results(plate(6), &[0.3], &MODES));
+    assert!(said.contains("no common friction: 0.1, 0.2 and 0.3"), "{said}");
+    let mut high = results(plate(6), &[0.1], &MODES);
+    high.about.band = [4000.0, 5000.0];
+    assert!(refusal(&a, &high).contains("no common band: 0-3000 Hz and 4000-5000 Hz"));
+    let mut moved = results(plate(6), &[0.1], &MODES);
+    moved.surface.nodes.iter_mut().for_each(|node| node[1] += 0.5);
+    let said = refusal(&a, &moved);
+    assert!(said.contains("do not coincide") && said.contains("\"left\""), "{said}");
+    let mut larger = results(plate(6), &[0.1], &MODES);
+    larger.surface.nodes.iter_mut().for_each(|node| node[1] *= 2.1);
+    assert!(refusal(&larger, &a).contains("do not coincide") && refusal(&a, &larger).contains("do not coincide"));
+    let mut renamed = results(plate(6), &[0.1], &MODES);
+    renamed.about.parts[1].name = "disc".into();
+    assert!(refusal(&a, &renamed).contains("in one of both only"));
+    assert!(refusal(&a, &results(Surface::default(), &[0.1], &[])).contains("second results have no shapes"));
+}
