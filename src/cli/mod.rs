@@ -2,6 +2,7 @@
 
 mod check;
 mod checkpoint;
+mod compare;
 mod friction;
 mod full;
 mod interrupt;
@@ -118,6 +119,19 @@ enum Command {
     Report {
         #[command(flatten)]
         report: report::Report,
+    },
+    /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
+    Compare {
+        /// The folder of the results that are the reference
+        a: PathBuf,
+        /// The folder of those to be judged
+        b: PathBuf,
+        /// Folder for the comparison as text, table (CSV) and figure (SVG); without it, it is only told
+        #[arg(short, long, value_name = "FOLDER")]
+        output: Option<PathBuf>,
+        /// Replace an earlier comparison
+        #[arg(long)]
+        force: bool,
     },
 }
 
@@ -238,6 +252,7 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::Reduce { reduce } => reduce::run(shell, reduce),
         Command::Report { report } => report::run(shell, report),
         Command::Stability { run, band, anew, no_branches } => stability::run(shell, run, *band, *anew, !no_branches),
+        Command::Compare { a, b, output, force } => compare::run(shell, [a, b], output.as_deref(), *force),
     }
 }
 

@@ -7,6 +7,8 @@
 //! ```
 
 pub mod branches;
+pub mod comparison;
+pub mod comparison_plot;
 pub mod contact_cells;
 pub mod contact_surface;
 pub mod data;

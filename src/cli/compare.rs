@@ -1,0 +1,62 @@
+//! `squeal compare`: two results, mode by mode.
+
+use std::path::{Path, PathBuf};
+
+use crate::comparison;
+use crate::report::folder::Folder;
+use crate::report::{comparison as tables, comparison_plot};
+use crate::results::{Results, file};
+use crate::{Error, Result};
+
+use super::Shell;
+use super::output::RESULTS;
+
+/// Compares the results in two folders; the first rank does it all.
+pub fn run(shell: &Shell, places: [&Path; 2], output: Option<&Path>, force: bool) -> Result<()> {
+    shell.comm.agree(if shell.comm.is_root() { compare(shell, places, output, force) } else { Ok(()) })
+}
+
+fn compare(shell: &Shell, places: [&Path; 2], output: Option<&Path>, force: bool) -> Result<()> {
+    let folder = output.map(|output| Folder::open(output, force)).transpose()?;
+    let [a, b] = [read(places[0])?, read(places[1])?];
+    let comparison = comparison::compare(&a, &b).map_err(|error| of_both(places, error))?;
+    let names = [name(places[0], &a), name(places[1], &b)];
+    let text = tables::text(&comparison, names.each_ref().map(String::as_str));
+    if let Some(folder) = folder {
+        folder.write("comparison.txt", |out| out.write_all(text.as_bytes()))?;
+        folder.write("comparison.csv", |out| tables::csv(out, &comparison))?;
+        folder.write("comparison.svg", |out| out.write_all(comparison_plot::errors(&comparison).as_bytes()))?;
+        folder.finish()?;
+    }
+    shell.tell(&text, || serde_json::json!(comparison))
+}
+
+/// The results in a folder, or of the file itself.
+fn read(place: &Path) -> Result<Results> {
+    let file = if place.is_dir() { place.join(RESULTS) } else { PathBuf::from(place) };
+    if !file.exists() {
+        let what = format!("{} holds no {RESULTS}", place.display());
+        return Err(Error::input(format!("{what}. Give the folders of two runs of squeal stability")));
+    }
+    file::read(&file)
+}
+
+/// What the results are of, in one line.
+fn name(place: &Path, results: &Results) -> String {
+    let about = &results.about;
+    let n_contacts: usize = about.pairs.iter().filter(|pair| pair.sliding).map(|pair| pair.n_points).sum();
+    format!(
+        "{}: {}, {} equations, {n_contacts} sliding contact points",
+        place.display(),
+        about.model,
+        about.n_equations
+    )
+}
+
+/// Says which results could not be compared.
+fn of_both([a, b]: [&Path; 2], error: Error) -> Error {
+    match error {
+        Error::Input(what) => Error::input(format!("{} and {}: {what}", a.display(), b.display())),
+        other => other,
+    }
+}

@@ -1,0 +1,140 @@
+//! Two results side by side, as text for people and CSV for programs.
+
+use std::io::Write;
+
+use crate::comparison::{AtFriction, Comparison, Lone, Pair};
+
+/// The largest, by modulus, of some numbers of pairs, and the mean modulus.
+struct Spread<'c> {
+    worst: Option<(f64, &'c Pair)>,
+    mean: f64,
+}
+
+impl<'c> Spread<'c> {
+    fn new(pairs: &'c [Pair], of: impl Fn(&Pair) -> f64) -> Spread<'c> {
+        let worst = pairs.iter().map(|pair| (of(pair), pair)).max_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
+        let sum: f64 = pairs.iter().map(|pair| of(pair).abs()).sum();
+        Spread { worst, mean: sum / pairs.len().max(1) as f64 }
+    }
+
+    /// The worst in percent with its frequency, and the mean.
+    fn text(&self) -> String {
+        match self.worst {
+            Some((x, pair)) => {
+                format!("{:>+9.4} ({:>6.0} Hz) {:>8.4}", 100.0 * x, pair.frequencies[0], 100.0 * self.mean)
+            }
+            None => format!("{:>29}", "-"),
+        }
+    }
+}
+
+/// Errors at each friction, then the modes that grow, then those without partner. `names` tells what A and B are.
+pub fn text(comparison: &Comparison, names: [&str; 2]) -> String {
+    let Comparison { band: [from, to], n_points, interpolated, largest_growth, frictions } = comparison;
+    let how = if *interpolated { "points of A, where B is interpolated" } else { "points of both" };
+    let mut text = format!(
+        "A: {}\nB: {}\n\nmodes of {from}-{to} Hz, shapes at {n_points} {how}; B against A, growth rates relative to {largest_growth:.1} /s\n\n\
+         {:>8} {:>6}  {:^29}  {:^29}  {:^19}  {:^11}\n{:>8} {:>6}  {:>9} {:>11} {:>8}  {:>9} {:>11} {:>8}  {:>6} {:>11}  {:>5} {:>5}\n",
+        names[0],
+        names[1],
+        "",
+        "",
+        "frequency error, %",
+        "growth rate error, %",
+        "MAC",
+        "unmatched",
+        "friction",
+        "pairs",
+        "worst",
+        "(at)",
+        "mean",
+        "worst",
+        "(at)",
+        "mean",
+        "least",
+        "(at)",
+        "A",
+        "B"
+    );
+    text += &frictions.iter().map(line).collect::<String>();
+    let unstable = |pair: &&Pair| pair.unstable.contains(&true);
+    if frictions.iter().any(|at| at.pairs.iter().any(|pair| unstable(&pair))) {
+        text += "\nmodes that grow in A or in B\n friction       A: Hz       1/s      B: Hz       1/s  frequency, %  growth rate, %     MAC\n";
+        for at in frictions {
+            text += &at.pairs.iter().filter(unstable).map(|pair| unstable_line(at.friction, pair)).collect::<String>();
+        }
+    }
+    text + &lone_text(frictions)
+}
+
+fn line(at: &AtFriction) -> String {
+    let least = at.pairs.iter().min_by(|a, b| a.mac.total_cmp(&b.mac));
+    let mac =
+        least.map_or(format!("{:>18}", "-"), |pair| format!("{:>6.4} ({:>6.0} Hz)", pair.mac, pair.frequencies[0]));
+    format!(
+        "{:>8.4} {:>6}  {}  {}  {mac}  {:>5} {:>5}\n",
+        at.friction,
+        at.pairs.len(),
+        Spread::new(&at.pairs, |pair| pair.frequency_error).text(),
+        Spread::new(&at.pairs, |pair| pair.growth_error).text(),
+        at.unmatched[0].len(),
+        at.unmatched[1].len()
+    )
+}
+
+fn unstable_line(friction: f64, pair: &Pair) -> String {
+    let [f, g] = pair.frequencies;
+    let [a, b] = pair.growth_rates;
+    let (df, da, mac) = (100.0 * pair.frequency_error, 100.0 * pair.growth_error, pair.mac);
+    format!("{friction:>9.4} {f:>11.2} {a:>+9.2} {g:>10.2} {b:>+9.2} {df:>+13.4} {da:>+15.3} {mac:>7.4}\n")
+}
+
+fn lone_text(frictions: &[AtFriction]) -> String {
+    let mut text = String::new();
+    for (side, name) in ["A", "B"].iter().enumerate() {
+        for at in frictions.iter().filter(|at| !at.unmatched[side].is_empty()) {
+            let one = |lone: &Lone| {
+                let mark = if lone.unstable { ", unstable" } else { "" };
+                format!("{:.1} Hz ({:+.1} /s{mark})", lone.frequency, lone.growth_rate)
+            };
+            let list: Vec<String> = at.unmatched[side].iter().map(one).collect();
+            text += &format!("friction {:.4}: only {name} has {}\n", at.friction, list.join(", "));
+        }
+    }
+    if text.is_empty() { text } else { format!("\n{text}") }
+}
+
+/// All modes as CSV: `friction, mode_a, mode_b` (from 1), `frequency_a_hz, frequency_b_hz, growth_rate_a_per_s, growth_rate_b_per_s,
+/// unstable_a, unstable_b, frequency_error, growth_error, mac`; what a mode without partner has no number for is empty.
+///
+/// # Errors
+/// The writer's.
+pub fn csv(out: &mut dyn Write, comparison: &Comparison) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "friction,mode_a,mode_b,frequency_a_hz,frequency_b_hz,growth_rate_a_per_s,growth_rate_b_per_s,unstable_a,unstable_b,\
+         frequency_error,growth_error,mac"
+    )?;
+    for at in &comparison.frictions {
+        for pair in &at.pairs {
+            let ([i, j], [f, g], [a, b]) = (pair.modes.map(|mode| mode + 1), pair.frequencies, pair.growth_rates);
+            let [s, t] = pair.unstable.map(u8::from);
+            let (df, da, mac) = (pair.frequency_error, pair.growth_error, pair.mac);
+            let mu = at.friction;
+            writeln!(out, "{mu},{i},{j},{f:.9e},{g:.9e},{a:.9e},{b:.9e},{s},{t},{df:.6e},{da:.6e},{mac:.6}")?;
+        }
+        for (side, lones) in at.unmatched.iter().enumerate() {
+            for lone in lones {
+                let cells = [
+                    (lone.mode + 1).to_string(),
+                    format!("{:.9e}", lone.frequency),
+                    format!("{:.9e}", lone.growth_rate),
+                    u8::from(lone.unstable).to_string(),
+                ];
+                let sided = cells.map(|cell| if side == 0 { format!("{cell},") } else { format!(",{cell}") });
+                writeln!(out, "{},{},,,", at.friction, sided.join(","))?;
+            }
+        }
+    }
+    Ok(())
+}
