@@ -41,7 +41,7 @@ const ROOMS: [(&str, &[&str]); 18] = [
         ],
     ),
     ("results", &["error", "hdf", "tracking", "equilibrium", "stability", "sweep"]),
-    ("comparison", &["error", "algebra", "results"]),
+    ("comparison", &["error", "algebra", "tracking", "results"]),
     (
         "report",
         &[

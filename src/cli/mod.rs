@@ -6,6 +6,7 @@ mod compare;
 mod friction;
 mod full;
 mod interrupt;
+mod models;
 mod motion;
 mod output;
 mod progress;
@@ -61,6 +62,8 @@ struct Shell<'a> {
     petsc: &'a [String],
     /// Whether results are told as JSON.
     json: bool,
+    /// Whether nothing is told: where a command is part of another one.
+    silent: bool,
 }
 
 impl Shell<'_> {
@@ -70,7 +73,7 @@ impl Shell<'_> {
     /// # Errors
     /// The system's.
     pub fn tell(&self, text: &str, document: impl FnOnce() -> Json) -> Result<()> {
-        match (self.comm.is_root(), self.json) {
+        match (self.comm.is_root() && !self.silent, self.json) {
             (false, _) => Ok(()),
             (true, true) => tell(&format!("{:#}\n", document())),
             (true, false) => tell(text),
@@ -120,6 +123,13 @@ enum Command {
         #[command(flatten)]
         report: report::Report,
     },
+    /// Hold reduced models against full contact: contact layouts and super-elements, their sizes, seconds and errors
+    ///
+    /// Each model has a folder of its own, as `squeal stability` makes it. Run again, a study makes only what is missing or out of date.
+    Study {
+        #[command(flatten)]
+        models: Models,
+    },
     /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
     Compare {
         /// The folder of the results that are the reference
@@ -155,6 +165,38 @@ struct Reduce {
     /// Replace an earlier file
     #[arg(long)]
     force: bool,
+}
+
+/// What `study` takes.
+#[derive(Args)]
+struct Models {
+    /// The model file
+    model: PathBuf,
+    /// Friction of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the model file's)
+    #[arg(long, value_name = "MU", value_parser = friction::parse, allow_hyphen_values = true)]
+    friction: Option<Frictions>,
+    /// Contact layouts: so many reference pairs over the sliding contacts
+    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "12,44,104,212")]
+    layouts: Vec<usize>,
+    /// Reference pairs of the super-elements
+    #[arg(long, value_name = "N", default_value = "104")]
+    super_element: usize,
+    /// Friction at which the super-element for all frictions is made (default: the swept contacts' own)
+    #[arg(long, value_name = "MU", value_parser = friction::single, allow_hyphen_values = true)]
+    reduced_at: Option<f64>,
+    /// Folder of the study (default: the model file's name with -study)
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Tell of each finished friction on a line of standard error, with the time left (a terminal shows a bar anyway)
+    #[arg(short, long)]
+    verbose: bool,
+}
+
+impl Models {
+    fn place(&self) -> PathBuf {
+        let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
+        self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-study")))
+    }
 }
 
 /// What all computing commands take.
@@ -211,7 +253,7 @@ pub fn main() -> i32 {
     };
     match Session::start(&options) {
         Ok(comm) => {
-            let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json };
+            let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json, silent: false };
             guard_as(&comm, shell.json, || run(&arguments.command, &shell))
         }
         Err(error) => {
@@ -252,6 +294,7 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::Reduce { reduce } => reduce::run(shell, reduce),
         Command::Report { report } => report::run(shell, report),
         Command::Stability { run, band, anew, no_branches } => stability::run(shell, run, *band, *anew, !no_branches),
+        Command::Study { models } => models::run(shell, models),
         Command::Compare { a, b, output, force } => compare::run(shell, [a, b], output.as_deref(), *force),
     }
 }

@@ -11,12 +11,16 @@
 //! as subspaces ([`Likeness`]). Who is whose partner is then an optimal assignment over shape and eigenvalue ([`pairing::pairs`]); modes
 //! that have too little in common with every partner left stay without one.
 
+mod instabilities;
 mod likeness;
 mod pairing;
 mod places;
+mod study;
 
+pub use instabilities::CurvePoint;
 pub use likeness::Likeness;
 pub use places::Places;
+pub use study::{Errors, Model, Sizes, Study, n_contacts};
 
 use num_complex::Complex64;
 use serde::Serialize;

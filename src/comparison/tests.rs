@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::results::{About, Part, Shape, Surface};
+use crate::tracking::{Branch, Diagram, Point};
 
 /// A square plate of 2 n x n cells, its halves two parts, whose nodes along the seam are apart; every node is a sample.
 fn plate(n: usize) -> Surface {
@@ -123,4 +124,50 @@ fn what_has_nothing_in_common_is_refused() {
     renamed.about.parts[1].name = "disc".into();
     assert!(refusal(&a, &renamed).contains("in one of both only"));
     assert!(refusal(&a, &results(Surface::default(), &[0.1], &[])).contains("second results have no shapes"));
+}
+
+/// The reference of a study: its modes at two frictions, followed; the first and the third begin to grow.
+fn reference() -> Results {
+    let mut results = results(plate(6), &[0.2, 0.1], &MODES);
+    for (value, growths) in results.values.iter_mut().zip([[3.0, 50.0, 8.0], [-5.0, 50.0, 2.0]]) {
+        for (mode, growth) in value.modes.iter_mut().zip(growths) {
+            (mode.lambda.re, mode.unstable) = (growth, growth > 0.0);
+        }
+        value.seconds = 4.0;
+    }
+    let branch = |i: usize| {
+        let point = |value: &Value| Point { value: value.friction, lambda: value.modes[i].lambda, mode: i };
+        Branch { points: results.values.iter().rev().map(point).collect() }
+    };
+    let branches = (0..3).map(branch).collect();
+    results.diagram = Some(Diagram { branches, ..Diagram::default() });
+    results
+}
+
+#[test]
+fn a_study_follows_the_two_lowest_instabilities() {
+    let reference = reference();
+    let mut study = Study::new(&reference);
+    assert_eq!((study.frictions.as_slice(), study.reference.seconds), ([0.1, 0.2].as_slice(), 4.0));
+    let frequencies: Vec<f64> = study.reference.curves.iter().map(|curve| curve[0].frequency.round()).collect();
+    assert_eq!(frequencies, [1000.0, 1500.0]);
+    let unstable: Vec<bool> = study.reference.curves[0].iter().map(|point| point.unstable).collect();
+    assert_eq!(unstable, [false, true], "the first grows at the higher friction only");
+
+    // The model has the first mode at another frequency and stable, and one that grows where the reference's does not.
+    let model = results(
+        plate(6),
+        &[0.1, 0.2],
+        &[(4.0, 2000.0, -1.0), (1.0, 1030.0, -4.0), (2.0, 1500.0, 40.0), (9.0, 2500.0, 7.0)],
+    );
+    let sizes = Sizes { n_contacts: 4, n_retained: Some(10), n_equations: 30 };
+    study.add("four", [&reference, &model], sizes, None).unwrap();
+    let four = &study.models[0];
+    assert_eq!([study.found(0, four), study.found(1, four)], [[0, 1], [2, 2]]);
+    assert!((four.curves[0][1].frequency - 1030.0).abs() < 1e-9 && four.curves[0][1].mac > 0.9999);
+    assert_eq!(four.spurious.len(), 2);
+    assert!(four.spurious.iter().all(|[_, hertz, growth]| (hertz - 2500.0).abs() < 1e-9 && *growth == 7.0));
+    let errors = &four.errors[1];
+    assert!((errors.worst_frequency - 0.03).abs() < 1e-12 && (errors.mean_frequency - 0.01).abs() < 1e-12);
+    assert_eq!((errors.n_pairs, errors.n_unmatched), (3, [0, 1]));
 }

@@ -22,6 +22,8 @@ pub mod page;
 pub mod paraview;
 pub mod plots;
 pub mod raster;
+pub mod study;
+pub mod study_plot;
 pub mod summary;
 pub mod svg;
 pub mod tables;
