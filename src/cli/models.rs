@@ -65,12 +65,15 @@ impl<'a> Plan<'a> {
     /// Reads and checks everything before anything is computed. Collective.
     fn new(shell: &Shell, arguments: &'a Models) -> Result<Plan<'a>> {
         let comm = shell.comm;
-        let brake = Brake::read(comm, &arguments.model)?;
+        let mut brake = Brake::read(comm, &arguments.model)?;
         brake.require_held(comm)?;
         let mut frictions = brake.frictions(arguments.friction.as_ref().map(|list| list.0.as_slice()))?;
         frictions.sort_by(f64::total_cmp);
         for &n in arguments.layouts.iter().chain([&arguments.super_element]) {
-            reduction::contacts::reduce(&brake.model, &brake.mesh, &brake.interface, n)?;
+            let reduced = reduction::contacts::reduce(&brake.model, &brake.mesh, &brake.interface, n)?;
+            let full = std::mem::replace(&mut brake.interface, reduced);
+            brake.require_held(comm)?;
+            brake.interface = full;
         }
         let own = brake.interface.pairs.iter().find(|pair| pair.swept).map_or(0.0, |pair| pair.friction);
         let mut loaded: Vec<&str> = brake.model.loads.iter().map(|load| load.on.as_str()).collect();
