@@ -142,7 +142,7 @@ fn a_study_holds_all_models_against_full_contact_and_reuses_what_is_made() {
 fn a_study_that_cannot_be_made_writes_nothing() {
     let place = place();
     assert_refused(
-        &place.run(&[&STUDY[..4], &["--layouts", "2,60"]].concat()),
+        &place.run(&[&STUDY[..4], &["--layouts", "4,60"]].concat()),
         &["\"disc / pad\"", "60 reference nodes"],
     );
     assert_refused(
