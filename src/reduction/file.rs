@@ -125,7 +125,7 @@ fn pair_texts(element: &SuperElement) -> Vec<PairText> {
 /// Reads a super-element and its surface. Not collective.
 ///
 /// # Errors
-/// [`Error::Input`] where the file is none, is incomplete, or of another version.
+/// [`crate::Error::Input`] where the file is none, is incomplete, or of another version.
 pub fn read(path: &Path) -> Result<(SuperElement, OuterSurface)> {
     let file = hdf::open(path, &FORMAT)?;
     let (element, surface) = read_body(&file).map_err(|reason| hdf::damaged(path, &FORMAT, reason))?;
