@@ -7,10 +7,10 @@ use crate::comparison::{Comparison, Pair};
 pub fn errors(comparison: &Comparison) -> String {
     let mut sheet = Sheet::new([720.0, 620.0]);
     let band = comparison.band.map(|f| f / 1000.0);
-    let rows: [(&str, &dyn Fn(&Pair) -> f64); 3] = [
-        ("frequency error, %", &|pair| 100.0 * pair.frequency_error),
-        ("growth rate error, %", &|pair| 100.0 * pair.growth_error),
-        ("MAC", &|pair| pair.mac),
+    let rows: [(&str, fn(&Pair) -> f64); 3] = [
+        ("frequency error, %", |pair| 100.0 * pair.frequency_error),
+        ("growth rate error, %", |pair| 100.0 * pair.growth_error),
+        ("MAC", |pair| pair.mac),
     ];
     for (k, (name, of)) in rows.into_iter().enumerate() {
         let values = || pairs(comparison).map(of);
