@@ -39,6 +39,7 @@
 //! | [`comparison`] | which modes of two results are the same, and by how much they differ | [`comparison::compare`] |
 //! | [`report`] | tables, CSV, JSON, VTU | |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
+//! | [`matrices`] | given M, C, K from files and into files | [`matrices::Given::read`] |
 //! | [`petsc`] | the only `unsafe`: PETSc, SLEPc, MUMPS, METIS | |
 //!
 //! Imports run one way, from the bottom of this table to its top (`tests/architecture.rs` holds the exact order). To change a
@@ -90,6 +91,7 @@ pub mod element;
 pub mod equilibrium;
 pub mod error;
 mod hdf;
+pub mod matrices;
 pub mod mesh;
 pub mod model;
 pub mod petsc;

@@ -64,7 +64,8 @@ fn mesh(cells: [usize; 3]) -> Mesh {
 
 /// All modes of a band without contact.
 fn modes(system: &System, shift: f64, band: [f64; 2]) -> Band {
-    let pencil = Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None };
+    let pencil =
+        Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None, symmetric_mc: true };
     let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(shift));
     let band = stability::solve(&pencil, &mut lu, &mut solver, band, &mut |_, _, _| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);

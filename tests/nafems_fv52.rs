@@ -61,7 +61,8 @@ fn a_plate_with_three_rigid_motions_has_the_published_modes() {
     let brake = brake(MODEL, mesh);
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
-    let pencil = Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None };
+    let pencil =
+        Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None, symmetric_mc: true };
     let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(300.0));
     let band = stability::solve(&pencil, &mut lu, &mut solver, brake.model.band, &mut |_, _, _| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);

@@ -8,18 +8,28 @@ pub struct Frictions(pub Vec<f64>);
 
 /// `0.5`, `0.2,0.5` or `FROM:TO:STEP`, the end included.
 pub fn parse(text: &str) -> Result<Frictions, String> {
+    let Values(values) = values(text)?;
+    if let Some(mu) = values.iter().find(|mu| !(0.0..=LARGEST_FRICTION).contains(*mu)) {
+        return Err(format!("friction {mu} is out of range: 0 to {LARGEST_FRICTION}"));
+    }
+    Ok(Frictions(values))
+}
+
+/// Values of any parameter, no two of them the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values(pub Vec<f64>);
+
+/// As [`parse`], of any numbers.
+pub fn values(text: &str) -> Result<Values, String> {
     let values = match text.split(':').collect::<Vec<_>>()[..] {
         [list] => list.split(',').map(number).collect::<Result<Vec<_>, _>>()?,
         [from, to, step] => spaced(number(from)?, number(to)?, number(step)?)
             .ok_or_else(|| format!("the range {text} has no value, or too many: give FROM:TO:STEP"))?,
         _ => return Err("expected one value, a list 0.2,0.5 or a range FROM:TO:STEP".into()),
     };
-    if let Some(mu) = values.iter().find(|mu| !(0.0..=LARGEST_FRICTION).contains(*mu)) {
-        return Err(format!("friction {mu} is out of range: 0 to {LARGEST_FRICTION}"));
-    }
-    match values.iter().enumerate().find(|(i, mu)| values[..*i].contains(mu)) {
-        Some((_, mu)) => Err(format!("friction {mu} is given twice")),
-        None => Ok(Frictions(values)),
+    match values.iter().enumerate().find(|(i, value)| values[..*i].contains(value)) {
+        Some((_, value)) => Err(format!("{value} is given twice")),
+        None => Ok(Values(values)),
     }
 }
 

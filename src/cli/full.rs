@@ -107,6 +107,15 @@ impl Subject for Brake {
         Ok(Box::new(ReducedBrake::new(&self.model.file, element, surface, None, 1.0)))
     }
 
+    fn rows(&self, system: &System) -> Vec<String> {
+        let row = |node: u32| {
+            let ([x, y, z], number) = (self.mesh.nodes[node as usize], self.nodes.labels()[node as usize] + 1);
+            let free = (0..3).filter(move |&i| system.dofs.equations(node)[i] >= 0);
+            free.map(move |i| format!("node,{number},{},{x:e},{y:e},{z:e}", ["x", "y", "z"][i]))
+        };
+        system.dofs.owned_nodes().flat_map(row).collect()
+    }
+
     fn draw_last(&self, folder: Option<&Folder>, system: &System, u: &Vector) -> Result<String> {
         state::write_last(folder, self, system, u)?;
         let ending = if system.k.comm().size() == 1 { "vtu" } else { "pvtu" };

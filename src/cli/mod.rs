@@ -3,10 +3,12 @@
 mod check;
 mod checkpoint;
 mod compare;
+mod export;
 mod friction;
 mod full;
 mod interrupt;
 mod models;
+mod modes;
 mod motion;
 mod output;
 mod progress;
@@ -103,6 +105,22 @@ enum Command {
     Reduce {
         #[command(flatten)]
         reduce: Reduce,
+    },
+    /// Write M, C and K about an equilibrium, with what contact has in K and the meaning of each row
+    Export {
+        #[command(flatten)]
+        run: Run,
+        /// What the files are to be
+        #[arg(long, value_enum, default_value = "mtx")]
+        format: export::Format,
+        /// This part alone, free: held, touched and loaded by nothing
+        #[arg(long, value_name = "NAME", conflicts_with_all = ["friction", "contacts", "law"])]
+        part: Option<String>,
+    },
+    /// Find the modes of given matrices M, C, K, along a parameter of them, or of a free part of a model
+    Modes {
+        #[command(flatten)]
+        modes: modes::Modes,
     },
     /// Find the complex modes of the band, and which of them squeal, for one friction or a sweep
     Stability {
@@ -291,6 +309,8 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
     match command {
         Command::Check { model, contacts, output } => check::run(shell, model, *contacts, output.as_deref()),
         Command::Static { run } => statics::run(shell, run),
+        Command::Export { run, format, part } => export::run(shell, run, *format, part.as_deref()),
+        Command::Modes { modes } => modes::run(shell, modes),
         Command::Reduce { reduce } => reduce::run(shell, reduce),
         Command::Report { report } => report::run(shell, report),
         Command::Stability { run, band, anew, no_branches } => stability::run(shell, run, *band, *anew, !no_branches),

@@ -35,8 +35,8 @@ fn modes(folder: &Folder, results: &Results) -> Result<()> {
     }
     let Some(diagram) = &results.diagram else { return Ok(()) };
     let band = results.about.band.map(|f| TAU * f);
-    folder.write("branches.csv", |out| branches::points(out, diagram, band))?;
-    folder.write("hopf.csv", |out| branches::hopf(out, diagram))
+    folder.write("branches.csv", |out| branches::points(out, diagram, band, "friction"))?;
+    folder.write("hopf.csv", |out| branches::hopf(out, diagram, "friction"))
 }
 
 /// Turns a CSV error into one of ours.

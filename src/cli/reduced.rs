@@ -168,6 +168,21 @@ impl Subject for ReducedBrake {
         Err(Error::input(format!("{} is a super-element; --anew makes them of a model", self.place.display())))
     }
 
+    fn rows(&self, system: &System) -> Vec<String> {
+        let points = &self.element.points;
+        let n_interface = points.len() * 3 + self.element.frequencies.len();
+        let coordinate = |i: usize| match points.get(i / 3) {
+            Some([x, y, z]) => format!("point,{},{},{x:e},{y:e},{z:e}", i / 3 + 1, ["x", "y", "z"][i % 3]),
+            None if i < n_interface => format!("fixed-interface mode,{},,,,", i + 1 - 3 * points.len()),
+            None => format!("inertia mode,{},,,,", i + 1 - n_interface),
+        };
+        let of = |node: u32| {
+            let free = (0..3).filter(move |&i| system.dofs.equations(node)[i] >= 0);
+            free.map(move |i| 3 * node as usize + i)
+        };
+        system.dofs.owned_nodes().flat_map(of).map(coordinate).collect()
+    }
+
     fn draw_last(&self, folder: Option<&Folder>, system: &System, u: &Vector) -> Result<String> {
         let (q, name) = (coordinates(system, &[u])?, format!("{}.vtu", state::LAST_STATE));
         self.write(system, folder, &name, &[("displacement", &q[0])])?;

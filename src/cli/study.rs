@@ -259,7 +259,7 @@ impl Walk<'_, '_> {
     pub fn vectors(&mut self, number: usize) -> Result<Vectors> {
         let ([right, left], u) = self.checkpoint.vectors(number)?;
         let c = self.sweep.damping_at(self.results.values[number].friction, &u)?;
-        Ok(Vectors { right, left, c })
+        Ok(Vectors { right, left, c, m: None })
     }
 
     /// The files from which the study can go on.

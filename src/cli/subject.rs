@@ -59,6 +59,8 @@ pub trait Subject {
     ) -> Result<Vec<Source>>;
     /// The super-element that this is about an equilibrium. Collective.
     fn reduce(&self, system: &System, equilibrium: &Equilibrium) -> Result<Box<dyn Subject>>;
+    /// A line for each of this rank's equations: `kind,node,axis,x,y,z`. Not collective.
+    fn rows(&self, system: &System) -> Vec<String>;
     /// Draws the displacement at which a solve gave up, and gives the file's name. Collective.
     fn draw_last(&self, folder: Option<&Folder>, system: &System, u: &Vector) -> Result<String>;
 }

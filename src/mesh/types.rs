@@ -68,6 +68,25 @@ impl Mesh {
         }
     }
 
+    /// One part alone, with its nodes and without names of surfaces and sets; none where there is no such part.
+    pub fn only(&self, part: &str) -> Option<Mesh> {
+        let index = self.parts.iter().position(|name| name == part)? as u32;
+        let tets: Vec<[u32; 10]> =
+            self.tets.iter().zip(&self.tet_part).filter(|(_, part)| **part == index).map(|(tet, _)| *tet).collect();
+        let mut kept: Vec<u32> = tets.as_flattened().to_vec();
+        kept.sort_unstable();
+        kept.dedup();
+        let mut place = vec![0; self.nodes.len()];
+        kept.iter().enumerate().for_each(|(i, &n)| place[n as usize] = i as u32);
+        Some(Mesh {
+            nodes: kept.iter().map(|&n| self.nodes[n as usize]).collect(),
+            tet_part: vec![0; tets.len()],
+            tets: tets.iter().map(|tet| tet.map(|n| place[n as usize])).collect(),
+            parts: vec![part.to_owned()],
+            ..Mesh::default()
+        })
+    }
+
     /// Puts the nodes into a new order, `order[new] = old`, and the tetrahedra into that of their first nodes.
     ///
     /// # Panics

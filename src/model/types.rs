@@ -2,6 +2,9 @@
 
 use std::path::PathBuf;
 
+use super::names;
+use crate::{Error, Result};
+
 /// Everything the user states about a brake, in SI units. Names of the mesh are still names here.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -39,6 +42,29 @@ pub struct Model {
     pub sweep_line: usize,
     /// Contact reduction and super-element, where the file asks for them.
     pub reduction: Option<Reduction>,
+}
+
+impl Model {
+    /// The model of one part alone, which nothing holds, touches or loads.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where there is no such part.
+    pub fn only(mut self, part: &str) -> Result<Model> {
+        let names = self.parts.iter().map(|part| part.name.as_str());
+        if !names.clone().any(|name| name == part) {
+            let advice = names::advice(part, names);
+            return Err(Error::input(format!("{}: no part is called {part:?}. {advice}", self.file.display())));
+        }
+        self.parts.retain(|own| own.name == part);
+        self.fixes.clear();
+        self.rotations.clear();
+        self.contacts.clear();
+        self.connectors.clear();
+        self.loads.clear();
+        self.swept.clear();
+        self.reduction = None;
+        Ok(self)
+    }
 }
 
 /// A physical volume with its material.

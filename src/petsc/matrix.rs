@@ -216,6 +216,33 @@ impl Matrix {
         self.n_local
     }
 
+    /// Visits the rows of this rank in their order: global number, columns and values of the stored entries. Not collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn visit_rows(&self, mut visit: impl FnMut(usize, &[i32], &[f64])) -> Result<()> {
+        let (mut first, mut end) = (0, 0);
+        // SAFETY: the handle is alive.
+        check(unsafe { sys::MatGetOwnershipRange(self.raw, &mut first, &mut end) })?;
+        for row in first..end {
+            let (mut n, mut columns, mut values) = (0, ptr::null(), ptr::null());
+            // SAFETY: the arrays have n entries between Get and Restore; they may be null where n is 0.
+            unsafe {
+                check(sys::MatGetRow(self.raw, row, &mut n, &mut columns, &mut values))?;
+                match n {
+                    0 => visit(row as usize, &[], &[]),
+                    _ => visit(
+                        row as usize,
+                        std::slice::from_raw_parts(columns, n as usize),
+                        std::slice::from_raw_parts(values, n as usize),
+                    ),
+                }
+                check(sys::MatRestoreRow(self.raw, row, &mut n, &mut columns, &mut values))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Number of stored entries over all ranks.
     ///
     /// # Errors

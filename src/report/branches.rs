@@ -5,13 +5,13 @@ use std::io::Write;
 
 use crate::tracking::{Diagram, Hopf};
 
-/// Points of all branches within a band (rad/s) as CSV: `branch, friction, frequency_hz, growth_rate_per_s, damping_ratio`; branches
-/// are numbered from 1.
+/// Points of all branches within a band (rad/s) as CSV: `branch`, the parameter under its name (`friction`), `frequency_hz,
+/// growth_rate_per_s, damping_ratio`; branches are numbered from 1.
 ///
 /// # Errors
 /// The writer's.
-pub fn points(out: &mut dyn Write, diagram: &Diagram, band: [f64; 2]) -> std::io::Result<()> {
-    writeln!(out, "branch,friction,frequency_hz,growth_rate_per_s,damping_ratio")?;
+pub fn points(out: &mut dyn Write, diagram: &Diagram, band: [f64; 2], parameter: &str) -> std::io::Result<()> {
+    writeln!(out, "branch,{parameter},frequency_hz,growth_rate_per_s,damping_ratio")?;
     for (i, branch) in diagram.branches.iter().enumerate() {
         for point in branch.points.iter().filter(|point| (band[0]..=band[1]).contains(&point.lambda.im)) {
             let z = point.lambda;
@@ -22,13 +22,13 @@ pub fn points(out: &mut dyn Write, diagram: &Diagram, band: [f64; 2]) -> std::io
     Ok(())
 }
 
-/// Hopf points as CSV: `friction` with the two solved values `friction_low` and `friction_high` around it, `frequency_hz`, `branch`,
-/// `becomes` (unstable or stable as friction rises), `partner` and its `share` (empty where no branch couples).
+/// Hopf points as CSV: the parameter under its name, as `friction` with the two solved values `friction_low` and `friction_high` around it,
+/// `frequency_hz`, `branch`, `becomes` (unstable or stable as the parameter rises), `partner` and its `share` (empty where no branch couples).
 ///
 /// # Errors
 /// The writer's.
-pub fn hopf(out: &mut dyn Write, diagram: &Diagram) -> std::io::Result<()> {
-    writeln!(out, "friction,friction_low,friction_high,frequency_hz,branch,becomes,partner,share")?;
+pub fn hopf(out: &mut dyn Write, diagram: &Diagram, parameter: &str) -> std::io::Result<()> {
+    writeln!(out, "{parameter},{parameter}_low,{parameter}_high,frequency_hz,branch,becomes,partner,share")?;
     for hopf in &diagram.hopf {
         let Hopf { branch, bracket: [low, high], value, omega, partner, .. } = hopf;
         let (partner, share) =
@@ -45,9 +45,10 @@ pub fn becomes(hopf: &Hopf) -> &'static str {
 }
 
 /// Where growth rates pass zero, for people.
-pub fn summary(diagram: &Diagram) -> String {
+pub fn summary(diagram: &Diagram, parameter: &str) -> String {
     let Some(first) = diagram.values.first() else { return String::new() };
-    let mut text = format!("\n{} branches over {} frictions\n", diagram.branches.len(), diagram.values.len());
+    let mut text =
+        format!("\n{} branches over {} values of {parameter}\n", diagram.branches.len(), diagram.values.len());
     for hopf in &diagram.hopf {
         let hertz = |branch: usize| diagram.branches[branch].points[0].lambda.im / TAU;
         let coupled = match hopf.partner {
@@ -55,12 +56,13 @@ pub fn summary(diagram: &Diagram) -> String {
             None => "by itself".into(),
         };
         text += &format!(
-            "{} from friction {:.4} on: {:.1} Hz, branch {} ({:.1} Hz at {first}), {coupled}\n",
+            "{} from {parameter} {:.4} on: {:.1} Hz, branch {} ({:.1} Hz at {}), {coupled}\n",
             becomes(hopf),
             hopf.value,
             hopf.omega / TAU,
             hopf.branch + 1,
             hertz(hopf.branch),
+            (first * 1e6).round() * 1e-6,
         );
     }
     for [low, high] in &diagram.doubtful {

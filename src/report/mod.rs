@@ -14,6 +14,7 @@ pub mod contact_surface;
 pub mod data;
 pub mod details;
 pub mod drawing;
+pub mod eigenvalues;
 pub mod explain;
 pub mod findings;
 pub mod folder;

@@ -14,7 +14,7 @@ pub fn stability(results: &Results, place: &str) -> String {
     let explained = results.modes().filter(|(_, _, mode)| !mode.sources.is_empty());
     let strongest = explained.max_by(|(_, _, a), (_, _, b)| a.growth_rate().total_cmp(&b.growth_rate()));
     summary += &strongest.map_or_else(String::new, |(friction, _, mode)| explain::sentence(friction, mode) + "\n");
-    summary += &results.diagram.as_ref().map_or_else(String::new, branches::summary);
+    summary += &results.diagram.as_ref().map_or_else(String::new, |diagram| branches::summary(diagram, "friction"));
     summary + "\n" + &results.costs + &files(results, place)
 }
 

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
+use super::condition::condition;
 use super::inertia::Inertia;
 use super::mode::backward_errors;
 use super::search;
@@ -12,7 +13,7 @@ use super::space::Problem;
 use super::{Mode, Pencil};
 use crate::assembly::System;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::petsc::{Block, Factor, memory};
+use crate::petsc::{Block, Factor, Matrix, memory};
 use crate::{Error, Result};
 
 /// How modes are searched for, and what serves all pencils of one pattern.
@@ -24,6 +25,29 @@ pub struct Solver {
     shift: f64,
     /// For the blocked search, where it pays: a number for each of this rank's equations that does not depend on the ranks.
     labels: Option<Vec<u64>>,
+    evidence: Evidence,
+}
+
+/// What shows that no mode is missing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Evidence {
+    /// The inertia of the symmetric problem: what brakes have.
+    #[default]
+    Inertia,
+    /// For matrices of any structure, where inertia proves nothing. A search finds all eigenvalues that there are; or as many modes as the search
+    /// before, which was for fewer; or, where M is symmetric and so inertia tells about how many there are (`estimated`), just as many.
+    Repetition {
+        /// Whether inertia gives an estimate.
+        estimated: bool,
+    },
+}
+
+/// Modes that a search of the second kind begins with, where nothing tells their number.
+const GUESS: usize = 10;
+
+impl Evidence {
+    /// Up to so many equations [`Evidence::Repetition`] asks for all eigenvalues.
+    pub const ALL_UP_TO: usize = 100;
 }
 
 /// Equations from which the blocked search pays: below, a single solve costs too little.
@@ -43,6 +67,13 @@ impl Solver {
         Solver { shift, ..Solver::default() }
     }
 
+    /// The solver for given matrices; `labels` has a number for each of this rank's equations that does not depend on the ranks. Blocked
+    /// for a large problem with symmetric M and C.
+    pub fn given(n_equations: usize, labels: Vec<u64>, symmetric_mc: bool, evidence: Evidence) -> Solver {
+        let labels = Some(labels).filter(|_| symmetric_mc && n_equations >= BLOCKED_FROM);
+        Solver { labels, evidence, ..Solver::default() }
+    }
+
     /// Searches with a growing subspace and many right-hand sides at a time.
     pub fn blocked(system: &System) -> Solver {
         Solver { labels: Some(system.dofs.labels()), ..Solver::default() }
@@ -54,7 +85,7 @@ impl Solver {
 pub struct Count {
     /// The frequency, Hz: the band's end, or a gap between modes near it.
     pub below: f64,
-    /// By the inertia of `K_symmetric - omega^2 M`.
+    /// By the inertia of `K_symmetric - omega^2 M`, or by a search before ([`Evidence`]).
     pub expected: usize,
     /// By the eigensolver.
     pub found: usize,
@@ -99,6 +130,13 @@ struct Search {
     backward_errors: Option<Vec<f64>>,
 }
 
+impl Search {
+    /// How many modes lie below a frequency, Hz.
+    fn n_below(&self, frequency: f64) -> usize {
+        self.pairs.iter().map(|pair| weight(pair, frequency)).sum::<f64>().round() as usize
+    }
+}
+
 /// Finds all modes of `band` (Hz) of a pencil, sorted by frequency, vectors scaled to a largest entry of 1. `progress` hears of
 /// (converged, wanted, solves). `lu` becomes the factor of the pencil's stiffness (shifted, where the solver shifts). Collective.
 ///
@@ -115,7 +153,7 @@ pub fn solve(
     if SYMMETRIC_OVER_LU * lu.stats().used_mb > available_mb() && !solver.inertia.is_made() {
         lu.release();
     }
-    let expected = solver.inertia.n_below(pencil, band[1])?;
+    let expected = solver.estimate(pencil, band[1])?;
     if !lu.is_made() && solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU > available_mb() {
         solver.inertia.release();
     }
@@ -137,7 +175,14 @@ pub fn solve(
             continue;
         };
         n_solves += search.n_solves;
-        if let Some(count) = count(pencil, solver, &search, band[1], expected)? {
+        let before = last.as_ref().map(|(_, count): &(Search, Count)| count.found);
+        let count = match solver.evidence {
+            Evidence::Inertia => count(pencil, solver, &search, band[1], expected)?,
+            Evidence::Repetition { estimated } => {
+                repeated(&search, band[1], before.or(if estimated { Some(expected) } else { None }))
+            }
+        };
+        if let Some(count) = count {
             if count.agrees() {
                 return finish(pencil, search, band, count, n_solves);
             }
@@ -169,12 +214,21 @@ fn count(pencil: &Pencil, solver: &mut Solver, search: &Search, end: f64, expect
     let mut moduli: Vec<f64> = search.pairs.iter().map(|pair| pair.lambda.norm() / TAU).collect();
     moduli.extend(Some(search.reach).filter(|reach| reach.is_finite()));
     moduli.sort_by(f64::total_cmp);
-    let below = |f: f64| search.pairs.iter().map(|pair| weight(pair, f)).sum::<f64>().round() as usize;
-    let count = Count { below: end, expected, found: below(end) };
+    let count = Count { below: end, expected, found: search.n_below(end) };
     match widest_gap(&moduli, end).filter(|_| !count.agrees()) {
-        Some(gap) => Ok(Some(Count { below: gap, expected: solver.inertia.n_below(pencil, gap)?, found: below(gap) })),
+        Some(gap) => {
+            let expected = solver.inertia.n_below(pencil, gap)?;
+            Ok(Some(Count { below: gap, expected, found: search.n_below(gap) }))
+        }
         None => Ok(Some(count)),
     }
+}
+
+/// How many modes were found below the band's end, now and before; none where the search did not get there.
+fn repeated(search: &Search, end: f64, before: Option<usize>) -> Option<Count> {
+    let found = search.n_below(end);
+    let expected = if search.reach.is_finite() { before.unwrap_or(usize::MAX) } else { found };
+    (search.reach > end).then_some(Count { below: end, expected, found })
 }
 
 /// A pair of the upper half plane stands for one mode, a real eigenvalue for half of one.
@@ -199,7 +253,9 @@ fn finish(pencil: &Pencil, search: Search, band: [f64; 2], count: Count, n_solve
         Some(errors) => errors,
         None => backward_errors(pencil, &lambdas, &vectors(pencil, &pairs)?)?,
     };
-    let within = |(pair, _): &(Pair, f64)| (band[0]..=band[1]).contains(&(pair.lambda.im / TAU));
+    // A real eigenvalue has no frequency: it belongs to the band where its modulus does.
+    let frequency = |lambda: Complex64| if lambda.im == 0.0 { lambda.norm() } else { lambda.im } / TAU;
+    let within = |(pair, _): &(Pair, f64)| frequency(pair.lambda) <= band[1] && pair.lambda.im / TAU >= band[0];
     let mut modes = Vec::new();
     for (Pair { lambda, re, im }, backward_error) in pairs.into_iter().zip(errors).filter(within) {
         let mut mode = Mode { lambda, backward_error, re, im };
@@ -230,6 +286,31 @@ fn sort(modes: &mut [Mode]) {
 }
 
 impl Solver {
+    /// About how many modes lie below a frequency (Hz); with [`Evidence::Inertia`] exactly.
+    fn estimate(&mut self, pencil: &Pencil, frequency: f64) -> Result<usize> {
+        match self.evidence {
+            Evidence::Repetition { .. } if n_equations(pencil) <= Evidence::ALL_UP_TO => Ok(n_equations(pencil)),
+            Evidence::Repetition { estimated: false } => Ok(GUESS),
+            _ => self.inertia.n_below(pencil, frequency),
+        }
+    }
+
+    /// Factorises at a shift (1/s), about which is searched from now on, and estimates the condition number there: infinite where the
+    /// matrix is singular. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and MUMPS's.
+    pub fn search_about(&mut self, shift: f64, pencil: &Pencil, lu: &mut Factor) -> Result<f64> {
+        self.shift = shift;
+        let shifted = shifted(pencil, shift)?;
+        let matrix = shifted.as_ref().unwrap_or(pencil.k);
+        match lu.factorise(matrix) {
+            Ok(()) => condition(matrix, lu),
+            Err(Error::Library(text)) if text.contains("the matrix is singular") => Ok(f64::INFINITY),
+            Err(error) => Err(error),
+        }
+    }
+
     /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up. In blocks if it is told how far
     /// `beyond` the end, and can; else by TOAR.
     fn search(
@@ -271,11 +352,16 @@ impl Solver {
 
 /// LU of `sigma^2 M + sigma C + K`.
 fn factorise_shifted(pencil: &Pencil, lu: &mut Factor, shift: f64) -> Result<()> {
+    lu.factorise(shifted(pencil, shift)?.as_ref().unwrap_or(pencil.k))
+}
+
+/// `sigma^2 M + sigma C + K`, unless it is K.
+fn shifted(pencil: &Pencil, shift: f64) -> Result<Option<Matrix>> {
     if shift == 0.0 {
-        return lu.factorise(pencil.k);
+        return Ok(None);
     }
     let mut shifted = pencil.k.duplicate()?;
     shifted.axpy(shift * shift, pencil.m)?;
     shifted.axpy(shift, pencil.c)?;
-    lu.factorise(&shifted)
+    Ok(Some(shifted))
 }

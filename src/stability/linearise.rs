@@ -65,7 +65,7 @@ impl Linearised {
     pub fn pencil<'a>(&'a self, system: &'a System, contacts: &'a Contacts<'a>, k: &'a Matrix) -> Pencil<'a> {
         let (c, tangents) = (self.c.as_ref().unwrap_or(&system.c), self.symmetric.as_slice());
         let points = Some(Points { contacts, tangents });
-        Pencil { m: &system.m, c, k, k_symmetric: &system.k, points }
+        Pencil { m: &system.m, c, k, k_symmetric: &system.k, points, symmetric_mc: true }
     }
 }
 

@@ -5,6 +5,7 @@
 //! checks their number against the inertia of the symmetric problem, so that none is missed. [`left_vectors`] finds their left vectors.
 
 mod band;
+mod condition;
 mod explain;
 mod forms;
 mod inertia;
@@ -14,7 +15,8 @@ mod mode;
 mod search;
 mod space;
 
-pub use band::{Band, Count, Solver, solve};
+pub use band::{Band, Count, Evidence, Solver, solve};
+pub use condition::condition;
 pub use explain::{Sensitivity, Share, self_product, sensitivity, shares};
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::{left_vectors, right_vectors};

@@ -24,6 +24,8 @@ pub struct Pencil<'a> {
     pub k_symmetric: &'a Matrix,
     /// Contact points that add to `k_symmetric`; the count follows their changes.
     pub points: Option<Points<'a>>,
+    /// Whether M and C are symmetric, so that K alone has to be transposed for left vectors.
+    pub symmetric_mc: bool,
 }
 
 /// Contact points with what each adds to a pencil's symmetric stiffness.

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use super::Pencil;
 use crate::Result;
-use crate::petsc::{Block, Factor, Noise};
+use crate::petsc::{Block, Factor, Matrix, Noise};
 
 /// Random combinations of the residuals that join the space in a round.
 pub(super) const SKETCH: usize = 24;
@@ -118,12 +118,34 @@ impl<'a> Space<'a> {
         }
         let pencil = self.problem.pencil;
         let mw = w.multiplied_by(pencil.m)?;
-        self.m = symmetric_growth(&self.m, &self.v, &w, &mw);
-        self.c = symmetric_growth(&self.c, &self.v, &w, &w.multiplied_by(pencil.c)?);
+        self.m = self.growth(&self.m, &w, pencil.m)?;
+        self.c = self.growth(&self.c, &w, pencil.c)?;
         self.a = general_growth(&self.a, [&self.v, &w], [&self.av, &aw]);
         self.v.append(&w);
         self.av.append(&aw);
         Ok(mw)
+    }
+
+    /// `B X`, with B one of M and C or, for left vectors, its transpose.
+    fn product(&self, b: &Matrix, x: &Block) -> Result<Block> {
+        match self.side {
+            Side::Left if !self.problem.pencil.symmetric_mc => x.multiplied_by_transpose(b),
+            _ => x.multiplied_by(b),
+        }
+    }
+
+    /// `[V W]^T B [V W]` from `V^T B V`, with B one of M and C or, for left vectors, its transpose.
+    fn growth(&self, old: &DMatrix<f64>, w: &Block, b: &Matrix) -> Result<DMatrix<f64>> {
+        let bw = self.product(b, w)?;
+        let mut new = symmetric_growth(old, &self.v, w, &bw);
+        if !self.problem.pencil.symmetric_mc {
+            let (n, p) = (self.v.n_columns(), w.n_columns());
+            let transposed = if self.side == Side::Left { w.multiplied_by(b)? } else { w.multiplied_by_transpose(b)? };
+            // W^T B V = (V^T B^T W)^T
+            let side = DMatrix::from_vec(n, p, self.v.gram(&transposed));
+            new.view_mut((n, 0), (p, n)).copy_from(&side.transpose());
+        }
+        Ok(new)
     }
 
     /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than V columns, the others
@@ -161,8 +183,8 @@ impl<'a> Space<'a> {
         }
         let [a, b, d] = coefficients;
         let mut sum = self.av.combined(&a, n_columns);
-        sum.axpy(1.0, &self.v.combined(&b, n_columns).multiplied_by(pencil.c)?);
-        sum.axpy(1.0, &self.v.combined(&d, n_columns).multiplied_by(pencil.m)?);
+        sum.axpy(1.0, &self.product(pencil.c, &self.v.combined(&b, n_columns))?);
+        sum.axpy(1.0, &self.product(pencil.m, &self.v.combined(&d, n_columns))?);
         Ok(sum)
     }
 }

@@ -207,7 +207,7 @@ pub fn frictions_of(asked: Option<&[f64]>, own: &[f64], interface: &Interface, f
 }
 
 /// The mesh of a model.
-fn read_mesh(model: &Model) -> Result<Mesh> {
+pub(super) fn read_mesh(model: &Model) -> Result<Mesh> {
     if let Err(reason) = File::open(&model.mesh_file) {
         let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
         let advice = "Give its path in [mesh] file, relative to the model file";

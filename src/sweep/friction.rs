@@ -39,6 +39,8 @@ pub struct Vectors {
     pub left: Block,
     /// The damping, where it is not the system's.
     pub c: Option<Matrix>,
+    /// The mass, where it is not the system's.
+    pub m: Option<Matrix>,
 }
 
 /// Pencils along the friction of the swept pairs.
@@ -134,6 +136,11 @@ impl Snapshot {
         let (left, _) =
             sweep.left_vectors(&band.modes, |mode| if mode.is_unstable() { EXPLAINS } else { of_stable })?;
         let right = sweep.right_vectors(&band.modes)?;
+        Ok(Snapshot::of(band, end, Vectors { right, left, c: sweep.own_damping()?, m: None }))
+    }
+
+    /// The modes of a band with their vectors.
+    pub(super) fn of(band: &Band, end: f64, vectors: Vectors) -> Snapshot {
         let n = band.modes.len();
         let low = |i: &usize| band.modes[*i].lambda.im > 0.0 && band.modes[*i].lambda.im < BEYOND * TAU * end;
         let places: Vec<(usize, bool)> =
@@ -143,8 +150,7 @@ impl Snapshot {
             if conjugate { lambda.conj() } else { lambda }
         };
         let spectrum = Spectrum { lambdas: places.iter().map(lambda).collect(), places };
-        let vectors = OnceCell::from(Vectors { right, left, c: sweep.own_damping()? });
-        Ok(Snapshot { vectors, ..Snapshot::kept(0, spectrum) })
+        Snapshot { vectors: OnceCell::from(vectors), ..Snapshot::kept(0, spectrum) }
     }
 
     /// A snapshot whose vectors come from [`Solutions::vectors`] when they are needed.
@@ -207,8 +213,8 @@ impl Family for Friction<'_> {
             return Ok(known);
         }
         let (y, x) = (self.vectors(left)?, self.vectors(right)?);
-        let c = y.c.as_ref().unwrap_or(self.c);
-        let [m, c] = [self.m, c].map(|matrix| {
+        let [m, c] = [(&y.m, self.m), (&y.c, self.c)].map(|(own, systems)| {
+            let matrix = own.as_ref().unwrap_or(systems);
             let product = y.left.gram(&x.right.multiplied_by(matrix)?);
             Ok(DMatrix::from_vec(y.left.n_columns(), x.right.n_columns(), product))
         });

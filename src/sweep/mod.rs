@@ -8,12 +8,16 @@ mod digest;
 mod distribution;
 mod explain;
 mod friction;
+mod given;
+mod part;
 mod reduced;
 
 pub use brake::{Brake, Families, frictions_of};
 pub use digest::digest;
 pub use explain::{Kind, Source};
 pub use friction::{Friction, Snapshot, Solutions, Spectrum, Vectors, tracking_options, wider};
+pub use given::{GivenModes, GivenSweep};
+pub use part::RigidMotions;
 
 use std::time::Instant;
 
@@ -22,7 +26,7 @@ use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
 use crate::petsc::{Block, FactorStats, Matrix, Vector};
-use crate::stability::{self, Band, Linearised, Mode, Problem, Solver};
+use crate::stability::{self, Band, Linearised, Mode, Pencil, Problem, Solver};
 
 /// A structure under analysis at one friction after the other.
 pub struct Sweep<'a> {
@@ -103,6 +107,17 @@ impl<'a> Sweep<'a> {
         });
         self.seconds[1] += start.elapsed().as_secs_f64();
         outcome
+    }
+
+    /// Makes M, C and K about an equilibrium, and lends them to `look`. Collective.
+    ///
+    /// # Errors
+    /// PETSc's; those of `look`.
+    pub fn linearise<T>(&mut self, equilibrium: &Equilibrium, look: impl FnOnce(&Pencil) -> Result<T>) -> Result<T> {
+        let linearised = &mut self.linearised;
+        linearised.update(self.system, self.path.lend_tangent(), equilibrium, self.friction_damping)?;
+        let (contacts, k, _) = self.path.lend_factor(linearised.frozen().to_vec());
+        look(&linearised.pencil(self.system, contacts, k))
     }
 
     /// Finds the modes with blocks of right-hand sides, whatever the size: [`Solver::blocked`].

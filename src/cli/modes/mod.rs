@@ -1,0 +1,118 @@
+//! `squeal modes`: modes of given matrices, along a parameter of them, and of a free part.
+
+mod free;
+mod given;
+mod mac;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::matrices::family::{self, Coefficient, Family};
+use crate::matrices::{Role, Term};
+use crate::petsc::Comm;
+use crate::report::folder::Folder;
+use crate::{Error, Result};
+
+use super::Shell;
+use super::friction::{self, Values};
+
+/// What `modes` takes.
+#[derive(Args)]
+pub struct Modes {
+    /// A family of matrices along a parameter (TOML), or with --part a model file
+    #[arg(required_unless_present = "mass", conflicts_with_all = ["mass", "stiffness", "damping"])]
+    subject: Option<PathBuf>,
+    /// M, kg: Matrix Market, PETSc binary, or Abaqus's text, also gzipped
+    #[arg(long, value_name = "FILE", requires = "stiffness")]
+    mass: Option<PathBuf>,
+    /// K, N/m
+    #[arg(long, value_name = "FILE", requires = "mass")]
+    stiffness: Option<PathBuf>,
+    /// C, N s/m (default: none)
+    #[arg(long, value_name = "FILE", requires = "mass")]
+    damping: Option<PathBuf>,
+    /// Frequency band in Hz (with --part default: the model file's)
+    #[arg(long, value_name = "FROM:TO", value_parser = friction::band, allow_hyphen_values = true)]
+    band: Option<[f64; 2]>,
+    /// Values of a family's parameter: one value, a list or a range FROM:TO:STEP
+    #[arg(long, value_name = "VALUES", value_parser = friction::values, allow_hyphen_values = true)]
+    parameter: Option<Values>,
+    /// Of a model the free, undamped modes of this part alone, held by nothing
+    #[arg(long, value_name = "NAME", requires = "subject")]
+    part: Option<String>,
+    /// Compare a part's modes with measured ones: CSV with columns x, y, z (in the mesh's unit), direction (x, -y, or "nx ny nz"), and one
+    /// for each mode under its frequency in Hz
+    #[arg(long, value_name = "CSV", requires = "part")]
+    measured: Option<PathBuf>,
+    /// Write the shapes of all modes of given matrices, shapes.csv
+    #[arg(long, conflicts_with = "part")]
+    shapes: bool,
+    /// Do not follow a family's modes over its parameter
+    #[arg(long, conflicts_with = "part")]
+    no_branches: bool,
+    /// Folder of the results (default: the name of the stiffness, the family or the part, with -modes)
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Replace the results of an earlier run
+    #[arg(long)]
+    force: bool,
+    /// Tell of each finished value on a line of standard error
+    #[arg(short, long)]
+    verbose: bool,
+}
+
+pub fn run(shell: &Shell, arguments: &Modes) -> Result<()> {
+    if let (Some(model), Some(part)) = (&arguments.subject, &arguments.part) {
+        return free::run(shell, arguments, model, part);
+    }
+    let family = shell.comm.agree(arguments.family())?;
+    given::run(shell, arguments, &family)
+}
+
+impl Modes {
+    /// The matrices: those of the command line are a family that does not vary.
+    fn family(&self) -> Result<Family> {
+        let (Some(mass), Some(stiffness)) = (&self.mass, &self.stiffness) else {
+            let path = self.subject.as_deref().expect("clap has asked for one");
+            let family = family::read(path)?;
+            return match self.parameter {
+                Some(_) => Ok(family),
+                None => Err(Error::input(format!("{}: which {}? Give --parameter", path.display(), family.parameter))),
+            };
+        };
+        if self.parameter.is_some() {
+            return Err(Error::input("--parameter is for families: single matrices have none"));
+        }
+        let term = |role, file: &PathBuf| Term { role, file: file.clone(), factor: Coefficient::one() };
+        let mut terms = vec![term(Role::Mass, mass)];
+        terms.extend(self.damping.iter().map(|file| term(Role::Damping, file)));
+        terms.push(term(Role::Stiffness, stiffness));
+        Ok(Family { title: stem(stiffness), parameter: "parameter".into(), terms })
+    }
+
+    /// What results are called after.
+    fn name(&self) -> String {
+        self.subject.as_deref().or(self.stiffness.as_deref()).map_or_else(String::new, stem)
+    }
+
+    fn folder(&self, name: &str) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}-modes")))
+    }
+}
+
+/// A file's name up to its first dot.
+fn stem(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    name.split('.').next().unwrap_or_default().to_owned()
+}
+
+/// The results folder on the root, empty; the refusal on all ranks alike. Collective.
+pub(super) fn folder(comm: &Comm, place: &Path, force: bool) -> Result<Option<Folder>> {
+    let open = || {
+        let folder = Folder::open(place, force)?;
+        folder.clear()?;
+        Ok(Some(folder))
+    };
+    comm.agree(if comm.is_root() { open() } else { Ok(None) })
+}

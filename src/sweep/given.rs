@@ -1,0 +1,168 @@
+//! Modes of given matrices, at one value of their parameter or along it.
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+
+use super::friction::{Friction, Snapshot, Vectors, wider};
+use crate::matrices::{Given, Sums};
+use crate::petsc::{Factor, FactorKind};
+use crate::stability::{self, Band, Evidence, Pencil, Problem, Solver, condition};
+use crate::tracking::{Diagram, Options, track};
+use crate::{Error, Result};
+
+/// Given matrices under analysis at one value after the other.
+pub struct GivenSweep<'a> {
+    given: &'a Given,
+    solver: Solver,
+    lu: Factor,
+    band: [f64; 2],
+    evidence: Evidence,
+}
+
+/// The modes at one value of the parameter. Their vectors are those of the scaled problem, [`Given::scale`].
+pub struct GivenModes {
+    /// The modes of the band.
+    pub band: Band,
+    /// Condition number of the matrix that was factorised, scaled as it is solved.
+    pub condition: f64,
+    /// Its shift, 1/s; 0 where it is K.
+    pub shift: f64,
+}
+
+/// Above this condition number K counts as singular, as that of a free structure, and another shift is tried.
+const NEARLY_SINGULAR: f64 = 1e13;
+/// Where a factor costs nothing, others are tried from here on.
+const GOOD: f64 = 1e4;
+/// From here on nothing is left of sixteen digits.
+const SINGULAR: f64 = 1e15;
+/// Shifts that are tried, in units of the band's end. Without a common null vector of M, C and K few numbers are eigenvalues.
+const SHIFTS: [f64; 3] = [0.0, 0.31, 0.77];
+/// Accuracy of left vectors.
+const ACCURACY: f64 = 1e-7;
+/// Hopf points are bracketed this closely, as a fraction of the parameter's range.
+const BRACKET: f64 = 1e-6;
+
+/// Up to so many rows eigenvalues have nearly all digits.
+const SMALL: usize = 1000;
+
+/// The growth rate (1/s) from which an eigenvalue of `n` rows is unstable beyond noise.
+fn threshold(n: usize) -> fn(Complex64) -> f64 {
+    if n <= SMALL { |lambda| 1e-9 * lambda.norm() } else { |lambda| 1e-6 * lambda.norm() }
+}
+
+impl<'a> GivenSweep<'a> {
+    /// An analysis of a band, Hz.
+    pub fn new(given: &'a Given, band: [f64; 2]) -> GivenSweep<'a> {
+        let symmetry = given.symmetry;
+        let evidence = match (symmetry.mass, symmetry.damping && symmetry.stiffness) {
+            (true, true) => Evidence::Inertia,
+            (estimated, _) => Evidence::Repetition { estimated },
+        };
+        let solver = Solver::given(given.n, given.labels(), symmetry.mass && symmetry.damping, evidence);
+        GivenSweep { given, solver, lu: Factor::new(FactorKind::Unsymmetric), band, evidence }
+    }
+
+    /// What shows that no mode is missing.
+    pub fn evidence(&self) -> Evidence {
+        self.evidence
+    }
+
+    /// All modes of the band at a value of the parameter. `hear` is told of (converged, wanted, solves). Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the pencil is singular; see [`stability::solve`].
+    pub fn modes(&mut self, value: f64, hear: &mut dyn FnMut(usize, usize, usize)) -> Result<GivenModes> {
+        let sums = self.given.at(value)?;
+        self.modes_of(&sums, self.band, hear)
+    }
+
+    fn modes_of(
+        &mut self,
+        sums: &Sums,
+        band: [f64; 2],
+        hear: &mut dyn FnMut(usize, usize, usize),
+    ) -> Result<GivenModes> {
+        let pencil = self.pencil(sums);
+        let (shift, condition) = self.choose_shift(&pencil)?;
+        let band = stability::solve(&pencil, &mut self.lu, &mut self.solver, band, hear)?;
+        Ok(GivenModes { band, condition, shift })
+    }
+
+    fn pencil<'s>(&self, sums: &'s Sums) -> Pencil<'s> {
+        let Sums { m, c, k, k_symmetric } = sums;
+        let symmetric_mc = self.given.symmetry.mass && self.given.symmetry.damping;
+        Pencil { m, c, k, k_symmetric: k_symmetric.as_ref().unwrap_or(k), points: None, symmetric_mc }
+    }
+
+    /// The first shift at which `P(shift)` can be inverted, and the condition number there.
+    fn choose_shift(&mut self, pencil: &Pencil) -> Result<(f64, f64)> {
+        let mut best = (0.0, f64::INFINITY);
+        let enough = if self.given.n <= SMALL { GOOD } else { NEARLY_SINGULAR };
+        for share in SHIFTS {
+            let shift = share * TAU * self.band[1];
+            let condition = self.solver.search_about(shift, pencil, &mut self.lu)?;
+            if condition <= enough {
+                return Ok((shift, condition));
+            }
+            if condition < best.1 {
+                best = (shift, condition);
+            }
+        }
+        if best.1 >= SINGULAR {
+            return Err(Error::input(
+                "the pencil is singular: lambda^2 M + lambda C + K can be inverted for no lambda, as where M, C and K have a common null \
+                 vector. Hold or leave out what neither mass nor stiffness resists",
+            ));
+        }
+        self.solver.search_about(best.0, pencil, &mut self.lu)?;
+        Ok(best)
+    }
+
+    /// Modes at all values, strung on branches, with their Hopf points; `each` is given those of every value that is solved. Collective.
+    ///
+    /// # Errors
+    /// See [`GivenSweep::modes`] and [`track`]. What was found before an error is in the diagram.
+    pub fn follow(
+        &mut self,
+        values: &[f64],
+        mut each: impl FnMut(f64, &GivenModes) -> Result<()>,
+        hear: &mut dyn FnMut(usize, usize, usize),
+    ) -> Result<(Diagram, Result<()>)> {
+        let (given, band) = (self.given, self.band);
+        let first = given.at(values[0])?;
+        let mut solve = |value: f64| {
+            let sums = given.at(value)?;
+            let modes = self.modes_of(&sums, wider(band), hear)?;
+            each(value, &modes)?;
+            let found = &modes.band.modes;
+            let (pencil, labels) = (self.pencil(&sums), given.labels());
+            let problem = Problem { pencil: &pencil, factor: &self.lu, labels: &labels };
+            let (left, _) = stability::left_vectors(&problem, found, |_| ACCURACY)?;
+            let right = stability::right_vectors(&sums.m, found)?;
+            Ok(Snapshot::of(&modes.band, band[1], Vectors { right, left, c: Some(sums.c), m: Some(sums.m) }))
+        };
+        let mut family = Friction { solutions: &mut solve, m: &first.m, c: &first.c };
+        let range = values.iter().fold([f64::MAX, f64::MIN], |[low, high], v| [low.min(*v), high.max(*v)]);
+        let tolerance = BRACKET * (range[1] - range[0]);
+        let options = Options { band: band.map(|f| TAU * f), tolerance, threshold: threshold(given.n) };
+        Ok(track(&mut family, values, &options))
+    }
+
+    /// Why modes cannot be followed from a value on; none where they can: left and right vectors are compared in the norm of M, which has to be
+    /// symmetric and positive. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and MUMPS's.
+    pub fn cannot_follow(&self, value: f64) -> Result<Option<&'static str>> {
+        if !self.given.symmetry.mass {
+            return Ok(Some("M is not symmetric"));
+        }
+        let mut m = self.given.at(value)?.m;
+        m.declare_symmetric()?;
+        let mut factor = Factor::new(FactorKind::Symmetric);
+        factor.factorise(&m)?;
+        let is_positive = factor.n_negative()? == 0 && condition(&m, &factor)? < SINGULAR;
+        Ok(if is_positive { None } else { Some("M is not positive definite") })
+    }
+}
