@@ -44,12 +44,18 @@ fn assert_is_the_chain(place: &Place, mass: &str, stiffness: &str) -> String {
 #[test]
 fn labelled_matrices_keep_their_nodes() {
     let place = Place::empty();
-    place.write("k.mtx", "** stiffness\n101,1, 101,1,  1.000000000000000e+36\n205,1, 101,1, -1.0e+06\n205,1, 205,1, 2.0e+06\n\
-        -3,1, 205,1, -1.0e+06\n-3,1, -3,1, 1.0e+06\n");
+    place.write(
+        "k.mtx",
+        "** stiffness\n101,1, 101,1,  1.000000000000000e+36\n205,1, 101,1, -1.0e+06\n205,1, 205,1, 2.0e+06\n\
+        -3,1, 205,1, -1.0e+06\n-3,1, -3,1, 1.0e+06\n",
+    );
     place.write("m.mtx", "101,1, 101,1, 1.0\n-3,1, -3,1, 1.0\n205,1, 205,1, 1.0\n");
     let text = assert_is_the_chain(&place, "m.mtx", "k.mtx");
     assert!(text.contains("1 held displacements (1e36") && text.contains("node -3, dof 1"), "{text}");
-    assert!(text.contains("largest_node,largest_dof") && text.contains(",-3,1\n") && text.contains(",205,1\n"), "{text}");
+    assert!(
+        text.contains("largest_node,largest_dof") && text.contains(",-3,1\n") && text.contains(",205,1\n"),
+        "{text}"
+    );
 }
 
 /// FORMAT=COORDINATE: row, column, value without any header.
@@ -94,7 +100,11 @@ fn bad_files_are_refused_with_their_line() {
     }
     let cases: Vec<(&str, Vec<u8>, &str)> = vec![
         ("not square", format!("{HEAD}2 3 1\n1 1 1\n").into(), "k:2: 2 x 3 is not the size of a square matrix"),
-        ("other size", format!("{HEAD}3 3 3\n1 1 1\n2 2 1\n3 3 1\n").into(), "the mass (m) has 2 rows, the stiffness (k) has 3"),
+        (
+            "other size",
+            format!("{HEAD}3 3 3\n1 1 1\n2 2 1\n3 3 1\n").into(),
+            "the mass (m) has 2 rows, the stiffness (k) has 3",
+        ),
         ("NaN", format!("{HEAD}2 2 2\n1 1 1\n2 2 NaN\n").into(), "k:4: NaN is no finite number"),
         ("complex", good.replace("real", "complex").into(), "k:1: the matrix is complex"),
         ("pattern", good.replace("real", "pattern").into(), "k:1: the file has a pattern without values"),
@@ -138,7 +148,8 @@ fn singular_pencils_are_refused() {
 fn exported_matrices_have_the_same_modes() {
     let place = Place::blocks();
     let band = "0:30000";
-    let said = place.run(&["stability", "brake.toml", "--friction", "0.3", "--band", band, "--no-branches", "-o", "ours"]);
+    let said =
+        place.run(&["stability", "brake.toml", "--friction", "0.3", "--band", band, "--no-branches", "-o", "ours"]);
     assert_eq!(said.code, 0, "{}", said.err);
     let expected = place.read("ours/modes.csv");
     for (ranks, format) in [(1, "mtx"), (2, "petsc")] {
@@ -146,7 +157,20 @@ fn exported_matrices_have_the_same_modes() {
         let said = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
         assert_eq!(said.code, 0, "{}", said.err);
         let [m, c, k] = ["mass", "damping", "stiffness"].map(|name| format!("{format}/{name}.{format}"));
-        let said = place.run(&["modes", "--mass", &m, "--damping", &c, "--stiffness", &k, "--band", band, "-o", "theirs", "--force"]);
+        let said = place.run(&[
+            "modes",
+            "--mass",
+            &m,
+            "--damping",
+            &c,
+            "--stiffness",
+            &k,
+            "--band",
+            band,
+            "-o",
+            "theirs",
+            "--force",
+        ]);
         assert_eq!(said.code, 0, "{}", said.err);
         let found = place.read("theirs/modes.csv");
         let [ours, theirs] = [&expected, &found].map(|table| column(table, "frequency_hz"));

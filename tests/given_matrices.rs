@@ -22,7 +22,8 @@ use proptest::prelude::*;
 fn columns(table: &str, names: &[&str]) -> Vec<Vec<f64>> {
     let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();
-    let places: Vec<usize> = names.iter().map(|name| header.iter().position(|column| column == name).unwrap()).collect();
+    let places: Vec<usize> =
+        names.iter().map(|name| header.iter().position(|column| column == name).unwrap()).collect();
     lines.map(|line| places.iter().map(|&i| line[i].parse().unwrap_or(f64::NAN)).collect()).collect()
 }
 
@@ -109,7 +110,13 @@ fn hopf_points_of_families() {
     for (family, values, band, parameter, expected) in [
         ("hoffmann.toml", "0:1:0.1", "0:1", "mu", vec![(0.75, 2.0_f64.sqrt() / TAU)]),
         ("sinou.toml", "0:0.5:0.1", "0:200", "mu", vec![(0.27179003, 93.02605)]),
-        ("bicycle.toml", "1:10:0.5", "0:20", "v", vec![(4.292_382_536_341_11, 0.546_702_64), (6.024_262_015_388_37, 0.0)]),
+        (
+            "bicycle.toml",
+            "1:10:0.5",
+            "0:20",
+            "v",
+            vec![(4.292_382_536_341_11, 0.546_702_64), (6.024_262_015_388_37, 0.0)],
+        ),
     ] {
         let place = Place::empty();
         let file = data("matrices").join(family);
@@ -120,7 +127,10 @@ fn hopf_points_of_families() {
         assert_eq!(rows.len(), expected.len(), "{family}: {rows:?}");
         for (row, (value, hertz)) in rows.iter().zip(expected) {
             println!("{family}: {} at {} Hz", row[0], row[1]);
-            assert!((row[0] - value).abs() < 1e-5 && (row[1] - hertz).abs() < 1e-4 * hertz.max(1.0), "{family}: {row:?}");
+            assert!(
+                (row[0] - value).abs() < 1e-5 && (row[1] - hertz).abs() < 1e-4 * hertz.max(1.0),
+                "{family}: {row:?}"
+            );
         }
         let branches = columns(&place.read("out/branches.csv"), &["branch", parameter]);
         assert!(branches.len() > 10);
@@ -180,14 +190,16 @@ fn a_gyroscopic_chain_has_all_its_modes_on_any_number_of_ranks() {
         _ => 0.0,
     });
     let g = DMatrix::from_fn(N, N, |i, j| if i / 2 == j / 2 && i != j { if i < j { 0.3 } else { -0.3 } } else { 0.0 });
-    let mut expected: Vec<f64> = dense(&DMatrix::identity(N, N), &g, &k).iter().map(|z| z.im).filter(|w| *w < 0.8).collect();
+    let mut expected: Vec<f64> =
+        dense(&DMatrix::identity(N, N), &g, &k).iter().map(|z| z.im).filter(|w| *w < 0.8).collect();
     expected.sort_by(f64::total_cmp);
     let place = Place::empty();
     place.write("m.mtx", coordinates(&DMatrix::identity(N, N), "symmetric"));
     place.write("k.mtx", coordinates(&k, "symmetric"));
     place.write("g.mtx", coordinates(&g, "skew-symmetric"));
     let end = format!("0:{}", 0.8 / TAU);
-    let arguments = ["modes", "--mass", "m.mtx", "--damping", "g.mtx", "--stiffness", "k.mtx", "--band", &end, "--shapes", "-o"];
+    let arguments =
+        ["modes", "--mass", "m.mtx", "--damping", "g.mtx", "--stiffness", "k.mtx", "--band", &end, "--shapes", "-o"];
     for ranks in [1, 2, 3] {
         let folder = format!("out{ranks}");
         let all = [&arguments[..], &[&folder]].concat();
@@ -207,7 +219,8 @@ fn a_gyroscopic_chain_has_all_its_modes_on_any_number_of_ranks() {
 fn coordinates(a: &DMatrix<f64>, symmetry: &str) -> String {
     let n = a.nrows();
     let keep = |i: usize, j: usize| a[(i, j)] != 0.0 && (symmetry == "general" || i >= j);
-    let places: Vec<(usize, usize)> = (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).filter(|&(i, j)| keep(i, j)).collect();
+    let places: Vec<(usize, usize)> =
+        (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).filter(|&(i, j)| keep(i, j)).collect();
     let lines: String = places.iter().map(|&(i, j)| format!("{} {} {:e}\n", i + 1, j + 1, a[(i, j)])).collect();
     format!("%%MatrixMarket matrix coordinate real {symmetry}\n% a comment\n{n} {n} {}\n{lines}", places.len())
 }
@@ -215,7 +228,8 @@ fn coordinates(a: &DMatrix<f64>, symmetry: &str) -> String {
 /// PETSc's binary format, written here anew.
 fn petsc(a: &DMatrix<f64>) -> Vec<u8> {
     let n = a.nrows() as i32;
-    let rows: Vec<Vec<i32>> = (0..n).map(|i| (0..n).filter(|&j| a[(i as usize, j as usize)] != 0.0).collect()).collect();
+    let rows: Vec<Vec<i32>> =
+        (0..n).map(|i| (0..n).filter(|&j| a[(i as usize, j as usize)] != 0.0).collect()).collect();
     let total: usize = rows.iter().map(Vec::len).sum();
     let mut bytes: Vec<u8> = [1_211_216, n, n, total as i32].iter().flat_map(|x: &i32| x.to_be_bytes()).collect();
     bytes.extend(rows.iter().flat_map(|row| (row.len() as i32).to_be_bytes()));

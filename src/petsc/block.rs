@@ -213,6 +213,9 @@ impl Block {
     /// enough. Collective.
     pub fn orthonormalising(&self, negligible: f64) -> (Vec<f64>, usize) {
         let n = self.n_columns;
+        if n == 0 {
+            return (Vec::new(), 0);
+        }
         let gram = DMatrix::from_vec(n, n, self.gram(self));
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / gram[(j, j)].sqrt().max(f64::MIN_POSITIVE)).collect();
         let eigen = SymmetricEigen::new(DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]));

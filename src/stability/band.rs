@@ -306,7 +306,11 @@ impl Solver {
         let matrix = shifted.as_ref().unwrap_or(pencil.k);
         match lu.factorise(matrix) {
             Ok(()) => condition(matrix, lu),
-            Err(Error::Library(text)) if text.contains("the matrix is singular") => Ok(f64::INFINITY),
+            Err(Error::Library(text)) if text.contains("the matrix is singular") => {
+                // MUMPS takes no other values after it has failed.
+                lu.release();
+                Ok(f64::INFINITY)
+            }
             Err(error) => Err(error),
         }
     }
