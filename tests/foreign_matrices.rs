@@ -147,7 +147,7 @@ fn singular_pencils_are_refused() {
 #[test]
 fn exported_matrices_have_the_same_modes() {
     let place = Place::blocks();
-    let band = "0:30000";
+    let band = "0:90000";
     let said =
         place.run(&["stability", "brake.toml", "--friction", "0.3", "--band", band, "--no-branches", "-o", "ours"]);
     assert_eq!(said.code, 0, "{}", said.err);

@@ -276,9 +276,11 @@ fn a_free_structure_is_solved_about_a_shift() {
     assert_eq!(said.code, 0, "{}", said.err);
     assert!(said.out.contains("K is singular") && !said.out.contains("unstable"), "{}", said.out);
     assert!(said.out.contains("2 modes with |lambda| below 1000.0 Hz, as many as"), "{}", said.out);
-    let found = eigenvalues(&place.read("out/modes.csv"));
+    // The motion itself is a double zero with one vector: rounding leaves half of the digits.
+    let found = columns(&place.read("out/modes.csv"), &["frequency_hz", "backward_error"]);
     let highest = found.last().unwrap();
-    assert!((highest.im / 2e6_f64.sqrt() - 1.0).abs() < 1e-10, "{found:?}");
+    assert!((TAU * highest[0] / 2e6_f64.sqrt() - 1.0).abs() < 1e-10 && highest[1] < 1e-12, "{found:?}");
+    assert!(found[..found.len() - 1].iter().all(|row| row[0] < 1e-3), "{found:?}");
 }
 
 /// Where the scaled matrix has lost its digits, the person is told.
