@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each room with what it may import. `element` takes from `mesh` a test for good shapes, in its own tests.
-const ROOMS: [(&str, &[&str]); 18] = [
+const ROOMS: [(&str, &[&str]); 19] = [
     ("error", &[]),
     ("hdf", &["error"]),
     ("algebra", &[]),

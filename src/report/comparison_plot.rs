@@ -7,7 +7,8 @@ use crate::comparison::{Comparison, Pair};
 pub fn errors(comparison: &Comparison) -> String {
     let mut sheet = Sheet::new([720.0, 620.0]);
     let band = comparison.band.map(|f| f / 1000.0);
-    let rows: [(&str, fn(&Pair) -> f64); 3] = [
+    type Quantity = fn(&Pair) -> f64;
+    let rows: [(&str, Quantity); 3] = [
         ("frequency error, %", |pair| 100.0 * pair.frequency_error),
         ("growth rate error, %", |pair| 100.0 * pair.growth_error),
         ("MAC", |pair| pair.mac),
