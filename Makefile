@@ -1,8 +1,10 @@
 # squeal: `make demo` shows a brake that squeals, `make test` passes the tests. Both set up what they need.
 
 export OPENBLAS_NUM_THREADS := 1
+size_coarse  := 1
 size_small   := 1
 size_medium  := 2
+size_fine    := 3
 size_full    := 3
 size_million := 4
 BINARY := target/release/squeal
@@ -13,7 +15,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help demo test full bench lint setup build clean
+.PHONY: help demo test validation full bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## this list
@@ -23,9 +25,13 @@ demo: setup results/demo/report.html ## the main job on the demo brake (medium m
 	@cat results/demo/summary.txt
 	@echo "\nopen results/demo/report.html in a browser"
 
-test: setup meshes/build/brake-small.msh ## all tests
+test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## all tests
 	@scripts/setup.sh --tests
 	cargo nextest run --workspace --release
+
+validation: setup $(patsubst %,meshes/build/td1-%.msh,coarse medium fine) ## writes docs/validation.md: our numbers beside everybody else's
+	@scripts/setup.sh --tests
+	cargo nextest run --release --test validation --run-ignored only
 
 full: setup build meshes/build/brake-full.msh ## the paper's size: 177 thousand nodes on $(RANKS) ranks
 	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force --verbose
@@ -54,6 +60,10 @@ $(BINARY): $(shell find src sys Cargo.toml Cargo.lock build.rs -type f 2>/dev/nu
 	@touch $@
 
 meshes/build/brake-%.msh: meshes/brake.geo | setup
+	@mkdir -p $(@D)
+	gmsh -3 $< -setnumber size $(size_$*) -o $@ > $@.log
+
+meshes/build/td1-%.msh: meshes/td1.geo | setup
 	@mkdir -p $(@D)
 	gmsh -3 $< -setnumber size $(size_$*) -o $@ > $@.log
 

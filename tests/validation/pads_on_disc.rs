@@ -17,16 +17,15 @@
 //! rates to 1e-6 of their own [7e-8; a double root magnifies noise], those that are zero to 1e-11 of omega [1e-12];
 //! backward errors below 1e-12 [1e-13].
 
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{assert_close, data};
+use super::common::{assert_close, data};
+use super::table::{Case, Row};
 use serde_json::Value;
 use squeal::assembly::System;
 use squeal::element::tet10;
 use squeal::equilibrium::{Balance, Equilibrium};
-use squeal::petsc::Session;
+use squeal::petsc::{Comm, Session};
 use squeal::stability::{Band, Mode};
 use squeal::sweep::{Brake, Families, Sweep};
 
@@ -34,25 +33,58 @@ fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-#[test]
-fn an_independent_implementation_agrees_at_every_friction() {
-    let comm = Session::start(&[]).unwrap();
+pub fn cases(comm: &Comm) -> Vec<Case> {
     let text = std::fs::read_to_string(data("pads_on_disc.json")).unwrap();
     let reference: Value = serde_json::from_str(&text).unwrap();
-    let brake = Brake::read(&comm, &data("pads_on_disc.toml")).unwrap();
+    let brake = Brake::read(comm, &data("pads_on_disc.toml")).unwrap();
     compare_model(&brake, &reference);
     let families = brake.families().unwrap();
-    let system = brake.assemble(&comm, &families).unwrap();
+    let system = brake.assemble(comm, &families).unwrap();
     assert_eq!(system.dofs.n_global() as u64, reference["free_dofs"].as_u64().unwrap());
     let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let mut rows = Vec::new();
     for friction in [0.0, 0.2, 0.4, 0.6, 0.8] {
         println!("friction {friction}");
         let expected = &reference["results"][format!("{friction:.1}")];
         let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
         compare_equilibrium(&brake, &families, &system, &equilibrium, expected);
         let band = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
-        compare_modes(&band, expected["eigenvalues"].as_array().unwrap());
+        let expected = expected["eigenvalues"].as_array().unwrap();
+        compare_modes(&band, expected);
+        rows.extend(unstable(friction, &band, expected));
     }
+    vec![Case {
+        title: "Two pads on a disc",
+        text: "Two pads pressed on an annular disc by 4 kN, frictions 0 to 0.8, undamped. Reference: another implementation of the same \
+               formulation on the same mesh (numpy, scipy, SLEPc; `tests/data/pads_on_disc.json`). The test compares masses (1e-12), forces, \
+               torque, closed points and 24 eigenvalues at each friction (frequencies 1e-8, growth rates 1e-6); here are the unstable ones.",
+        rows,
+    }]
+}
+
+/// Unstable modes beside the reference's, by rising frequency.
+fn unstable(friction: f64, band: &Band, expected: &[Value]) -> Vec<Row> {
+    let modes = band.modes.iter().filter(|mode| mode.is_unstable());
+    let pairs = modes.filter_map(|mode| {
+        let nearest = expected
+            .iter()
+            .filter(|e| number(&e["real"]) > 1.0)
+            .find(|e| (number(&e["frequency_hz"]) - mode.frequency()).abs() < 0.1)?;
+        Some((mode, number(&nearest["frequency_hz"]), number(&nearest["real"])))
+    });
+    let rows = pairs.flat_map(|(mode, hertz, growth)| {
+        let what = |what| format!("friction {friction}: {what} of the mode at {hertz:.0} Hz");
+        [
+            Row::new(what("frequency"), "Hz", mode.frequency(), hertz, 1e-8),
+            Row::new(what("growth rate"), "1/s", mode.growth_rate(), growth, 1e-6),
+        ]
+    });
+    rows.collect()
+}
+
+#[test]
+fn an_independent_implementation_agrees_at_every_friction() {
+    cases(&Session::start(&[]).unwrap()).iter().for_each(Case::verify);
 }
 
 fn compare_model(brake: &Brake, reference: &Value) {
