@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Installs what debian-packages.txt lists, with --tests also debian-packages-tests.txt and cargo-nextest, as far as they are missing. Works as root or with sudo.
+# Installs what debian-packages.txt lists, as far as it is missing; with --tests also what debian-packages-tests.txt lists and cargo-nextest.
+# Works as root or with sudo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 lists=(debian-packages.txt)
-[ "${1:-}" = "--tests" ] && lists+=(debian-packages-tests.txt)
+[ "${1:-}" != "--tests" ] || lists+=(debian-packages-tests.txt)
 mapfile -t packages < <(grep -hvE '^[[:space:]]*(#|$)' "${lists[@]}")
 missing=()
 for package in "${packages[@]}"; do

@@ -219,10 +219,10 @@ pub fn section(comm: &Comm) -> String {
     let growths: Vec<String> = meshes.iter().map(|modes| format!("{:.2}", growth(modes))).collect();
     let against = 100.0 * (growth(&meshes[2]) / GROWTH - 1.0);
     let growths = format!("| growth of the pair, Hz | {} | {GROWTH} | {against:+.1} % |\n", growths.join(" | "));
-    let (tried, sweep) = (tried(comm), sweep_text(&followed(comm, SIZES[1])));
+    let (tried, sweep) = (tried(comm), sweep_text(&followed(comm, SIZES[0])));
     format!(
         "## {TITLE}\n\n{TEXT}\n\n{head}{}\n{growths}\n{WHY}\n{tried}\n\
-         ### Over friction, 0 to 0.3, medium mesh\n\n(The published plot of this sweep contradicts its own table.)\n\n{sweep}",
+         ### Over friction, 0 to 0.3, coarse mesh\n\n(The published plot of this sweep contradicts its own table.)\n\n{sweep}",
         lines.join("\n")
     )
 }
