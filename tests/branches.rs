@@ -1,4 +1,4 @@
-//! Modes followed over friction on the two pads on a disc (tests/pads_on_disc.rs), whose reference has eigenvalues at 0, 0.2 ... 0.8.
+//! Modes followed over friction on the two pads on a disc (tests/validation/pads_on_disc.rs), whose reference has eigenvalues at 0, 0.2 ... 0.8.
 //!
 //! The reference's eigenvalues show four couplings: the pair at 6381 Hz grows at 0.2 and is at rest at 0, that at 1270 Hz grows at 0.4, those at
 //! 5190 and 7371 Hz at 0.8. Every Hopf point has to lie between the two values, bracketed by solves to 1e-3.

@@ -1,4 +1,4 @@
-//! What explains a mode, on the two pads on a disc (tests/pads_on_disc.rs) with damping.
+//! What explains a mode, on the two pads on a disc (tests/validation/pads_on_disc.rs) with damping.
 //!
 //! Energies are sums over elements and contact points, eigenvalues come from the assembled matrices: that the two fit is the test.
 //! Sensitivities are held against central differences of the eigenvalue at the same equilibrium.

@@ -17,7 +17,7 @@
 //! (`separation = false`), and the modes do not depend on the small pressure.
 //!
 //! Goal: the pair is found at its place among 30 modes, unstable at 0.3, with the published growth; 1 % for all other frequencies. Measured on the
-//! fine mesh: growth 7 %; 1.2 % for 14 modes, 3.2 % for 25, those in which the pads bend above the published ones; 4 to 9 % below them for
+//! fine mesh: growth 7 %; 1.2 % for 15 modes, 3.2 % for 25, those in which the pads bend above the published ones; 4 to 9 % below them for
 //! five modes of the hat. The document says what was tried to find out why.
 
 use std::f64::consts::TAU;
