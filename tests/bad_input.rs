@@ -285,7 +285,7 @@ fn friction_out_of_range() {
     asked("4", "friction 4 is out of range: 0 to 2");
     asked("-0.4", "friction -0.4 is out of range: 0 to 2");
     asked("abc", "\"abc\" is not a number");
-    asked("0.4,0.4", "friction 0.4 is given twice");
+    asked("0.4,0.4", "0.4 is given twice");
     asked("0.9:0.1:0.1", "the range 0.9:0.1:0.1 has no value");
     refused_on_two(&place, &["static", "brake.toml", "--friction", "4"], &["friction 4 is out of range"]);
 }

@@ -208,7 +208,9 @@ pub fn write_file(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Res
 
 /// The first entry of a folder that its list of our files does not have.
 fn stranger(folder: &Path, ours: &str) -> std::io::Result<Option<String>> {
-    let is_ours = |name: &String| name == MARK || name == RESUME || ours.lines().any(|file| file == name);
+    let is_ours = |name: &String| {
+        name == MARK || name == RESUME || ours.lines().any(|file| file.split('/').next() == Some(name.as_str()))
+    };
     Ok(names(folder)?.into_iter().find(|name| !is_ours(name)))
 }
 
