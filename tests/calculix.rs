@@ -11,7 +11,7 @@
 //! mass, and with the mass of 4 points, [`FourPointMass`], which shows that nothing else differs.
 //!
 //! Goal and, in brackets, measured: with the mass of 4 points 1e-6 [2e-7, 2e-7; ccx prints eigenvalues with seven digits]; with
-//! our own 1e-4 below 4 kHz [5.1e-5], 5e-4 to the 30th mode [3.2e-4].
+//! our own 1e-4 below 4 kHz [5.6e-5], 5e-4 to the 30th mode [3.3e-4].
 //!
 //! Friction is not compared: ccx takes the direction of sliding from the displacements of a static step, and has no imposed velocity.
 //!
