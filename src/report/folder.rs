@@ -177,21 +177,29 @@ fn remove(path: &Path) -> std::io::Result<()> {
     if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
-/// Counts files that lie in a results folder as the folder's own, so that `--force` may replace them with it. Other folders and
-/// files are left as they are.
+/// Counts files that lie in a results folder as the folder's own, so that `--force` may replace them with it; also a folder in it that holds
+/// nothing else. Other folders and files are left as they are.
 ///
 /// # Errors
 /// The system's, with the path.
 pub fn adopt(folder: &Path, files: &[PathBuf]) -> Result<()> {
     let mark = folder.join(MARK);
     let Ok(mut ours) = fs::read_to_string(&mark) else { return Ok(()) };
-    for file in files {
-        let Some(name) = file.strip_prefix(folder).ok().and_then(Path::to_str) else { continue };
-        if !ours.lines().any(|known| known == name) {
+    let first = |file: &PathBuf| file.strip_prefix(folder).ok()?.iter().next()?.to_str().map(String::from);
+    for name in files.iter().filter_map(first) {
+        if !ours.lines().any(|known| known == name) && holds_only(&folder.join(&name), files) {
             ours += &format!("{name}\n");
         }
     }
     fs::write(&mark, ours).map_err(Error::io(&mark))
+}
+
+/// Whether a path is one of these files, or a folder that holds nothing else.
+fn holds_only(path: &Path, files: &[PathBuf]) -> bool {
+    match fs::read_dir(path) {
+        Ok(entries) => entries.flatten().all(|entry| holds_only(&entry.path(), files)),
+        Err(_) => files.iter().any(|file| file == path),
+    }
 }
 
 /// Writes a file, and the folders to it where they are missing.
@@ -251,13 +259,16 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let target = place.path().join("run");
         Folder::open(&target, false).unwrap().finish().unwrap();
-        let files = ["plots/a.svg", "report.html"].map(|name| target.join(name));
+        let files = ["plots/a.svg", "moving/a/1.vtu", "report.html"].map(|name| target.join(name));
         files.iter().for_each(|file| write_file(file, |_| Ok(())).unwrap());
         assert!(Folder::may_write(&target, true).is_err());
         adopt(&target, &files).unwrap();
         adopt(&target, &files).unwrap();
         Folder::may_write(&target, true).unwrap();
-        assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "plots/a.svg\nreport.html\n");
+        assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "plots\nmoving\nreport.html\n");
+        write_file(&target.join("mine/notes.txt"), |_| Ok(())).unwrap();
+        adopt(&target, &[target.join("mine/a.svg")]).unwrap();
+        assert!(Folder::may_write(&target, true).is_err());
         adopt(place.path(), &files).unwrap();
         assert!(!place.path().join(MARK).exists());
     }
