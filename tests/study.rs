@@ -86,8 +86,8 @@ fn results_that_have_nothing_in_common_are_refused() {
 }
 
 /// A study of two layouts and super-elements.
-const STUDY: [&str; 8] = ["study", "brake.toml", "--friction", "0.2,0.4", "--layouts", "3,4", "--super-element", "4"];
-const PARTS: [&str; 5] = ["full", "contacts-3", "contacts-4", "super-element-4", "super-element-4-anew"];
+const STUDY: [&str; 8] = ["study", "brake.toml", "--friction", "0.2,0.4", "--layouts", "4,8", "--super-element", "8"];
+const PARTS: [&str; 5] = ["full", "contacts-4", "contacts-8", "super-element-8", "super-element-8-anew"];
 
 /// When the results of all parts were written.
 fn times(place: &Place) -> Vec<SystemTime> {
@@ -106,8 +106,8 @@ fn a_study_holds_all_models_against_full_contact_and_reuses_what_is_made() {
     );
     let sizes = table(&place, "brake-study/sizes.csv");
     let column = |name: &str| sizes.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();
-    assert_eq!(column("retained_points"), ["", "7", "9", "9", "9"]);
-    assert_eq!(column("contact_points")[1..], ["3", "4", "4", "4"]);
+    assert_eq!(column("retained_points"), ["", "9", "17", "17", "17"]);
+    assert_eq!(column("contact_points")[1..], ["4", "8", "8", "8"]);
     let equations: Vec<f64> = sizes.iter().map(|row| number(row, "equations")).collect();
     assert!(equations[..3].iter().all(|n| *n == equations[0]) && equations[3] < equations[0], "{equations:?}");
     assert_eq!(equations[3], equations[4]);
@@ -118,8 +118,8 @@ fn a_study_holds_all_models_against_full_contact_and_reuses_what_is_made() {
         own.map(|row| number(row, "worst_frequency_error")).fold(0.0, f64::max)
     };
     assert_eq!(errors.len(), 8);
-    assert!(worst("4 contacts") < worst("3 contacts"), "errors fall with the number of contacts");
-    let difference = worst("super-element of 4, made at each") - worst("4 contacts");
+    assert!(worst("8 contacts") < worst("4 contacts"), "errors fall with the number of contacts");
+    let difference = worst("super-element of 8, made at each") - worst("8 contacts");
     assert!(difference.abs() < 1e-5, "a super-element is its layout: {difference}");
 
     let before = times(&place);
@@ -127,7 +127,7 @@ fn a_study_holds_all_models_against_full_contact_and_reuses_what_is_made() {
     assert_eq!(again.err.matches("made before").count(), 6, "{}", again.err);
     assert!(times(&place) == before && said.out.ends_with(&again.out), "{}", again.out);
 
-    std::fs::remove_dir_all(place.path("brake-study/contacts-3")).unwrap();
+    std::fs::remove_dir_all(place.path("brake-study/contacts-4")).unwrap();
     let again = done(place.run_on(2, &STUDY));
     assert_eq!(again.err.matches("made before").count(), 5, "{}", again.err);
     let after = times(&place);
