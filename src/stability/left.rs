@@ -32,7 +32,7 @@ pub fn left_vectors(problem: &Problem, modes: &[Mode], accuracy: impl Fn(&Mode) 
         return Ok((start, 0));
     }
     let mut space = Space::new(*problem, Side::Left);
-    space.extend_by(start.clone())?;
+    space.extend(start.clone())?;
     let mut vectors = start_from(&space, modes, &start);
     for round in 0..ROUNDS {
         open.retain(|&i| {
@@ -43,7 +43,7 @@ pub fn left_vectors(problem: &Problem, modes: &[Mode], accuracy: impl Fn(&Mode) 
         if !open.is_empty() {
             let open: Vec<&Ritz> = open.iter().map(|&i| &vectors[i]).collect();
             let residuals = space.sketch(&open)?;
-            space.extend_by_solves(residuals)?;
+            space.extend_by_solves(&residuals)?;
         }
         if space.v.n_columns() == before {
             return Ok((normalised(m, conjugated(space.vectors(&vectors)))?, space.n_solves));

@@ -27,9 +27,9 @@ use crate::{Error, Result};
 const KRYLOV_BLOCK: usize = 8;
 /// Columns of the Krylov space for each mode expected.
 const KRYLOV: f64 = 2.2;
-/// Relative change of an eigenvalue from round to round at which it rests. A round wins a factor of about five, so that the error
-/// left is below the change.
-const REST: f64 = 1e-7;
+/// Relative change of an eigenvalue from round to round at which it rests. A round wins a factor of three to five, so that the error
+/// left is below half the change.
+const REST: f64 = 1e-9;
 /// Backward error of an eigenpair that is found.
 const BACKWARD_ERROR: f64 = 1e-10;
 /// Rounds of correction before the search is given up.
@@ -37,10 +37,10 @@ const MAX_ROUNDS: usize = 40;
 /// How often the projected problem is asked for more eigenpairs than seem to be within the radius.
 const MARGINS: [usize; 4] = [8, 24, 72, 216];
 
-/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis and its image under K, with room for ten rounds.
+/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for ten rounds, and the vectors found.
 pub fn needs_mb(n_modes: usize, n_equations: usize) -> f64 {
-    let n_columns = n_krylov(n_modes) + 10 * SKETCH;
-    2.0 * 8.0 * (n_columns * n_equations) as f64 / (1024.0 * 1024.0)
+    let n_columns = n_krylov(n_modes) + 10 * SKETCH + 2 * n_modes;
+    8.0 * (n_columns * n_equations) as f64 / (1024.0 * 1024.0)
 }
 
 /// Columns of the Krylov space.
@@ -74,12 +74,17 @@ pub fn solve(
                 return Ok((found(&lambdas, &x, space.n_solves)?, errors));
             }
         }
-        // What has converged has small residuals and hardly counts.
-        let residuals = space.sketch(&ritz.iter().collect::<Vec<_>>())?;
-        space.extend_by_solves(residuals)?;
+        let residuals = space.sketch(&worth_correcting(&ritz, rests))?;
+        space.extend_by_solves(&residuals)?;
         last = lambdas;
     }
     Err(Error::NotConverged(format!("the eigensolver's corrections did not converge in {MAX_ROUNDS} rounds")))
+}
+
+/// All pairs, or only those that do not rest where these are few: then their residuals need no compression.
+fn worth_correcting(ritz: &[Ritz], rests: impl Fn(&Ritz) -> bool) -> Vec<&Ritz> {
+    let open: Vec<&Ritz> = ritz.iter().filter(|r| !rests(r)).collect();
+    if open.is_empty() || 2 * open.len() > SKETCH { ritz.iter().collect() } else { open }
 }
 
 /// Krylov blocks of `K^-1 M`.
@@ -88,7 +93,7 @@ fn krylov<'a>(problem: &Problem<'a>, n_expected: usize) -> Result<Space<'a>> {
     let n_columns = n_krylov(n_expected).min(space.n_equations);
     let mut image = space.random(KRYLOV_BLOCK.min(space.n_equations)).multiplied_by(problem.pencil.m)?;
     while space.v.n_columns() < n_columns && image.n_columns() > 0 {
-        image = space.extend_by_solves(image)?;
+        image = space.extend_by_solves(&image)?;
     }
     Ok(space)
 }

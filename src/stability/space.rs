@@ -11,6 +11,8 @@ use crate::petsc::{Block, Factor, Matrix, Noise};
 pub(super) const SKETCH: usize = 24;
 /// Directions this much smaller than the largest of their block add nothing.
 const NEGLIGIBLE: f64 = 1e-7;
+/// No residual counts for more than that of a mode this far down, relative to the highest.
+const LOWEST: f64 = 0.01;
 
 /// A pencil with what its solution needs.
 #[derive(Clone, Copy)]
@@ -37,8 +39,6 @@ pub(super) struct Space<'a> {
     problem: Problem<'a>,
     side: Side,
     pub v: Block,
-    /// `A V`, kept because A is not symmetric.
-    av: Block,
     pub m: DMatrix<f64>,
     pub c: DMatrix<f64>,
     pub a: DMatrix<f64>,
@@ -61,9 +61,9 @@ impl<'a> Space<'a> {
     pub fn new(problem: Problem<'a>, side: Side) -> Space<'a> {
         let (comm, n_local) = (problem.pencil.k.comm(), problem.pencil.k.n_local());
         let none = || DMatrix::zeros(0, 0);
-        let [v, av] = [0, 1].map(|_| Block::zeros(comm, n_local, 0));
+        let v = Block::zeros(comm, n_local, 0);
         let (noise, n_equations) = (Noise::new(problem.labels), comm.sum(n_local as f64) as usize);
-        Space { problem, side, v, av, m: none(), c: none(), a: none(), noise, n_equations, n_solves: 0 }
+        Space { problem, side, v, m: none(), c: none(), a: none(), noise, n_equations, n_solves: 0 }
     }
 
     /// Columns without order.
@@ -81,70 +81,63 @@ impl<'a> Space<'a> {
         }
     }
 
-    /// Appends columns, as far as V lacks them.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn extend_by(&mut self, w: Block) -> Result<Block> {
-        let image = match self.side {
-            Side::Right => w.multiplied_by(self.problem.pencil.k)?,
-            Side::Left => w.multiplied_by_transpose(self.problem.pencil.k)?,
-        };
-        self.extend(w, image)
-    }
-
-    /// Appends `A^-1 R`, of which V lacks some directions W. Gives `M W`.
+    /// Appends `A^-1 R`, as far as V lacks it: W. Gives `M W`.
     ///
     /// # Errors
     /// PETSc's and MUMPS's.
-    pub fn extend_by_solves(&mut self, r: Block) -> Result<Block> {
-        let w = self.solved(&r)?;
-        self.n_solves += w.n_columns();
-        self.extend(w, r)
+    pub fn extend_by_solves(&mut self, r: &Block) -> Result<Block> {
+        self.n_solves += r.n_columns();
+        self.extend(self.solved(r)?)
     }
 
-    /// Appends what V lacks of some columns W, orthonormal, and their projections, given `A W`. Gives `M W`.
-    fn extend(&mut self, mut w: Block, mut aw: Block) -> Result<Block> {
+    /// Appends what V lacks of some columns W, orthonormal, and their projections. Gives `M W`.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn extend(&mut self, mut w: Block) -> Result<Block> {
         for _ in 0..2 {
-            // Whatever is done to W is done to A W.
             let overlap = self.v.gram(&w);
             w.axpy(-1.0, &self.v.combined(&overlap, w.n_columns()));
-            aw.axpy(-1.0, &self.av.combined(&overlap, aw.n_columns()));
             let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE);
             // No space has more directions than equations; what is beyond is rounding.
             n = n.min(self.n_equations - self.v.n_columns());
             basis.truncate(n * w.n_columns());
-            (w, aw) = (w.combined(&basis, n), aw.combined(&basis, n));
+            w = w.combined(&basis, n);
         }
-        let pencil = self.problem.pencil;
-        let mw = w.multiplied_by(pencil.m)?;
-        self.m = self.growth(&self.m, &w, pencil.m)?;
-        self.c = self.growth(&self.c, &w, pencil.c)?;
-        self.a = general_growth(&self.a, [&self.v, &w], [&self.av, &aw]);
+        let Pencil { m, c, k, symmetric_mc, .. } = *self.problem.pencil;
+        let mw = self.product(m, &w)?;
+        self.m = self.growth(&self.m, &w, &mw, Some(m).filter(|_| !symmetric_mc))?;
+        self.c = self.growth(&self.c, &w, &self.product(c, &w)?, Some(c).filter(|_| !symmetric_mc))?;
+        self.a = self.growth(&self.a, &w, &self.product(k, &w)?, Some(k))?;
         self.v.append(&w);
-        self.av.append(&aw);
         Ok(mw)
     }
 
-    /// `B X`, with B one of M and C or, for left vectors, its transpose.
+    /// `B X` with B one of M, C and K or, for left vectors, its transpose.
     fn product(&self, b: &Matrix, x: &Block) -> Result<Block> {
+        let Pencil { k, symmetric_mc, .. } = self.problem.pencil;
+        let is_symmetric = *symmetric_mc && !std::ptr::eq(b, *k);
         match self.side {
-            Side::Left if !self.problem.pencil.symmetric_mc => x.multiplied_by_transpose(b),
+            Side::Left if !is_symmetric => x.multiplied_by_transpose(b),
             _ => x.multiplied_by(b),
         }
     }
 
-    /// `[V W]^T B [V W]` from `V^T B V`, with B one of M and C or, for left vectors, its transpose.
-    fn growth(&self, old: &DMatrix<f64>, w: &Block, b: &Matrix) -> Result<DMatrix<f64>> {
-        let bw = self.product(b, w)?;
-        let mut new = symmetric_growth(old, &self.v, w, &bw);
-        if !self.problem.pencil.symmetric_mc {
-            let (n, p) = (self.v.n_columns(), w.n_columns());
-            let transposed = if self.side == Side::Left { w.multiplied_by(b)? } else { w.multiplied_by_transpose(b)? };
-            // W^T B V = (V^T B^T W)^T
-            let side = DMatrix::from_vec(n, p, self.v.gram(&transposed));
-            new.view_mut((n, 0), (p, n)).copy_from(&side.transpose());
-        }
+    /// `[V W]^T B [V W]` from `V^T B V` and `B W`; B is symmetric where it is not given.
+    fn growth(&self, old: &DMatrix<f64>, w: &Block, bw: &Block, b: Option<&Matrix>) -> Result<DMatrix<f64>> {
+        let (n, p) = (self.v.n_columns(), w.n_columns());
+        let mut new = DMatrix::zeros(n + p, n + p);
+        new.view_mut((0, 0), (n, n)).copy_from(old);
+        let right = DMatrix::from_vec(n, p, self.v.gram(bw));
+        // W^T B V = (V^T B^T W)^T
+        let below = match (b, self.side) {
+            (None, _) => right.clone(),
+            (Some(b), Side::Right) => DMatrix::from_vec(n, p, self.v.gram(&w.multiplied_by_transpose(b)?)),
+            (Some(b), Side::Left) => DMatrix::from_vec(n, p, self.v.gram(&w.multiplied_by(b)?)),
+        };
+        new.view_mut((0, n), (n, p)).copy_from(&right);
+        new.view_mut((n, 0), (p, n)).copy_from(&below.transpose());
+        new.view_mut((n, n), (p, p)).copy_from(&DMatrix::from_vec(p, p, w.gram(bw)));
         Ok(new)
     }
 
@@ -158,13 +151,17 @@ impl<'a> Space<'a> {
     }
 
     /// Real and imaginary parts of the residuals where they are few, else random combinations of them,
-    /// `sum_i Re(z_ij^* P(lambda_i) V y_i)`, `z_ij` normal: column j is `A V a_j + C V b_j + M V d_j`.
+    /// `sum_i Re(z_ij^* P(lambda_i) V y_i)`, `z_ij` normal with the deviation `|lambda_i|^-2`, which makes residuals count as they
+    /// change eigenvalues, relatively: column j is `A V a_j + C V b_j + M V d_j`.
     ///
     /// # Errors
     /// PETSc's.
     pub fn sketch(&mut self, ritz: &[&Ritz]) -> Result<Block> {
         let (n, pencil) = (self.v.n_columns(), self.problem.pencil);
         let n_columns = SKETCH.min(2 * ritz.len());
+        let largest = ritz.iter().map(|r| r.lambda.norm()).fold(0.0, f64::max);
+        // A rigid motion's zero counts like a low mode.
+        let deviation = |r: &Ritz| r.lambda.norm().max(LOWEST * largest).powi(-2);
         let mut coefficients = [0, 1, 2].map(|_| vec![0.0; n * n_columns]);
         for j in 0..n_columns {
             for (i, r) in ritz.iter().enumerate() {
@@ -172,7 +169,7 @@ impl<'a> Space<'a> {
                     (true, true, _) => Complex64::ONE,
                     (true, _, true) => Complex64::I,
                     (true, ..) => continue,
-                    (false, ..) => Complex64::new(self.noise.normal(), self.noise.normal()),
+                    (false, ..) => deviation(r) * Complex64::new(self.noise.normal(), self.noise.normal()),
                 };
                 for (power, a) in coefficients.iter_mut().enumerate() {
                     let factor = z.conj() * r.lambda.powu(power as u32);
@@ -181,33 +178,10 @@ impl<'a> Space<'a> {
                 }
             }
         }
-        let [a, b, d] = coefficients;
-        let mut sum = self.av.combined(&a, n_columns);
-        sum.axpy(1.0, &self.product(pencil.c, &self.v.combined(&b, n_columns))?);
-        sum.axpy(1.0, &self.product(pencil.m, &self.v.combined(&d, n_columns))?);
+        let mut sum = Block::zeros(self.v.comm(), self.v.n_local(), n_columns);
+        for (matrix, coefficients) in [pencil.k, pencil.c, pencil.m].into_iter().zip(&coefficients) {
+            sum.axpy(1.0, &self.product(matrix, &self.v.combined(coefficients, n_columns))?);
+        }
         Ok(sum)
     }
-}
-
-/// `[V W]^T A [V W]` from `V^T A V` and `A W`, A symmetric.
-fn symmetric_growth(old: &DMatrix<f64>, v: &Block, w: &Block, aw: &Block) -> DMatrix<f64> {
-    let (n, p) = (v.n_columns(), w.n_columns());
-    let mut new = DMatrix::zeros(n + p, n + p);
-    let side = DMatrix::from_vec(n, p, v.gram(aw));
-    new.view_mut((0, 0), (n, n)).copy_from(old);
-    new.view_mut((0, n), (n, p)).copy_from(&side);
-    new.view_mut((n, 0), (p, n)).copy_from(&side.transpose());
-    new.view_mut((n, n), (p, p)).copy_from(&DMatrix::from_vec(p, p, w.gram(aw)));
-    new
-}
-
-/// `[V W]^T A [V W]` from `V^T A V`, `A V` and `A W`.
-fn general_growth(old: &DMatrix<f64>, [v, w]: [&Block; 2], [av, aw]: [&Block; 2]) -> DMatrix<f64> {
-    let (n, p) = (v.n_columns(), w.n_columns());
-    let mut new = DMatrix::zeros(n + p, n + p);
-    new.view_mut((0, 0), (n, n)).copy_from(old);
-    new.view_mut((0, n), (n, p)).copy_from(&DMatrix::from_vec(n, p, v.gram(aw)));
-    new.view_mut((n, 0), (p, n)).copy_from(&DMatrix::from_vec(p, n, w.gram(av)));
-    new.view_mut((n, n), (p, p)).copy_from(&DMatrix::from_vec(p, p, w.gram(aw)));
-    new
 }
