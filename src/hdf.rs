@@ -26,6 +26,12 @@ const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes of a chunk, about: what is checked and unpacked at a time.
 const CHUNK: usize = 1 << 20;
 
+/// Starts the library; to be called before MPI starts. HDF5 that meets a running MPI ends itself within MPI_Finalize, where it crashes after a
+/// write that failed: a full disc would end the program with a crash for its exit code.
+pub fn start() {
+    hdf5::sync::sync(|| ());
+}
+
 /// Whether a file is HDF5, by its first bytes; false where it cannot be read.
 pub fn is_hdf5(path: &Path) -> bool {
     use std::io::Read;

@@ -1,5 +1,5 @@
 //! The `squeal` program. Everything is in the library; see [`squeal::cli`].
 
 fn main() {
-    squeal::petsc::leave(squeal::cli::main());
+    std::process::exit(squeal::cli::main());
 }

@@ -32,6 +32,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use serde_json::{Value as Json, json};
 
+use crate::hdf;
 use crate::model::NormalLaw;
 use crate::petsc::{Comm, Session};
 use crate::{Error, Result};
@@ -269,6 +270,7 @@ pub fn main() -> i32 {
         Ok(parsed) => parsed,
         Err(usage) => return tell_usage(&usage),
     };
+    hdf::start();
     match Session::start(&options) {
         Ok(comm) => {
             let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json, silent: false };

@@ -29,7 +29,7 @@ pub use factor::{Factor, FactorKind, FactorStats};
 pub use matrix::{Csr, Matrix, Rows};
 pub use metis::partition;
 pub use noise::Noise;
-pub use session::{Comm, Session, leave, libraries};
+pub use session::{Comm, Session, libraries};
 pub use vector::{Gather, Vector};
 
 /// PETSc's "work it out": a macro in its headers.

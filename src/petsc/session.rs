@@ -2,7 +2,6 @@
 
 use std::env;
 use std::ffi::{CStr, CString, c_char, c_void};
-use std::io::Write;
 use std::ptr;
 use std::rc::Rc;
 
@@ -49,14 +48,6 @@ impl Session {
         check(unsafe { sys::PetscPushErrorHandler(Some(collect), ptr::null_mut()) })?;
         Ok(Comm::world(Rc::new(Session { _private: () })))
     }
-}
-
-/// Ends the process with an exit code, and without what libraries do at a process's end: after a write that failed (a full disc) HDF5 may crash there.
-pub fn leave(code: i32) -> ! {
-    // Nobody is left to be told that nobody reads.
-    let _ = std::io::stdout().flush();
-    // SAFETY: the session has ended, and nothing of this process is needed any more.
-    unsafe { libc::_exit(code) }
 }
 
 impl Drop for Session {

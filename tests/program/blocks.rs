@@ -58,11 +58,13 @@ pub struct Pair {
     pub quadratic: bool,
     /// Whether one node of the pad is pulled inside out.
     pub inverted: bool,
+    /// Cells of the pad along an edge of its face.
+    pub pad_cells: usize,
 }
 
 impl Default for Pair {
     fn default() -> Pair {
-        Pair { gap: 0.0, quadratic: true, inverted: false }
+        Pair { gap: 0.0, quadratic: true, inverted: false, pad_cells: 2 }
     }
 }
 
@@ -70,7 +72,11 @@ impl Pair {
     /// The file.
     pub fn gmsh(&self) -> String {
         let disc = Block { cells: [3, 3, 1], corner: [0.0; 3], size: [30.0, 30.0, 10.0] };
-        let pad = Block { cells: [2, 2, 1], corner: [5.0, 5.0, 10.0 + self.gap], size: [20.0, 20.0, 10.0] };
+        let pad = Block {
+            cells: [self.pad_cells, self.pad_cells, 1],
+            corner: [5.0, 5.0, 10.0 + self.gap],
+            size: [20.0, 20.0, 10.0],
+        };
         let mut nodes: Vec<[f64; 3]> = disc.nodes();
         let first = nodes.len();
         nodes.extend(pad.nodes());
