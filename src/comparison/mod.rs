@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Modes whose eigenvalues nearly agree, such as the doublets of a disc, have no shapes of their own: any mixture is as good. They are compared
-//! as subspaces ([`Likeness`]). Who is whose partner is then an optimal assignment over shape and eigenvalue ([`pairing::pairs`]); modes
+//! as subspaces ([`Likeness`]). Who is whose partner is then an optimal assignment over shape and eigenvalue; modes
 //! that have too little in common with every partner left stay without one.
 
 mod instabilities;

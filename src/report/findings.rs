@@ -1,7 +1,7 @@
 //! What the results say about squeal: the instabilities, each with where it begins, the modes that it is made of, and its partner.
 //!
 //! An instability is a branch with a growing mode. Where modes were not followed over friction, growing modes of neighbouring
-//! frictions belong together when their frequencies lie within [`SAME`] of each other.
+//! frictions belong together when their frequencies lie within 2 % of each other.
 
 use std::f64::consts::TAU;
 

@@ -92,6 +92,10 @@ fn line(mode: usize, meshes: &[Vec<[f64; 2]>]) -> String {
     format!("| {} | {} | {published:.2} | {difference:+.2} % |", mode + 1, found.join(" | "))
 }
 
+/// How far frequencies of two meshes made alike may be apart: gmsh moves the middle nodes of strongly curved elements a little differently from
+/// run to run (3.1e-5 seen).
+const SAME_MESH: f64 = 2e-4;
+
 /// On the coarse mesh: the pair, its growth to 20 %, and frequencies to 10 %; the document has them.
 #[test]
 fn the_published_pair_flutters_on_the_coarse_mesh() {
@@ -109,7 +113,7 @@ fn the_published_pair_flutters_on_the_coarse_mesh() {
             section.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("mode {i}: {ADVICE}"));
         let written: f64 = line[start.len()..].split(' ').next().unwrap().parse().unwrap();
         assert!(
-            (written - mode[0]).abs() < 0.011,
+            (written / mode[0] - 1.0).abs() < SAME_MESH,
             "mode {}: {} Hz, {written} in the document: {ADVICE}",
             i + 1,
             mode[0]
