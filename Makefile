@@ -37,7 +37,7 @@ calculix: setup ## modes of the same meshes by CalculiX and by us, side by side
 	@scripts/setup.sh --tests
 	cargo nextest run --release --test calculix --no-capture
 
-full: setup build meshes/build/brake-full.msh ## the paper's size: 177 thousand nodes on $(RANKS) ranks
+full: setup build meshes/build/brake-full.msh ## the paper's size: 179 thousand nodes on $(RANKS) ranks
 	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force --verbose
 
 bench: setup meshes/build/brake-medium.msh ## seconds, entries and memory of assembly, factorisation and eigensolution
