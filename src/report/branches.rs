@@ -62,7 +62,7 @@ pub fn summary(diagram: &Diagram, parameter: &str) -> String {
             hopf.omega / TAU,
             hopf.branch + 1,
             hertz(hopf.branch),
-            (first * 1e6).round() * 1e-6,
+            (first * 1e6).round() / 1e6,
         );
     }
     for [low, high] in &diagram.doubtful {

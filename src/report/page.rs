@@ -10,7 +10,7 @@ use super::findings::{Findings, Instability};
 use super::plots::{self, Figure};
 use super::svg::{PALETTE, escaped};
 use super::words::{self, Answer};
-use crate::results::Results;
+use crate::results::{About, Pair, Part, Results};
 use crate::{Error, Result};
 
 const PAGE: &str = include_str!("assets/page.html");
@@ -188,6 +188,15 @@ fn counts(findings: &Findings) -> String {
 
 fn model(results: &Results) -> String {
     let about = &results.about;
+    let part = |p: &Part| [p.name.clone(), p.material.clone(), format!("{:.3}", p.mass)];
+    let parts = table(["part", "material", "mass, kg"], about.parts.iter().map(part));
+    let pair = |p: &Pair| [p.name.clone(), kind(p).into(), p.n_points.to_string()];
+    let pairs = table(["contact pair", "kind", "points"], about.pairs.iter().map(pair));
+    format!("<dl>{}</dl>\n<div class=\"over\">{parts}{pairs}</div>", facts(about))
+}
+
+/// What was analysed, by what.
+fn facts(about: &About) -> String {
     let row = |name: &str, text: String| format!("<dt>{name}</dt><dd>{text}</dd>\n");
     let file = |name: &str, digest: &str| {
         format!("{}<br><span class=\"digest\">SHA-256 {}</span>", escaped(name), escaped(digest))
@@ -197,59 +206,33 @@ fn model(results: &Results) -> String {
         rows += &row("Mesh", file(&about.mesh, &about.mesh_digest));
         rows += &row("Size", format!("{} nodes, {} tetrahedra", about.n_nodes, about.n_tets));
     }
-    rows += &row(
-        "Solved",
-        format!(
-            "{} equations on {} rank{}",
-            about.n_equations,
-            about.n_ranks,
-            if about.n_ranks == 1 { "" } else { "s" }
-        ),
-    );
+    let plural = if about.n_ranks == 1 { "" } else { "s" };
+    rows += &row("Solved", format!("{} equations on {} rank{plural}", about.n_equations, about.n_ranks));
     rows += &row("Command", format!("<code>squeal {}</code>", escaped(&about.command)));
     rows += &row("Program", escaped(&about.program));
-    rows += &row("Libraries", escaped(&about.libraries));
-    let parts: String = about
-        .parts
-        .iter()
-        .map(|p| {
-            format!(
-                "<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{:.3}</td></tr>",
-                escaped(&p.name),
-                escaped(&p.material),
-                p.mass
-            )
-        })
-        .collect();
-    let kind = |sliding, swept| match (sliding, swept) {
+    rows + &row("Libraries", escaped(&about.libraries))
+}
+
+fn kind(pair: &Pair) -> &'static str {
+    match (pair.sliding, pair.swept) {
         (true, true) => "slides, friction swept",
         (true, false) => "slides",
         (false, true) => "sticks, friction swept",
         (false, false) => "sticks up to its friction",
+    }
+}
+
+/// A table of two texts and a number a row; nothing without rows.
+fn table([a, b, c]: [&str; 3], rows: impl Iterator<Item = [String; 3]>) -> String {
+    let row = |[a, b, c]: [String; 3]| {
+        format!("<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{c}</td></tr>", escaped(&a), escaped(&b))
     };
-    let pairs: String = about
-        .pairs
-        .iter()
-        .map(|p| {
-            format!(
-                "<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{}</td></tr>",
-                escaped(&p.name),
-                kind(p.sliding, p.swept),
-                p.n_points
-            )
-        })
-        .collect();
-    let table = |heads: [&str; 3], rows: String| match rows.is_empty() {
-        true => String::new(),
-        false => format!(
-            "<table><thead><tr><th class=\"left\">{}</th><th class=\"left\">{}</th><th>{}</th></tr></thead><tbody>{rows}</tbody></table>",
-            heads[0], heads[1], heads[2]
-        ),
-    };
+    let rows: String = rows.map(row).collect();
+    if rows.is_empty() {
+        return rows;
+    }
     format!(
-        "<dl>{rows}</dl>\n<div class=\"over\">{}{}</div>",
-        table(["part", "material", "mass, kg"], parts),
-        table(["contact pair", "kind", "points"], pairs)
+        "<table><thead><tr><th class=\"left\">{a}</th><th class=\"left\">{b}</th><th>{c}</th></tr></thead><tbody>{rows}</tbody></table>"
     )
 }
 

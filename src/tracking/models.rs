@@ -115,5 +115,5 @@ pub fn options() -> Options {
 /// Values from `from` to `to` about a step apart, rounded.
 pub fn values(from: f64, to: f64, step: f64) -> Vec<f64> {
     let n = ((to - from) / step).round().abs() as usize;
-    (0..=n).map(|i| ((from + (to - from) * i as f64 / n as f64) * 1e12).round() * 1e-12).collect()
+    (0..=n).map(|i| ((from + (to - from) * i as f64 / n as f64) * 1e12).round() / 1e12).collect()
 }

@@ -117,6 +117,7 @@ function showShape(viewer, motion, name) {
   byId("shape-title").textContent = `Mode shape at ${mode.frequency.toFixed(1)} Hz, \u03bc = ${mode.friction}`;
   byId("shape-mode").value = name;
   viewer.setShape(data.shapes[name]);
+  byId("legend-top").textContent = viewer.full < 0.995 ? `\u2265 ${viewer.full.toFixed(2)}` : "1";
   motion.redraw();
 }
 

@@ -3,7 +3,7 @@
 const VERTEX = `#version 300 es
 in vec3 place, re, im;
 uniform vec3 origin, centre;
-uniform float size, amplitude, phase, radius, zoom, aspect;
+uniform float size, amplitude, phase, radius, zoom, aspect, full;
 uniform vec2 pan;
 uniform mat3 turn;
 out vec3 eye;
@@ -14,7 +14,7 @@ void main() {
   float far = 6.0 * radius, near = 2.0 * radius, lens = 4.4 * zoom * min(1.0, aspect);
   q += vec3(pan * radius, -4.0 * radius);
   eye = q;
-  moved = sqrt(dot(re, re) + dot(im, im));
+  moved = sqrt(dot(re, re) + dot(im, im)) / full;
   gl_Position = vec4(lens * q.x / aspect, lens * q.y, ((far + near) * q.z + 2.0 * far * near) / (near - far), -q.z);
 }`;
 
@@ -35,6 +35,11 @@ void main() {
   vec3 light = normalize(vec3(0.25, 0.4, 1.0));
   colour = vec4(base * (0.45 + 0.62 * abs(dot(normal, light))), 1.0);
 }`;
+
+/** This share of the surface's nodes has colours of its own; what moves more, often one corner of a lining, is coloured like the largest of them. */
+const COLOURED = 0.98;
+/** So many times at most is a shape drawn larger for that. */
+const ENLARGED = 2.5;
 
 /** Edges sharper than this are drawn. */
 const CREASE = Math.cos((32 * Math.PI) / 180);
@@ -118,8 +123,11 @@ class Viewer {
   /** Takes another shape. */
   setShape(packed) {
     const gl = this.gl;
+    const parts = unpacked(packed, Int16Array);
+    const moved = Float32Array.from({ length: parts.length / 6 }, (_, i) => Math.hypot(...parts.subarray(6 * i, 6 * i + 6)) / 32767).sort();
+    this.full = moved[Math.floor(COLOURED * (moved.length - 1))] || 1;
     if (this.shape) gl.deleteBuffer(this.shape);
-    this.shape = this.attribute("re", unpacked(packed, Int16Array), gl.SHORT, 12, 0);
+    this.shape = this.attribute("re", parts, gl.SHORT, 12, 0);
     this.point("im", gl.SHORT, 12, 6);
   }
 
@@ -174,8 +182,8 @@ class Viewer {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix3fv(this.uniform("turn"), false, this.turn());
     gl.uniform2fv(this.uniform("pan"), this.pan);
-    const amplitude = this.amplitude * 2 * this.radius;
-    const numbers = { aspect: w / h, zoom: this.zoom, phase: this.phase, amplitude };
+    const amplitude = this.amplitude * 2 * this.radius * Math.min(1 / this.full, ENLARGED);
+    const numbers = { aspect: w / h, zoom: this.zoom, phase: this.phase, amplitude, full: this.full };
     for (const [name, value] of Object.entries(numbers)) gl.uniform1f(this.uniform(name), value);
     gl.uniform1i(this.uniform("bySize"), this.bySize);
     this.drawParts(this.buffers[0], gl.TRIANGLES, (i) => this.surface.parts[i].slice(1).map((n) => 3 * n), (i) => rgbOf(PARTS[i % PARTS.length]));
