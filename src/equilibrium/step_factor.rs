@@ -16,12 +16,16 @@ use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3};
 use super::contacts::Contacts;
 use crate::Result;
 use crate::contact::Response;
-use crate::petsc::{Block, Factor, FactorKind, Matrix, Vector, linear};
+use crate::petsc::{Block, Factor, FactorKind, Matrix, Vector, linear, memory};
 
 /// Price of a right-hand side among many, in single solves: 0.09 s against 0.35 s on the full demo brake, two ranks.
 const BLOCKED_PRICE: f64 = 0.3;
-/// Right-hand sides that updates may keep: memory, n doubles each.
+/// Right-hand sides that updates may keep: more are not worth it, and each takes n doubles.
 const MAX_UPDATES: usize = 200;
+/// Right-hand sides solved for at a time.
+const AT_A_TIME: usize = 32;
+/// Share of the free memory that updates may take; while they grow there are two of them.
+const SHARE_OF_MEMORY: f64 = 0.4;
 /// A change of tangent this much smaller than the tangents themselves is GMRES's.
 const NEGLIGIBLE: f64 = 1e-6;
 
@@ -125,11 +129,11 @@ impl StepFactor {
     fn bring_up_to_date(&mut self, like: &Vector, contacts: &mut Contacts) -> Result<bool> {
         let flipped = |a: &usize| self.made_for[*a].status != self.current[*a].status;
         let kept = |a: usize| self.updated_for.get(a).is_some_and(|old| old.status == self.current[a].status);
-        let (mut dyads, mut columns) = (Vec::new(), Vec::new());
-        if let Some(Update { dyads: old, w, .. }) = self.update.take() {
+        let (mut dyads, mut w) = (Vec::new(), Block::zeros(like.comm(), like.n_local(), 0));
+        if let Some(Update { dyads: old, w: columns, .. }) = self.update.take() {
             for (j, dyad) in old.into_iter().enumerate() {
                 if flipped(&dyad.point) && kept(dyad.point) {
-                    columns.extend_from_slice(w.column(j));
+                    w.append(&columns.columns(j..j + 1));
                     dyads.push(dyad);
                 }
             }
@@ -139,28 +143,30 @@ impl StepFactor {
         let new: Vec<Dyad> =
             new.flat_map(|a| dyads_of(a, &self.made_for[a].tangent, &self.current[a].tangent)).collect();
         let price = BLOCKED_PRICE * new.len() as f64;
-        if dyads.len() + new.len() > MAX_UPDATES || self.spent + price > self.factor.solves_per_factorisation() {
+        if dyads.len() + new.len() > room(like) || self.spent + price > self.factor.solves_per_factorisation() {
             return Ok(false);
         }
         self.spent += price;
-        columns.extend_from_slice(self.responses_to(&new, like, contacts)?.values());
+        self.append_responses(&mut w, &new, contacts)?;
         dyads.extend(new);
         self.updated_for.clone_from(&self.current);
         if !dyads.is_empty() {
-            let w = Block::from_columns(like.comm(), like.n_local(), columns);
             let capacitance = capacitance(&dyads, &w, contacts)?.lu();
             self.update = Some(Update { dyads, w, capacitance });
         }
         Ok(true)
     }
 
-    /// `A_0^-1 B^T left` of each dyad.
-    fn responses_to(&self, dyads: &[Dyad], like: &Vector, contacts: &Contacts) -> Result<Block> {
-        let mut u = Block::zeros(like.comm(), like.n_local(), dyads.len());
-        for (j, dyad) in dyads.iter().enumerate() {
-            contacts.spread_into(dyad.point, dyad.left, 1.0, u.column_mut(j));
+    /// Appends `A_0^-1 B^T left` of each dyad.
+    fn append_responses(&self, w: &mut Block, dyads: &[Dyad], contacts: &Contacts) -> Result<()> {
+        for dyads in dyads.chunks(AT_A_TIME) {
+            let mut u = Block::zeros(w.comm(), w.n_local(), dyads.len());
+            for (j, dyad) in dyads.iter().enumerate() {
+                contacts.spread_into(dyad.point, dyad.left, 1.0, u.column_mut(j));
+            }
+            w.append(&u.solved_by(&self.factor)?);
         }
-        if dyads.is_empty() { Ok(u) } else { u.solved_by(&self.factor) }
+        Ok(())
     }
 
     /// The factor, to be made for points that do this; steps to come start from it.
@@ -181,6 +187,13 @@ impl StepFactor {
     pub(super) fn n_iterations(&self) -> usize {
         self.n_iterations
     }
+}
+
+/// How many columns an update may have. Collective.
+fn room(like: &Vector) -> usize {
+    let column_mb = 8.0 * like.comm().sum(like.n_local() as f64) / (1024.0 * 1024.0);
+    let room = SHARE_OF_MEMORY * memory::available_mb(like.comm()) / column_mb;
+    MAX_UPDATES.min(room as usize)
 }
 
 /// `x = A'^-1 b`.

@@ -25,6 +25,8 @@ pub struct Solver {
     shift: f64,
     /// For the blocked search, where it pays: a number for each of this rank's equations that does not depend on the ranks.
     labels: Option<Vec<u64>>,
+    /// What the last blocked search left.
+    start: Option<search::Start>,
     evidence: Evidence,
 }
 
@@ -318,7 +320,7 @@ impl Solver {
     /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up. In blocks if it is told how far
     /// `beyond` the end, and can; else by TOAR.
     fn search(
-        &self,
+        &mut self,
         pencil: &Pencil,
         (lu, shift): (&Factor, f64),
         n_modes: usize,
@@ -331,7 +333,7 @@ impl Solver {
         if let Some((labels, beyond)) = in_blocks.zip(beyond) {
             let problem = Problem { pencil, factor: lu, labels };
             let reach = beyond * end;
-            let outcome = search::solve(&problem, TAU * reach, n_modes, progress);
+            let outcome = search::solve(&problem, TAU * reach, n_modes, &mut self.start, progress);
             return match outcome {
                 Ok((Found { pairs, n_solves, .. }, errors)) => {
                     Ok(Some(Search { pairs, reach, n_solves, backward_errors: Some(errors) }))
@@ -340,6 +342,8 @@ impl Solver {
                 Err(error) => Err(error),
             };
         }
+        // Nobody goes on from there.
+        self.start = None;
         let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, factor: lu };
         let n_all = 2 * n_equations(pencil);
         let n_wanted = (2 * n_modes).min(n_all);

@@ -9,6 +9,9 @@
 //!    directions `K^-1 R` that V lacks have few that count (singular values fall by three decades in twenty), which random
 //!    combinations find: `K^-1 (R Omega)` joins V. Steps 2 and 3 repeat until every eigenvalue rests and every backward error is small.
 //!
+//! Where a search for a neighbouring problem went before, its Krylov space and its vectors are the space to begin with: no Krylov blocks,
+//! fewer rounds.
+//!
 //! Why: a pass over the factor is memory traffic for one right-hand side and arithmetic for 16, a quarter of the time each on
 //! two ranks, and so are the products with C and M. Generalised Davidson with
 //! `K^-1` for its preconditioner (Sleijpen, Booten, Fokkema and van der Vorst, BIT 36, 1996, section 4), its corrections compressed by a
@@ -27,6 +30,8 @@ use crate::{Error, Result};
 const KRYLOV_BLOCK: usize = 8;
 /// Columns of the Krylov space for each mode expected.
 const KRYLOV: f64 = 2.2;
+/// A Krylov space left by another search serves if it has this share of the columns of an own one.
+const ENOUGH: f64 = 0.8;
 /// Relative change of an eigenvalue from round to round at which it rests. A round wins a factor of three to five, so that the error
 /// left is below half the change.
 const REST: f64 = 1e-9;
@@ -48,8 +53,16 @@ fn n_krylov(n_modes: usize) -> usize {
     (KRYLOV * n_modes as f64) as usize + 2 * KRYLOV_BLOCK
 }
 
+/// What a search leaves to the next, whose problem differs a little: the Krylov space, which holds the shapes in and above the band, and the
+/// vectors found, with what damping does to them.
+pub struct Start {
+    krylov: Block,
+    vectors: Block,
+}
+
 /// All eigenpairs of the closed upper half plane with `|lambda| <= radius` (1/s), given about how many modes to expect there.
-/// With their backward errors. `progress` hears of (at rest, wanted, solves). Collective.
+/// With their backward errors. Begins with what the last search left, if there was one, and leaves its own. `progress` hears of
+/// (at rest, wanted, solves). Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] after too many rounds.
@@ -57,9 +70,10 @@ pub fn solve(
     problem: &Problem,
     radius: f64,
     n_expected: usize,
+    start: &mut Option<Start>,
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<(Found, Vec<f64>)> {
-    let mut space = krylov(problem, n_expected)?;
+    let (mut space, n_krylov) = begin(problem, n_expected, start.take())?;
     let mut last: Vec<Complex64> = Vec::new();
     for _ in 0..MAX_ROUNDS {
         let ritz = ritz(&space, radius, n_expected)?;
@@ -71,7 +85,9 @@ pub fn solve(
             let x = space.vectors(&ritz);
             let errors = backward_errors(problem.pencil, &lambdas, &x)?;
             if errors.iter().all(|&error| error <= BACKWARD_ERROR) {
-                return Ok((found(&lambdas, &x, space.n_solves)?, errors));
+                let found = found(&lambdas, &x, space.n_solves)?;
+                *start = Some(Start { krylov: space.v.columns(0..n_krylov), vectors: x });
+                return Ok((found, errors));
             }
         }
         let residuals = space.sketch(&worth_correcting(&ritz, rests))?;
@@ -85,6 +101,21 @@ pub fn solve(
 fn worth_correcting(ritz: &[Ritz], rests: impl Fn(&Ritz) -> bool) -> Vec<&Ritz> {
     let open: Vec<&Ritz> = ritz.iter().filter(|r| !rests(r)).collect();
     if open.is_empty() || 2 * open.len() > SKETCH { ritz.iter().collect() } else { open }
+}
+
+/// The space to begin with, and how many of its columns are a Krylov space.
+fn begin<'a>(problem: &Problem<'a>, n_expected: usize, start: Option<Start>) -> Result<(Space<'a>, usize)> {
+    let is_enough = |start: &Start| start.krylov.n_columns() as f64 >= ENOUGH * n_krylov(n_expected) as f64;
+    let Some(Start { krylov: from, vectors }) = start.filter(is_enough) else {
+        let space = krylov(problem, n_expected)?;
+        let n_columns = space.v.n_columns();
+        return Ok((space, n_columns));
+    };
+    let mut space = Space::new(*problem, Side::Right);
+    space.extend(from)?;
+    let n_columns = space.v.n_columns();
+    space.extend(vectors)?;
+    Ok((space, n_columns))
 }
 
 /// Krylov blocks of `K^-1 M`.
