@@ -17,6 +17,12 @@ pub fn available_mb(comm: &Comm) -> f64 {
     limits(comm).0
 }
 
+/// Whether the ranks together may reserve so much address space, MB, and use so much of it. Collective.
+pub(super) fn has_room(comm: &Comm, used_mb: f64, reserved_mb: f64) -> bool {
+    let each = -comm.max(-address_space_mb().unwrap_or(f64::INFINITY));
+    used_mb <= available_mb(comm) && reserved_mb <= each * comm.size() as f64
+}
+
 /// What the ranks together may still take, MB, and what limits it.
 fn limits(comm: &Comm) -> (f64, &'static str) {
     let own = machine_mb().unwrap_or(f64::INFINITY).min(group_mb().unwrap_or(f64::INFINITY));
