@@ -1,11 +1,14 @@
 //! Seconds, entries and memory of the stages on the demo brake: `cargo bench`, or `cargo bench -- meshes/brake-full.toml`.
 //!
+//! With `--factors` it ends after the factors and their solves, for comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for
+//! PORD, 5 for METIS.
+//!
 //! Not a timed test: it prints figures and judges nothing. Under mpirun run the executable that `cargo bench --no-run` names.
 
 use std::path::PathBuf;
 use std::time::Instant;
 
-use squeal::petsc::{Factor, FactorKind, Session};
+use squeal::petsc::{Block, Factor, FactorKind, Session};
 use squeal::sweep::{Brake, Sweep};
 
 fn main() -> squeal::Result<()> {
@@ -58,6 +61,17 @@ fn main() -> squeal::Result<()> {
         let start = Instant::now();
         factor.solve(&b, &mut x)?;
         tell(format!("  one solve                     {:8.3} s", start.elapsed().as_secs_f64()));
+        for n_columns in [8, 16, 24, 32, 64, 128] {
+            let block = Block::from_columns(&comm, b.n_local(), b.to_vec()?.repeat(n_columns));
+            let start = Instant::now();
+            block.solved_by(&factor)?;
+            let seconds = start.elapsed().as_secs_f64();
+            let each = seconds / n_columns as f64;
+            tell(format!("  {n_columns:3} right-hand sides at once  {seconds:8.3} s  {each:.4} s each"));
+        }
+    }
+    if std::env::args().any(|argument| argument == "--factors") {
+        return Ok(());
     }
 
     let mut sweep = Sweep::new(&system, &brake.interface)?;

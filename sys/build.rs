@@ -19,7 +19,7 @@ const FUNCTIONS: &[&str] = &[
     "VecScatter(Create|CreateToAll|CreateToZero|Begin|End|Destroy)",
     "IS(CreateGeneral|CreateStride|Destroy)",
     "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
-    "Mat(CreateSeqAIJWithArrays|CreateMPIAIJWithSplitArrays|MPIAIJGetSeqAIJ|SeqAIJGetArray|SeqAIJRestoreArray|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|ConvertIfNeeded)",
+    "Mat(CreateSeqAIJWithArrays|CreateMPIAIJWithSplitArrays|MPIAIJGetSeqAIJ|SeqAIJGetArray|SeqAIJRestoreArray|SeqAIJGetArrayRead|SeqAIJRestoreArrayRead|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|GetRowIJ|RestoreRowIJ|ConvertIfNeeded)",
     "Mat(MatMult|TransposeMatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseGetArrayRead|DenseRestoreArrayRead|Convert|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
     "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
     "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",

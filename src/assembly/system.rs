@@ -137,7 +137,7 @@ impl System {
     /// PETSc's.
     pub fn nodal(&self, vectors: &[&Vector]) -> Result<Vec<Vec<[f64; 3]>>> {
         let all: Vec<i32> = self.dofs.all().collect();
-        let mut gather = Gather::new(&self.load, &all)?;
+        let gather = Gather::new(&self.load, &all)?;
         vectors.iter().map(|v| gather.run(v, |values| self.dofs.nodal(values))).collect()
     }
 }

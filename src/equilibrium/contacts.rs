@@ -76,7 +76,7 @@ impl<'a> Contacts<'a> {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn gaps(&mut self, u: &Vector) -> Result<Vec<[f64; 3]>> {
+    pub fn gaps(&self, u: &Vector) -> Result<Vec<[f64; 3]>> {
         let (trace, places) = (&self.interface.trace, &self.places);
         self.gather.run(u, |values| {
             let value = |place: i32| if place < 0 { 0.0 } else { values[place as usize] };
@@ -88,7 +88,7 @@ impl<'a> Contacts<'a> {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn respond(&mut self, u: &Vector, stage: &Stage) -> Result<Vec<Response>> {
+    pub fn respond(&self, u: &Vector, stage: &Stage) -> Result<Vec<Response>> {
         let gaps = self.gaps(u)?;
         Ok(gaps.iter().enumerate().map(|(a, g)| self.interface.respond(a, *g, stage)).collect())
     }

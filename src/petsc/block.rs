@@ -1,5 +1,6 @@
 //! Blocks of vectors: one pass over a matrix or a factor for many right-hand sides.
 
+use std::ops::Range;
 use std::ptr;
 
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -9,6 +10,9 @@ use super::dense;
 use super::error::check;
 use super::{Comm, Factor, Matrix, Vector};
 use crate::Result;
+
+/// Right-hand sides in a pass over a factor: on the full demo brake, two ranks, 0.080 s each with 8, 0.072 s with 32, 0.091 s with 64.
+const AT_ONCE: usize = 32;
 
 /// Columns distributed over the ranks by rows, column-major on each.
 #[derive(Clone)]
@@ -35,18 +39,19 @@ impl Drop for View {
 }
 
 impl View {
-    fn new(block: &Block, values: *mut f64) -> Result<View> {
+    /// Of some columns of a block with these values.
+    fn new(block: &Block, columns: Range<usize>, values: *mut f64) -> Result<View> {
         let mut raw = ptr::null_mut();
-        let (rows, columns) = (block.n_local as i32, block.n_columns as i32);
-        // SAFETY: `values` has `n_local x n_columns` entries and outlives the view.
+        let (rows, n_columns) = (block.n_local as i32, columns.len() as i32);
+        // SAFETY: `values` has `n_local x n_columns` entries from the first column on and outlives the view.
         unsafe {
             check(sys::MatCreateDense(
                 block.comm.raw(),
                 rows,
                 super::DETERMINE,
                 super::DETERMINE,
-                columns,
-                values,
+                n_columns,
+                values.add(columns.start * block.n_local),
                 &mut raw,
             ))?;
             let view = View { raw };
@@ -117,7 +122,7 @@ impl Block {
     }
 
     /// A part of the columns. Not collective.
-    pub fn columns(&self, range: std::ops::Range<usize>) -> Block {
+    pub fn columns(&self, range: Range<usize>) -> Block {
         let values = self.values[range.start * self.n_local..range.end * self.n_local].to_vec();
         Block { comm: self.comm.clone(), n_local: self.n_local, n_columns: range.len(), values }
     }
@@ -135,7 +140,7 @@ impl Block {
     /// # Errors
     /// PETSc's.
     pub fn multiplied_by(&self, a: &Matrix) -> Result<Block> {
-        self.product(a, sys::MatMatMult)
+        if a.is_dense()? { self.product(a, sys::MatMatMult) } else { a.times(self) }
     }
 
     /// `A^T self`.
@@ -150,7 +155,7 @@ impl Block {
         if self.n_columns == 0 {
             return Ok(self.clone());
         }
-        let view = View::new(self, self.values.as_ptr().cast_mut())?;
+        let view = View::new(self, 0..self.n_columns, self.values.as_ptr().cast_mut())?;
         let mut product = ptr::null_mut();
         // SAFETY: the multiplication reads `view` only and creates `product`, which is read and destroyed here.
         unsafe {
@@ -165,7 +170,7 @@ impl Block {
         }
     }
 
-    /// `A^-1 self`, all columns in one pass over the factor.
+    /// `A^-1 self`, many columns in each pass over the factor.
     ///
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
@@ -187,11 +192,13 @@ impl Block {
             dense.solve(&mut solution.values, transposed);
             return Ok(solution);
         }
-        let b = View::new(self, self.values.as_ptr().cast_mut())?;
-        let pointer = solution.values.as_mut_ptr();
-        let x = View::new(&solution, pointer)?;
-        factor.solve_dense(b.raw, x.raw, self.n_columns, transposed)?;
-        drop(x);
+        for first in (0..self.n_columns).step_by(AT_ONCE) {
+            let columns = first..(first + AT_ONCE).min(self.n_columns);
+            let b = View::new(self, columns.clone(), self.values.as_ptr().cast_mut())?;
+            let pointer = solution.values.as_mut_ptr();
+            let x = View::new(&solution, columns.clone(), pointer)?;
+            factor.solve_dense(b.raw, x.raw, columns.len(), transposed)?;
+        }
         Ok(solution)
     }
 
@@ -279,6 +286,15 @@ impl Block {
     /// Zeros in the same layout.
     fn like(&self, n_columns: usize) -> Block {
         Block::zeros(&self.comm, self.n_local, n_columns)
+    }
+
+    /// `self -= other coefficients`, with column-major coefficients. Not collective.
+    ///
+    /// # Panics
+    /// Where the coefficients do not have as many rows as `other` has columns.
+    pub fn subtract(&mut self, other: &Block, coefficients: &[f64]) {
+        let sizes = [self.n_local, other.n_columns, self.n_columns];
+        dense::subtract_product(sizes, &other.values, coefficients, &mut self.values);
     }
 
     /// `self += a other`. Not collective.

@@ -9,13 +9,33 @@ use crate::{Error, Result};
 ///
 /// # Panics
 /// Where the slices do not have those sizes.
-pub fn multiply(transposed: bool, [rows, inner, columns]: [usize; 3], a: &[f64], b: &[f64], c: &mut [f64]) {
-    assert_eq!((a.len(), b.len(), c.len()), (rows * inner, inner * columns, rows * columns));
-    if rows == 0 || columns == 0 {
-        return;
-    }
-    if inner == 0 {
+pub fn multiply(transposed: bool, sizes: [usize; 3], a: &[f64], b: &[f64], c: &mut [f64]) {
+    if sizes[1] == 0 {
         return c.fill(0.0);
+    }
+    update(transposed, sizes, [1.0, 0.0], a, b, c);
+}
+
+/// `C -= A B` with A of `rows x inner`, B of `inner x columns`. Not collective.
+///
+/// # Panics
+/// Where the slices do not have those sizes.
+pub fn subtract_product(sizes: [usize; 3], a: &[f64], b: &[f64], c: &mut [f64]) {
+    update(false, sizes, [-1.0, 1.0], a, b, c);
+}
+
+/// `C = alpha op(A) B + beta C`
+fn update(
+    transposed: bool,
+    [rows, inner, columns]: [usize; 3],
+    [alpha, beta]: [f64; 2],
+    a: &[f64],
+    b: &[f64],
+    c: &mut [f64],
+) {
+    assert_eq!((a.len(), b.len(), c.len()), (rows * inner, inner * columns, rows * columns));
+    if rows == 0 || columns == 0 || inner == 0 {
+        return;
     }
     let [m, k, n] = [rows as i32, inner as i32, columns as i32];
     let (op, lda) = if transposed { (c"T", k) } else { (c"N", m) };
@@ -27,12 +47,12 @@ pub fn multiply(transposed: bool, [rows, inner, columns]: [usize; 3], a: &[f64],
             &m,
             &n,
             &k,
-            &1.0,
+            &alpha,
             a.as_ptr(),
             &lda,
             b.as_ptr(),
             &k,
-            &0.0,
+            &beta,
             c.as_mut_ptr(),
             &m,
         );

@@ -1,11 +1,12 @@
 //! Distributed sparse matrices (AIJ).
 
+use std::cell::OnceCell;
 use std::ptr;
 
 use squeal_sys as sys;
 
 use super::error::check;
-use super::{Comm, Vector};
+use super::{Comm, Gather, Vector};
 use crate::Result;
 
 /// The pattern of some rows, compressed by rows.
@@ -52,7 +53,23 @@ pub struct Matrix {
     raw: sys::Mat,
     comm: Comm,
     n_local: usize,
+    /// Brings the entries of vectors that other ranks own and this rank's rows need; made with the first product.
+    ghosts: OnceCell<Gather>,
 }
+
+/// Some columns of this rank's rows, compressed by rows.
+#[derive(Clone, Copy)]
+pub(super) struct Part<'a> {
+    /// Where each row starts, and the end of the last.
+    pub offsets: &'a [i32],
+    /// Columns, counted within the part.
+    pub columns: &'a [i32],
+    /// The entries.
+    pub values: &'a [f64],
+}
+
+/// The part of a rank that needs no columns of others.
+const NOTHING: Part = Part { offsets: &[], columns: &[], values: &[] };
 
 impl Drop for Matrix {
     fn drop(&mut self) {
@@ -94,7 +111,7 @@ impl Matrix {
                 ),
             };
             check(code)?;
-            let borrowed = Matrix { raw: borrowed, comm: comm.clone(), n_local: n as usize };
+            let borrowed = Matrix { raw: borrowed, comm: comm.clone(), n_local: n as usize, ghosts: OnceCell::new() };
             borrowed.copy(sys::MatDuplicateOption::MAT_DO_NOT_COPY_VALUES)
         }
     }
@@ -111,7 +128,7 @@ impl Matrix {
         let mut raw = ptr::null_mut();
         // SAFETY: the handle is alive.
         check(unsafe { sys::MatDuplicate(self.raw, what, &mut raw) })?;
-        let copy = Matrix { raw, comm: self.comm.clone(), n_local: self.n_local };
+        let copy = Matrix { raw, comm: self.comm.clone(), n_local: self.n_local, ghosts: OnceCell::new() };
         copy.set_option(sys::MatOption::MAT_IGNORE_OFF_PROC_ENTRIES, true)?;
         copy.set_option(sys::MatOption::MAT_NEW_NONZERO_LOCATION_ERR, true)?;
         Ok(copy)
@@ -133,12 +150,50 @@ impl Matrix {
 
     /// The values of the one or two sequential matrices behind this one.
     fn values<'a>(&mut self) -> Result<[&'a mut [f64]; 2]> {
-        let (mut own, mut other) = (self.raw, ptr::null_mut());
-        if self.comm.size() > 1 {
-            // SAFETY: the matrix is of the parallel type; it keeps its two parts.
-            check(unsafe { sys::MatMPIAIJGetSeqAIJ(self.raw, &mut own, &mut other, ptr::null_mut()) })?;
-        }
+        let (own, other, _) = self.sequential()?;
         Ok([values(own)?, values(other)?])
+    }
+
+    /// The matrix of the columns that this rank owns, that of others' columns, and the global numbers of the latter's; the last two are null
+    /// on one rank.
+    fn sequential(&self) -> Result<(sys::Mat, sys::Mat, *const i32)> {
+        let (mut own, mut other, mut numbers) = (self.raw, ptr::null_mut(), ptr::null());
+        if self.comm.size() > 1 {
+            // SAFETY: the matrix is of the parallel type; it keeps its two parts and the numbers.
+            check(unsafe { sys::MatMPIAIJGetSeqAIJ(self.raw, &mut own, &mut other, &mut numbers) })?;
+        }
+        Ok((own, other, numbers))
+    }
+
+    /// Lends this rank's rows: the columns that it owns, and all others. Not collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub(super) fn with_parts<T>(&self, look: impl FnOnce([Part; 2]) -> T) -> Result<T> {
+        let (own, other, _) = self.sequential()?;
+        with_part(own, |own| match other.is_null() {
+            true => Ok(look([own, NOTHING])),
+            false => with_part(other, |other| Ok(look([own, other]))),
+        })
+    }
+
+    /// What brings the entries of a vector like `from` that other ranks own and this rank's rows need. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub(super) fn ghosts(&self, from: &Vector) -> Result<&Gather> {
+        if self.ghosts.get().is_none() {
+            let (_, other, numbers) = self.sequential()?;
+            let (mut rows, mut n) = (0, 0);
+            // SAFETY: there are as many numbers as columns.
+            let numbers = unsafe {
+                check(sys::MatGetSize(other, &mut rows, &mut n))?;
+                if n == 0 { &[] } else { std::slice::from_raw_parts(numbers, n as usize) }
+            };
+            let gather = Gather::new(from, numbers)?;
+            return Ok(self.ghosts.get_or_init(|| gather));
+        }
+        Ok(self.ghosts.get().expect("looked at above"))
     }
 
     /// A full square matrix of `n` rows from its values by rows, on one rank.
@@ -172,15 +227,22 @@ impl Matrix {
         })
     }
 
+    /// Whether all entries are stored, also zeros: [`Matrix::store_dense`]. Not collective.
+    pub(super) fn is_dense(&self) -> Result<bool> {
+        let mut is_dense = sys::PetscBool::PETSC_FALSE;
+        // SAFETY: the handle is alive and the name static.
+        check(unsafe { sys::PetscObjectTypeCompare(self.raw.cast(), c"seqdense".as_ptr(), &mut is_dense) })?;
+        Ok(is_dense == sys::PetscBool::PETSC_TRUE)
+    }
+
     /// The entries by columns where they are stored densely. Not collective.
     pub(super) fn dense_values(&self) -> Result<Option<Vec<f64>>> {
-        let (mut is_dense, mut pointer) = (sys::PetscBool::PETSC_FALSE, ptr::null());
+        if !self.is_dense()? {
+            return Ok(None);
+        }
+        let mut pointer = ptr::null();
         // SAFETY: the array is valid between Get and Restore, for `n_local` columns of as many rows.
         unsafe {
-            check(sys::PetscObjectTypeCompare(self.raw.cast(), c"seqdense".as_ptr(), &mut is_dense))?;
-            if is_dense == sys::PetscBool::PETSC_FALSE {
-                return Ok(None);
-            }
             check(sys::MatDenseGetArrayRead(self.raw, &mut pointer))?;
             let values = std::slice::from_raw_parts(pointer, self.n_local * self.n_local).to_vec();
             check(sys::MatDenseRestoreArrayRead(self.raw, &mut pointer))?;
@@ -341,5 +403,30 @@ fn values<'a>(raw: sys::Mat) -> Result<&'a mut [f64]> {
         check(sys::MatSeqAIJRestoreArray(raw, &mut pointer))?;
         let n = info.nz_used as usize;
         Ok(if n == 0 { &mut [] } else { std::slice::from_raw_parts_mut(array, n) })
+    }
+}
+
+/// Lends a sequential matrix.
+fn with_part<T>(raw: sys::Mat, look: impl FnOnce(Part) -> Result<T>) -> Result<T> {
+    let (no, mut done) = (sys::PetscBool::PETSC_FALSE, sys::PetscBool::PETSC_FALSE);
+    let (mut n, mut offsets, mut columns, mut values) = (0, ptr::null(), ptr::null(), ptr::null());
+    // SAFETY: the arrays belong to the matrix and stay where they are until they are given back.
+    unsafe {
+        check(sys::MatGetRowIJ(raw, 0, no, no, &mut n, &mut offsets, &mut columns, &mut done))?;
+        check(sys::MatSeqAIJGetArrayRead(raw, &mut values))?;
+        let offsets_read = std::slice::from_raw_parts(offsets, n as usize + 1);
+        let n_entries = offsets_read[n as usize] as usize;
+        let part = match n_entries {
+            0 => Part { offsets: offsets_read, ..NOTHING },
+            _ => Part {
+                offsets: offsets_read,
+                columns: std::slice::from_raw_parts(columns, n_entries),
+                values: std::slice::from_raw_parts(values, n_entries),
+            },
+        };
+        let outcome = look(part);
+        check(sys::MatSeqAIJRestoreArrayRead(raw, &mut values))?;
+        check(sys::MatRestoreRowIJ(raw, 0, no, no, &mut n, &mut offsets, &mut columns, &mut done))?;
+        outcome
     }
 }

@@ -21,6 +21,7 @@ pub mod memory;
 mod metis;
 mod noise;
 pub mod nonlinear;
+mod product;
 mod session;
 mod vector;
 

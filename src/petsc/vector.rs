@@ -235,7 +235,7 @@ impl Gather {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn run<T>(&mut self, from: &Vector, read: impl FnOnce(&[f64]) -> T) -> Result<T> {
+    pub fn run<T>(&self, from: &Vector, read: impl FnOnce(&[f64]) -> T) -> Result<T> {
         let (insert, forward) = (sys::InsertMode::INSERT_VALUES, sys::ScatterMode::SCATTER_FORWARD);
         // SAFETY: all handles are alive.
         unsafe {

@@ -26,7 +26,7 @@ pub(super) struct Linear {
 impl Linear {
     pub(super) fn new(structure: &Structure, retained: &Trace, contacts: &[usize]) -> Result<Linear> {
         let Structure { system, interface, equilibrium, .. } = structure;
-        let mut evaluation = Contacts::new(interface, system)?;
+        let evaluation = Contacts::new(interface, system)?;
         let gaps = evaluation.gaps(&equilibrium.u)?;
         let none = vec![0.0; interface.pairs.len()];
         let slides = |a: usize| interface.pairs[interface.points[a].pair].is_sliding();

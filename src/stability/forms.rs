@@ -92,7 +92,7 @@ pub fn of_contacts(
 ) -> Result<Vec<Forms>> {
     let interface = contacts.interface();
     let at = contacts.gaps(&equilibrium.u)?;
-    let mut gaps = |v: Complex| {
+    let gaps = |v: Complex| {
         let (re, im) = (contacts.gaps(v.re)?, contacts.gaps(v.im)?);
         let complex = |(re, im): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|i| Complex64::new(re[i], im[i]));
         Ok(re.iter().zip(&im).map(complex).collect::<Vec<_>>())
