@@ -30,27 +30,6 @@ fn both(model: &Path, friction: f64) -> [Vec<Mode>; 2] {
     [one_by_one.modes, in_blocks.modes]
 }
 
-/// Modes of a model at one friction by TOAR and by blocks that begin with the modes of another friction.
-fn both_after(model: &Path, before: f64, friction: f64) -> [Vec<Mode>; 2] {
-    let comm = Session::start(&[]).unwrap();
-    let brake = Brake::read(&comm, model).unwrap();
-    let families = brake.families().unwrap();
-    let system = brake.assemble(&comm, &families).unwrap();
-    let modes = |sweep: &mut Sweep, friction: f64| {
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
-        let found = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
-        assert!(found.count.agrees());
-        found
-    };
-    let sweep = || Sweep::new(&system, &brake.interface).unwrap();
-    let (mut by_one, mut by_blocks) = (sweep(), sweep());
-    by_blocks.search_in_blocks();
-    let (first, second) = (modes(&mut by_blocks, before), modes(&mut by_blocks, friction));
-    println!("{} solves, then {}", first.n_solves, second.n_solves);
-    assert!(second.n_solves < first.n_solves, "a start saves solves");
-    [modes(&mut by_one, friction).modes, second.modes]
-}
-
 /// Largest distance of eigenvalues, relative to their moduli.
 fn distance([one_by_one, in_blocks]: &[Vec<Mode>; 2]) -> f64 {
     assert_eq!(one_by_one.len(), in_blocks.len());
@@ -73,9 +52,4 @@ fn eigensolvers_agree_on_a_damped_brake() {
 #[test]
 fn eigensolvers_agree_where_undamped_modes_couple() {
     assert!(distance(&both(&data("pads_on_disc.toml"), 0.6)) < 1e-9);
-}
-
-#[test]
-fn modes_of_one_friction_lead_to_those_of_another() {
-    assert!(distance(&both_after(&data("pads_on_disc.toml"), 0.5, 0.6)) < 1e-9);
 }

@@ -9,7 +9,7 @@ use super::condition::condition;
 use super::inertia::Inertia;
 use super::mode::backward_errors;
 use super::search;
-use super::space::Problem;
+use super::space::{Basis, Problem};
 use super::{Mode, Pencil};
 use crate::assembly::System;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
@@ -25,8 +25,8 @@ pub struct Solver {
     shift: f64,
     /// For the blocked search, where it pays: a number for each of this rank's equations that does not depend on the ranks.
     labels: Option<Vec<u64>>,
-    /// What the last blocked search left.
-    start: Option<search::Start>,
+    /// The space of the last blocked search, which holds the vectors of its modes.
+    basis: Option<Basis>,
     evidence: Evidence,
 }
 
@@ -151,6 +151,7 @@ pub fn solve(
     band: [f64; 2],
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Band> {
+    solver.basis = None;
     let available_mb = || memory::available_mb(pencil.k.comm());
     if SYMMETRIC_OVER_LU * lu.stats().used_mb > available_mb() && !solver.inertia.is_made() {
         lu.release();
@@ -159,8 +160,7 @@ pub fn solve(
     if !lu.is_made() && solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU > available_mb() {
         solver.inertia.release();
     }
-    let mut shift = solver.shift;
-    factorise_shifted(pencil, lu, shift)?;
+    factorise_shifted(pencil, lu, solver.shift)?;
     let (mut n_solves, mut last, mut gave_up) = (0, None, false);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
@@ -168,11 +168,11 @@ pub fn solve(
             solver.inertia.release();
         }
         let beyond = BEYOND.get(attempt as usize).filter(|_| !gave_up);
-        let Some(search) = solver.search(pencil, (lu, shift), expected + margin, band[1], beyond, progress)? else {
+        let Some(search) = solver.search(pencil, lu, expected + margin, band[1], beyond, progress)? else {
             gave_up = true;
-            if shift != 0.0 {
-                shift *= ELSEWHERE;
-                factorise_shifted(pencil, lu, shift)?;
+            if solver.shift != 0.0 {
+                solver.shift *= ELSEWHERE;
+                factorise_shifted(pencil, lu, solver.shift)?;
             }
             continue;
         };
@@ -317,33 +317,43 @@ impl Solver {
         }
     }
 
+    /// The real shift about which was searched last, 1/s: the factor is that of `sigma^2 M + sigma C + K`.
+    pub fn shift(&self) -> f64 {
+        self.shift
+    }
+
+    /// The space of the last search, for left vectors of what was found; none where it was made by TOAR.
+    pub fn take_basis(&mut self) -> Option<Basis> {
+        self.basis.take()
+    }
+
     /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up. In blocks if it is told how far
     /// `beyond` the end, and can; else by TOAR.
     fn search(
         &mut self,
         pencil: &Pencil,
-        (lu, shift): (&Factor, f64),
+        lu: &Factor,
         n_modes: usize,
         end: f64,
         beyond: Option<&f64>,
         progress: &mut dyn FnMut(usize, usize, usize),
     ) -> Result<Option<Search>> {
+        let shift = self.shift;
         let room = memory::available_mb(pencil.k.comm()) / search::needs_mb(n_modes, n_equations(pencil));
         let in_blocks = self.labels.as_ref().filter(|_| shift == 0.0 && room > 1.0);
         if let Some((labels, beyond)) = in_blocks.zip(beyond) {
-            let problem = Problem { pencil, factor: lu, labels };
+            let problem = Problem { pencil, factor: lu, shift, labels };
             let reach = beyond * end;
-            let outcome = search::solve(&problem, TAU * reach, n_modes, &mut self.start, progress);
+            let outcome = search::solve(&problem, TAU * reach, n_modes, progress);
             return match outcome {
-                Ok((Found { pairs, n_solves, .. }, errors)) => {
+                Ok((Found { pairs, n_solves, .. }, errors, basis)) => {
+                    self.basis = Some(basis);
                     Ok(Some(Search { pairs, reach, n_solves, backward_errors: Some(errors) }))
                 }
                 Err(Error::NotConverged(_)) => Ok(None),
                 Err(error) => Err(error),
             };
         }
-        // Nobody goes on from there.
-        self.start = None;
         let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, factor: lu };
         let n_all = 2 * n_equations(pencil);
         let n_wanted = (2 * n_modes).min(n_all);

@@ -1,7 +1,8 @@
 //! Left vectors of the modes: `y^H P(lambda) = 0`.
 //!
 //! With `v = conj(y)` that is `P(lambda)^T v = 0`, the transposed problem at an eigenvalue that is known. Friction alone makes
-//! K differ from its transpose, so the right vectors span a start V. A round finds each vector anew in V, by inverse iteration with
+//! K differ from its transpose, so the right vectors span a start V; better still, the space in which they were found, whose projections serve
+//! transposed. A round finds each vector anew in V, by inverse iteration with
 //! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as the search for the right
 //! vectors does ([`super::search`]). A vector is found when a round hardly moves it.
 
@@ -9,7 +10,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::Mode;
-use super::space::{Problem, Ritz, Side, Space};
+use super::space::{Basis, Problem, Ritz, Space};
 use crate::petsc::{Block, Matrix, dense};
 use crate::{Error, Result};
 
@@ -19,20 +20,27 @@ const ROUNDS: usize = 40;
 /// Relative steps away from an eigenvalue at which the problem is not singular.
 const NEIGHBOURS: [f64; 3] = [0.0, 1e-14, 1e-12];
 
-/// Left vectors of `modes`, columns `2i` and `2i + 1` the real and imaginary part of mode i, `y^H M y = 1`, with the `accuracy` that each is to
+/// Left vectors of `modes`, found in the space whose `basis` is given, columns `2i` and `2i + 1` the real and imaginary part of mode i, `y^H M y = 1`, with the `accuracy` that each is to
 /// have: relative, by the last round's change; where it is infinite, the columns are no left vector. Gives the number of solves, too. Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy.
-pub fn left_vectors(problem: &Problem, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<(Block, usize)> {
+pub fn left_vectors(
+    problem: &Problem,
+    modes: &[Mode],
+    basis: Option<Basis>,
+    accuracy: impl Fn(&Mode) -> f64,
+) -> Result<(Block, usize)> {
     let m = problem.pencil.m;
     let start = right_vectors(m, modes)?;
     let mut open: Vec<usize> = (0..modes.len()).filter(|&i| accuracy(&modes[i]).is_finite()).collect();
     if open.is_empty() {
         return Ok((start, 0));
     }
-    let mut space = Space::new(*problem, Side::Left);
-    space.extend(start.clone())?;
+    let mut space = match basis {
+        Some(basis) => Space::of_left_vectors(*problem, basis),
+        None => Space::spanned(*problem, start.clone())?,
+    };
     let mut vectors = start_from(&space, modes, &start);
     for round in 0..ROUNDS {
         open.retain(|&i| {

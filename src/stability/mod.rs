@@ -22,4 +22,4 @@ pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::{left_vectors, right_vectors};
 pub use linearise::{Linearised, with_friction_damping};
 pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO, growth_threshold};
-pub use space::Problem;
+pub use space::{Basis, Problem};

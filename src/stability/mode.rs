@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 
 use crate::Result;
+use crate::algebra::dot;
 use crate::equilibrium::Contacts;
 use crate::petsc::{Block, Matrix, Vector};
 
@@ -35,6 +36,27 @@ pub struct Points<'a> {
     pub contacts: &'a Contacts<'a>,
     /// Tangent without friction's coupling of each point, N/m.
     pub tangents: &'a [[[f64; 3]; 3]],
+    /// The points whose tangent D, with friction, is not symmetric, with `D - D^T`, N/m: all that makes the stiffness unsymmetric.
+    pub skew: &'a [(usize, [[f64; 3]; 3])],
+}
+
+impl Pencil<'_> {
+    /// `K^T X`, given `K X`: with contact points `K X - B^T (D - D^T) B X`, which takes their entries alone. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub(super) fn transposed_stiffness_times(&self, x: &Block, kx: &Block) -> Result<Block> {
+        let Some(Points { contacts, skew, .. }) = self.points else { return x.multiplied_by_transpose(self.k) };
+        let mut product = kx.clone();
+        for j in 0..x.n_columns() {
+            let gaps = contacts.gaps(&x.vector(j)?)?;
+            for &(a, difference) in skew {
+                let force = difference.map(|row| dot(row, gaps[a]));
+                contacts.spread_into(a, force, -1.0, product.column_mut(j));
+            }
+        }
+        Ok(product)
+    }
 }
 
 /// An eigenvalue with non-negative frequency, its vector, and how well the two solve the problem.

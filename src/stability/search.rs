@@ -9,9 +9,6 @@
 //!    directions `K^-1 R` that V lacks have few that count (singular values fall by three decades in twenty), which random
 //!    combinations find: `K^-1 (R Omega)` joins V. Steps 2 and 3 repeat until every eigenvalue rests and every backward error is small.
 //!
-//! Where a search for a neighbouring problem went before, its Krylov space and its vectors are the space to begin with: no Krylov blocks,
-//! fewer rounds.
-//!
 //! Why: a pass over the factor is memory traffic for one right-hand side and arithmetic for 16, a quarter of the time each on
 //! two ranks, and so are the products with C and M. Generalised Davidson with
 //! `K^-1` for its preconditioner (Sleijpen, Booten, Fokkema and van der Vorst, BIT 36, 1996, section 4), its corrections compressed by a
@@ -21,30 +18,31 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::mode::backward_errors;
-use super::space::{Problem, Ritz, SKETCH, Side, Space};
+use super::space::{Basis, Problem, Ritz, SKETCH, Side, Space};
 use crate::petsc::eigen::{self, Found, Pair, Quadratic};
-use crate::petsc::{Block, Factor, FactorKind, Matrix};
+use crate::petsc::{Factor, FactorKind, Matrix};
 use crate::{Error, Result};
 
 /// Columns of a Krylov block.
 const KRYLOV_BLOCK: usize = 8;
 /// Columns of the Krylov space for each mode expected.
 const KRYLOV: f64 = 2.2;
-/// A Krylov space left by another search serves if it has this share of the columns of an own one.
-const ENOUGH: f64 = 0.8;
 /// Relative change of an eigenvalue from round to round at which it rests. A round wins a factor of three to five, so that the error
 /// left is below half the change.
 const REST: f64 = 1e-9;
 /// Backward error of an eigenpair that is found.
 const BACKWARD_ERROR: f64 = 1e-10;
+/// Pairs whose vectors are looked at together.
+const PAIRS_AT_ONCE: usize = 16;
 /// Rounds of correction before the search is given up.
 const MAX_ROUNDS: usize = 40;
 /// How often the projected problem is asked for more eigenpairs than seem to be within the radius.
 const MARGINS: [usize; 4] = [8, 24, 72, 216];
 
-/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for ten rounds, and the vectors found.
+/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for seven rounds, the vectors found, and a round's
+/// right-hand sides, solutions and products.
 pub fn needs_mb(n_modes: usize, n_equations: usize) -> f64 {
-    let n_columns = n_krylov(n_modes) + 10 * SKETCH + 2 * n_modes;
+    let n_columns = n_krylov(n_modes) + (7 + 5) * SKETCH + 2 * n_modes;
     8.0 * (n_columns * n_equations) as f64 / (1024.0 * 1024.0)
 }
 
@@ -53,16 +51,8 @@ fn n_krylov(n_modes: usize) -> usize {
     (KRYLOV * n_modes as f64) as usize + 2 * KRYLOV_BLOCK
 }
 
-/// What a search leaves to the next, whose problem differs a little: the Krylov space, which holds the shapes in and above the band, and the
-/// vectors found, with what damping does to them.
-pub struct Start {
-    krylov: Block,
-    vectors: Block,
-}
-
 /// All eigenpairs of the closed upper half plane with `|lambda| <= radius` (1/s), given about how many modes to expect there.
-/// With their backward errors. Begins with what the last search left, if there was one, and leaves its own. `progress` hears of
-/// (at rest, wanted, solves). Collective.
+/// With their backward errors, and the space that holds them. `progress` hears of (at rest, wanted, solves). Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] after too many rounds.
@@ -70,52 +60,50 @@ pub fn solve(
     problem: &Problem,
     radius: f64,
     n_expected: usize,
-    start: &mut Option<Start>,
     progress: &mut dyn FnMut(usize, usize, usize),
-) -> Result<(Found, Vec<f64>)> {
-    let (mut space, n_krylov) = begin(problem, n_expected, start.take())?;
+) -> Result<(Found, Vec<f64>, Basis)> {
+    let mut space = krylov(problem, n_expected)?;
     let mut last: Vec<Complex64> = Vec::new();
     for _ in 0..MAX_ROUNDS {
         let ritz = ritz(&space, radius, n_expected)?;
         let rests = |r: &Ritz| last.iter().any(|z| (z - r.lambda).norm() <= REST * z.norm());
         let n_resting = ritz.iter().filter(|r| rests(r)).count();
         progress(n_resting, ritz.len(), space.n_solves);
-        let lambdas: Vec<Complex64> = ritz.iter().map(|r| r.lambda).collect();
-        if n_resting == ritz.len() && last.len() == ritz.len() {
-            let x = space.vectors(&ritz);
-            let errors = backward_errors(problem.pencil, &lambdas, &x)?;
-            if errors.iter().all(|&error| error <= BACKWARD_ERROR) {
-                let found = found(&lambdas, &x, space.n_solves)?;
-                *start = Some(Start { krylov: space.v.columns(0..n_krylov), vectors: x });
-                return Ok((found, errors));
-            }
+        if n_resting == ritz.len()
+            && last.len() == ritz.len()
+            && let Some((found, errors)) = accurate(&space, &ritz)?
+        {
+            return Ok((found, errors, space.into_basis()));
         }
         let residuals = space.sketch(&worth_correcting(&ritz, rests))?;
         space.extend_by_solves(&residuals)?;
-        last = lambdas;
+        last = ritz.iter().map(|r| r.lambda).collect();
     }
     Err(Error::NotConverged(format!("the eigensolver's corrections did not converge in {MAX_ROUNDS} rounds")))
+}
+
+/// The pairs with their backward errors; none where one of these is too large.
+fn accurate(space: &Space, ritz: &[Ritz]) -> Result<Option<(Found, Vec<f64>)>> {
+    let (mut pairs, mut errors) = (Vec::new(), Vec::new());
+    for ritz in ritz.chunks(PAIRS_AT_ONCE) {
+        let lambdas: Vec<Complex64> = ritz.iter().map(|r| r.lambda).collect();
+        let x = space.vectors(ritz);
+        errors.extend(backward_errors(space.pencil(), &lambdas, &x)?);
+        if errors.iter().any(|&error| error > BACKWARD_ERROR) {
+            return Ok(None);
+        }
+        for (i, &lambda) in lambdas.iter().enumerate() {
+            pairs.push(Pair { lambda, re: x.vector(2 * i)?, im: x.vector(2 * i + 1)? });
+        }
+    }
+    let n_converged = pairs.iter().map(|p| if p.lambda.im > 0.0 { 2 } else { 1 }).sum();
+    Ok(Some((Found { pairs, n_converged, n_solves: space.n_solves }, errors)))
 }
 
 /// All pairs, or only those that do not rest where these are few: then their residuals need no compression.
 fn worth_correcting(ritz: &[Ritz], rests: impl Fn(&Ritz) -> bool) -> Vec<&Ritz> {
     let open: Vec<&Ritz> = ritz.iter().filter(|r| !rests(r)).collect();
     if open.is_empty() || 2 * open.len() > SKETCH { ritz.iter().collect() } else { open }
-}
-
-/// The space to begin with, and how many of its columns are a Krylov space.
-fn begin<'a>(problem: &Problem<'a>, n_expected: usize, start: Option<Start>) -> Result<(Space<'a>, usize)> {
-    let is_enough = |start: &Start| start.krylov.n_columns() as f64 >= ENOUGH * n_krylov(n_expected) as f64;
-    let Some(Start { krylov: from, vectors }) = start.filter(is_enough) else {
-        let space = krylov(problem, n_expected)?;
-        let n_columns = space.v.n_columns();
-        return Ok((space, n_columns));
-    };
-    let mut space = Space::new(*problem, Side::Right);
-    space.extend(from)?;
-    let n_columns = space.v.n_columns();
-    space.extend(vectors)?;
-    Ok((space, n_columns))
 }
 
 /// Krylov blocks of `K^-1 M`.
@@ -149,13 +137,6 @@ fn ritz(space: &Space, radius: f64, n_expected: usize) -> Result<Vec<Ritz>> {
         }
     }
     Err(Error::NotConverged("the eigensolver's projected problem has too many modes in the band".into()))
-}
-
-fn found(lambdas: &[Complex64], x: &Block, n_solves: usize) -> Result<Found> {
-    let pair = |i: usize| Ok(Pair { lambda: lambdas[i], re: x.vector(2 * i)?, im: x.vector(2 * i + 1)? });
-    let pairs = (0..lambdas.len()).map(pair).collect::<Result<Vec<_>>>()?;
-    let n_converged = pairs.iter().map(|p| if p.lambda.im > 0.0 { 2 } else { 1 }).sum();
-    Ok(Found { pairs, n_converged, n_solves })
 }
 
 /// The pairs with `|lambda| <= radius` by modulus, vectors of length 1.

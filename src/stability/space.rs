@@ -8,7 +8,7 @@ use crate::Result;
 use crate::petsc::{Block, Factor, Matrix, Noise};
 
 /// Random combinations of the residuals that join the space in a round.
-pub(super) const SKETCH: usize = 24;
+pub(super) const SKETCH: usize = 32;
 /// Directions this much smaller than the largest of their block add nothing.
 const NEGLIGIBLE: f64 = 1e-7;
 /// No residual counts for more than that of a mode this far down, relative to the highest.
@@ -19,8 +19,10 @@ const LOWEST: f64 = 0.01;
 pub struct Problem<'a> {
     /// M, C and K.
     pub pencil: &'a Pencil<'a>,
-    /// The factor of K.
+    /// The factor of `sigma^2 M + sigma C + K`.
     pub factor: &'a Factor,
+    /// The real shift sigma, 1/s; [`super::Solver::shift`] tells.
+    pub shift: f64,
     /// A number for each of this rank's equations, whatever the number of ranks.
     pub labels: &'a [u64],
 }
@@ -34,7 +36,15 @@ pub(super) enum Side {
     Left,
 }
 
-/// Orthonormal columns V with the projections of M, C and A; A is K, or its transpose for left vectors.
+/// Orthonormal columns V with the projections `V^T M V`, `V^T C V` and `V^T K V`.
+pub struct Basis {
+    v: Block,
+    m: DMatrix<f64>,
+    c: DMatrix<f64>,
+    k: DMatrix<f64>,
+}
+
+/// Orthonormal columns V with the projections of M, C and A; A is K, or all are transposed for left vectors.
 pub(super) struct Space<'a> {
     problem: Problem<'a>,
     side: Side,
@@ -64,6 +74,30 @@ impl<'a> Space<'a> {
         let v = Block::zeros(comm, n_local, 0);
         let (noise, n_equations) = (Noise::new(problem.labels), comm.sum(n_local as f64) as usize);
         Space { problem, side, v, m: none(), c: none(), a: none(), noise, n_equations, n_solves: 0 }
+    }
+
+    /// For left vectors, with the columns that a search for right ones has left.
+    pub fn of_left_vectors(problem: Problem<'a>, basis: Basis) -> Space<'a> {
+        let Basis { v, m, c, k } = basis;
+        Space { v, m: m.transpose(), c: c.transpose(), a: k.transpose(), ..Space::new(problem, Side::Left) }
+    }
+
+    /// For left vectors, spanned by some columns.
+    pub fn spanned(problem: Problem<'a>, columns: Block) -> Result<Space<'a>> {
+        let mut space = Space::new(problem, Side::Left);
+        space.extend(columns)?;
+        Ok(space)
+    }
+
+    /// What is left of a space of right vectors.
+    pub fn into_basis(self) -> Basis {
+        let Space { v, m, c, a: k, .. } = self;
+        Basis { v, m, c, k }
+    }
+
+    /// M, C and K.
+    pub fn pencil(&self) -> &Pencil<'a> {
+        self.problem.pencil
     }
 
     /// Columns without order.
@@ -97,48 +131,57 @@ impl<'a> Space<'a> {
     pub fn extend(&mut self, mut w: Block) -> Result<Block> {
         for _ in 0..2 {
             let overlap = self.v.gram(&w);
-            w.axpy(-1.0, &self.v.combined(&overlap, w.n_columns()));
+            w.subtract(&self.v, &overlap);
             let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE);
             // No space has more directions than equations; what is beyond is rounding.
             n = n.min(self.n_equations - self.v.n_columns());
             basis.truncate(n * w.n_columns());
             w = w.combined(&basis, n);
         }
-        let Pencil { m, c, k, symmetric_mc, .. } = *self.problem.pencil;
-        let mw = self.product(m, &w)?;
-        self.m = self.growth(&self.m, &w, &mw, Some(m).filter(|_| !symmetric_mc))?;
-        self.c = self.growth(&self.c, &w, &self.product(c, &w)?, Some(c).filter(|_| !symmetric_mc))?;
-        self.a = self.growth(&self.a, &w, &self.product(k, &w)?, Some(k))?;
+        let Pencil { m, c, k, .. } = *self.problem.pencil;
+        let (mw, below) = self.images(m, &w)?;
+        self.m = self.growth(&self.m, &w, &mw, below.as_ref());
+        let (cw, below) = self.images(c, &w)?;
+        self.c = self.growth(&self.c, &w, &cw, below.as_ref());
+        drop((cw, below));
+        let kw = w.multiplied_by(k)?;
+        let transposed = self.problem.pencil.transposed_stiffness_times(&w, &kw)?;
+        let (aw, below) = self.own_first(kw, transposed);
+        self.a = self.growth(&self.a, &w, &aw, Some(&below));
         self.v.append(&w);
         Ok(mw)
     }
 
-    /// `B X` with B one of M, C and K or, for left vectors, its transpose.
-    fn product(&self, b: &Matrix, x: &Block) -> Result<Block> {
-        let Pencil { k, symmetric_mc, .. } = self.problem.pencil;
-        let is_symmetric = *symmetric_mc && !std::ptr::eq(b, *k);
+    /// `B X` with B one of M and C or, for left vectors, its transpose; and `B^T X` where that is something else.
+    fn images(&self, b: &Matrix, x: &Block) -> Result<(Block, Option<Block>)> {
+        let product = x.multiplied_by(b)?;
+        if self.problem.pencil.symmetric_mc {
+            return Ok((product, None));
+        }
+        let (own, other) = self.own_first(product, x.multiplied_by_transpose(b)?);
+        Ok((own, Some(other)))
+    }
+
+    /// The product of this side, then the other one, of those with a matrix and with its transpose.
+    fn own_first(&self, product: Block, transposed: Block) -> (Block, Block) {
         match self.side {
-            Side::Left if !is_symmetric => x.multiplied_by_transpose(b),
-            _ => x.multiplied_by(b),
+            Side::Right => (product, transposed),
+            Side::Left => (transposed, product),
         }
     }
 
-    /// `[V W]^T B [V W]` from `V^T B V` and `B W`; B is symmetric where it is not given.
-    fn growth(&self, old: &DMatrix<f64>, w: &Block, bw: &Block, b: Option<&Matrix>) -> Result<DMatrix<f64>> {
+    /// `[V W]^T B [V W]` from `V^T B V`, `B W` and `B^T W`, which is the same where it is not given.
+    fn growth(&self, old: &DMatrix<f64>, w: &Block, bw: &Block, transposed: Option<&Block>) -> DMatrix<f64> {
         let (n, p) = (self.v.n_columns(), w.n_columns());
         let mut new = DMatrix::zeros(n + p, n + p);
         new.view_mut((0, 0), (n, n)).copy_from(old);
         let right = DMatrix::from_vec(n, p, self.v.gram(bw));
         // W^T B V = (V^T B^T W)^T
-        let below = match (b, self.side) {
-            (None, _) => right.clone(),
-            (Some(b), Side::Right) => DMatrix::from_vec(n, p, self.v.gram(&w.multiplied_by_transpose(b)?)),
-            (Some(b), Side::Left) => DMatrix::from_vec(n, p, self.v.gram(&w.multiplied_by(b)?)),
-        };
+        let below = transposed.map(|transposed| DMatrix::from_vec(n, p, self.v.gram(transposed)));
+        new.view_mut((n, 0), (p, n)).copy_from(&below.as_ref().unwrap_or(&right).transpose());
         new.view_mut((0, n), (n, p)).copy_from(&right);
-        new.view_mut((n, 0), (p, n)).copy_from(&below.transpose());
         new.view_mut((n, n), (p, p)).copy_from(&DMatrix::from_vec(p, p, w.gram(bw)));
-        Ok(new)
+        new
     }
 
     /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than V columns, the others
@@ -152,7 +195,8 @@ impl<'a> Space<'a> {
 
     /// Real and imaginary parts of the residuals where they are few, else random combinations of them,
     /// `sum_i Re(z_ij^* P(lambda_i) V y_i)`, `z_ij` normal with the deviation `|lambda_i|^-2`, which makes residuals count as they
-    /// change eigenvalues, relatively: column j is `A V a_j + C V b_j + M V d_j`.
+    /// change eigenvalues, relatively. Of `P(lambda) = P(sigma) + (lambda - sigma) C + (lambda^2 - sigma^2) M` the first term is left out:
+    /// the factor makes a vector of it that V has. Column j is `C V a_j + M V b_j`.
     ///
     /// # Errors
     /// PETSc's.
@@ -162,7 +206,8 @@ impl<'a> Space<'a> {
         let largest = ritz.iter().map(|r| r.lambda.norm()).fold(0.0, f64::max);
         // A rigid motion's zero counts like a low mode.
         let deviation = |r: &Ritz| r.lambda.norm().max(LOWEST * largest).powi(-2);
-        let mut coefficients = [0, 1, 2].map(|_| vec![0.0; n * n_columns]);
+        let shift = self.problem.shift;
+        let mut coefficients = [1, 2].map(|power| (power, vec![0.0; n * n_columns]));
         for j in 0..n_columns {
             for (i, r) in ritz.iter().enumerate() {
                 let z = match (n_columns < SKETCH, j == 2 * i, j == 2 * i + 1) {
@@ -171,16 +216,21 @@ impl<'a> Space<'a> {
                     (true, ..) => continue,
                     (false, ..) => deviation(r) * Complex64::new(self.noise.normal(), self.noise.normal()),
                 };
-                for (power, a) in coefficients.iter_mut().enumerate() {
-                    let factor = z.conj() * r.lambda.powu(power as u32);
+                for (power, a) in &mut coefficients {
+                    let factor = z.conj() * (r.lambda.powi(*power) - shift.powi(*power));
                     let column = a[j * n..(j + 1) * n].iter_mut().zip(r.re.iter().zip(&r.im));
                     column.for_each(|(a, (re, im))| *a += factor.re * re - factor.im * im);
                 }
             }
         }
         let mut sum = Block::zeros(self.v.comm(), self.v.n_local(), n_columns);
-        for (matrix, coefficients) in [pencil.k, pencil.c, pencil.m].into_iter().zip(&coefficients) {
-            sum.axpy(1.0, &self.product(matrix, &self.v.combined(coefficients, n_columns))?);
+        for (matrix, (_, coefficients)) in [pencil.c, pencil.m].into_iter().zip(&coefficients) {
+            let columns = self.v.combined(coefficients, n_columns);
+            let product = match self.side {
+                Side::Left if !pencil.symmetric_mc => columns.multiplied_by_transpose(matrix)?,
+                _ => columns.multiplied_by(matrix)?,
+            };
+            sum.axpy(1.0, &product);
         }
         Ok(sum)
     }

@@ -87,6 +87,8 @@ impl<'a> Sweep<'a> {
     /// See [`Path::advance`].
     pub fn equilibrium(&mut self, friction: f64, hear: &mut dyn FnMut(Event)) -> Result<Equilibrium> {
         let start = Instant::now();
+        // Its memory is needed.
+        self.solver.take_basis();
         let outcome = self.path.advance(friction, &mut |label, i, it| hear(Event::Newton(label, i, it)));
         self.seconds[0] += start.elapsed().as_secs_f64();
         outcome
@@ -132,8 +134,9 @@ impl<'a> Sweep<'a> {
     pub fn left_vectors(&mut self, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<(Block, usize)> {
         let start = Instant::now();
         let pencil = self.linearised.pencil(self.system, self.path.contacts(), self.path.tangent());
-        let problem = Problem { pencil: &pencil, factor: self.path.factor(), labels: &self.system.dofs.labels() };
-        let outcome = stability::left_vectors(&problem, modes, accuracy);
+        let (factor, shift, labels) = (self.path.factor(), self.solver.shift(), self.system.dofs.labels());
+        let problem = Problem { pencil: &pencil, factor, shift, labels: &labels };
+        let outcome = stability::left_vectors(&problem, modes, self.solver.take_basis(), accuracy);
         self.seconds[2] += start.elapsed().as_secs_f64();
         outcome
     }
