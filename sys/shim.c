@@ -1,4 +1,5 @@
 #include "shim.h"
+#include <malloc.h>
 
 MPI_Comm squeal_comm_world(void) { return MPI_COMM_WORLD; }
 MPI_Comm squeal_comm_self(void) { return MPI_COMM_SELF; }
@@ -8,6 +9,13 @@ MPI_Op squeal_op_min(void) { return MPI_MIN; }
 MPI_Datatype squeal_type_double(void) { return MPI_DOUBLE; }
 MPI_Datatype squeal_type_int(void) { return MPI_INT; }
 MPI_Datatype squeal_type_byte(void) { return MPI_BYTE; }
+
+void squeal_give_memory_back(void)
+{
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
 
 /* Raises a PETSc error from a callback, so that PETSc's frames follow it out. */
 PetscErrorCode squeal_raise(const char *function, const char *message)

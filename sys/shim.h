@@ -9,6 +9,8 @@ MPI_Datatype squeal_type_double(void);
 MPI_Datatype squeal_type_int(void);
 MPI_Datatype squeal_type_byte(void);
 PetscErrorCode squeal_raise(const char *function, const char *message);
+/* Has the C library give freed memory back to the system. */
+void squeal_give_memory_back(void);
 /* BLAS and LAPACK that PETSc's headers leave out. */
 void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
             double *x, const int *incx);

@@ -206,7 +206,8 @@ struct Models {
     /// Folder of the study (default: the model file's name with -study)
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Tell of each finished friction on a line of standard error, with the time left (a terminal shows a bar anyway)
+    /// Tell of each finished friction on a line of standard error, with the time left, and twice a minute of what is being done (a terminal shows a
+    /// bar anyway)
     #[arg(short, long)]
     verbose: bool,
 }
@@ -241,7 +242,8 @@ struct Run {
     /// Replace the results of an earlier run, and what another command or model has left unfinished
     #[arg(long)]
     force: bool,
-    /// Tell of each finished friction on a line of standard error, with the time left (a terminal shows a bar anyway)
+    /// Tell of each finished friction on a line of standard error, with the time left, and twice a minute of what is being done (a terminal shows a
+    /// bar anyway)
     #[arg(short, long)]
     verbose: bool,
 }

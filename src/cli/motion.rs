@@ -26,25 +26,32 @@ pub trait Motion {
 pub fn plain(motion: &mut dyn Motion, modes: &[&Mode], is_drawn: impl Fn(&Mode) -> bool) -> Result<Vec<ModeData>> {
     let vectors: Vec<&Vector> = modes.iter().flat_map(|mode| [&mode.re, &mode.im]).collect();
     let samples = motion.of_samples(&vectors)?;
-    modes
+    let drawn: Vec<&&Mode> = modes.iter().filter(|mode| is_drawn(mode)).collect();
+    let vectors: Vec<&Vector> = drawn.iter().flat_map(|mode| [&mode.re, &mode.im]).collect();
+    let all = if vectors.is_empty() { Vec::new() } else { motion.of_all(&vectors)? };
+    let mut wholes = all.chunks_exact(2);
+    let whole = |mode: &&Mode| if is_drawn(mode) { wholes.next() } else { None };
+    let wholes: Vec<Option<&[Vec<f64>]>> = modes.iter().map(whole).collect();
+    Ok(modes
         .iter()
         .zip(samples.chunks_exact(2))
-        .map(|(mode, samples)| one(motion, mode, samples, is_drawn(mode)))
-        .collect()
+        .zip(wholes)
+        .map(|((mode, samples), whole)| one(mode, samples, whole))
+        .collect())
 }
 
-fn one(motion: &mut dyn Motion, mode: &Mode, samples: &[Vec<f64>], is_drawn: bool) -> Result<ModeData> {
-    let whole = if is_drawn { Some(motion.of_all(&[&mode.re, &mode.im])?) } else { None };
-    let known = whole.as_deref().unwrap_or(samples);
+/// A mode by its displacements at the samples and, where it is drawn, on the whole surface.
+fn one(mode: &Mode, samples: &[Vec<f64>], whole: Option<&[Vec<f64>]>) -> ModeData {
+    let known = whole.unwrap_or(samples);
     let divisor = largest(&known[0], &known[1]);
-    Ok(ModeData {
+    ModeData {
         lambda: mode.lambda,
         backward_error: mode.backward_error,
         unstable: mode.is_unstable(),
         sampled: Shape::over(&samples[0], &samples[1], divisor),
         shape: whole.map(|whole| Shape::over(&whole[0], &whole[1], divisor)),
         sources: Vec::new(),
-    })
+    }
 }
 
 /// The motion of a mesh's nodes.
@@ -128,7 +135,8 @@ impl Motion for ReducedMotion<'_> {
         if !is_root(self.system) {
             return Ok(vec![Vec::new(); vectors.len()]);
         }
-        Ok(coordinates.iter().map(|q| self.outer.displacements(q).into_flattened()).collect())
+        let sets: Vec<&[f64]> = coordinates.iter().map(Vec::as_slice).collect();
+        Ok(self.outer.displacements(&sets).into_iter().map(Vec::into_flattened).collect())
     }
 }
 

@@ -16,7 +16,12 @@ pub struct Progress {
     is_root: bool,
     /// Whether finished values are told on lines of their own.
     lines: bool,
+    /// When the last line was written.
+    told: Cell<Instant>,
 }
+
+/// Within a value that takes long, a line tells what is being done no more often than this.
+const STILL_AT_WORK: Duration = Duration::from_secs(30);
 
 impl Progress {
     /// Shows `n` values to come; on the first rank only.
@@ -25,9 +30,11 @@ impl Progress {
         let template = "{spinner} [{elapsed}] {wide_bar} {pos}/{len} {msg} {eta} left";
         bar.set_style(ProgressStyle::with_template(template).expect("a valid template"));
         bar.enable_steady_tick(Duration::from_millis(200));
+        let start = Instant::now();
         Progress {
             bar,
-            start: Instant::now(),
+            start,
+            told: Cell::new(start),
             skipped: Cell::new(0),
             is_root: comm.is_root(),
             lines: verbose && comm.is_root(),
@@ -36,7 +43,20 @@ impl Progress {
 
     /// Says what is being done.
     pub fn say(&self, message: impl Into<String>) {
-        self.bar.set_message(message.into());
+        let message = message.into();
+        if self.told.get().elapsed() >= STILL_AT_WORK {
+            self.tell(&message);
+        }
+        self.bar.set_message(message);
+    }
+
+    /// A line for those who asked for lines.
+    fn tell(&self, line: &str) {
+        self.told.set(Instant::now());
+        if self.lines {
+            let elapsed = self.start.elapsed().as_secs_f64();
+            self.bar.suspend(|| eprintln!("[{elapsed:.0} s] {line}"));
+        }
     }
 
     /// Something that writes a line whenever it is called, from any thread; nothing but on the first rank.
@@ -71,9 +91,7 @@ impl Progress {
         let elapsed = self.start.elapsed().as_secs_f64();
         let computed = (position - self.skipped.get()) as f64;
         let left = elapsed / computed * length.saturating_sub(position) as f64;
-        if self.lines {
-            self.bar.suspend(|| eprintln!("[{elapsed:.0} s] {position}/{length} {done}; about {left:.0} s left"));
-        }
+        self.tell(&format!("{position}/{length} {done}; about {left:.0} s left"));
     }
 
     /// Removes the bar.

@@ -68,7 +68,9 @@ impl ReducedBrake {
 
     fn write_surface(&self, folder: &Folder, name: &str, fields: &[(&str, &Vec<f64>)]) -> Result<()> {
         let surface = &self.surface;
-        let fields: Vec<_> = fields.iter().map(|(name, q)| (*name, surface.displacements(q))).collect();
+        let sets: Vec<&[f64]> = fields.iter().map(|(_, q)| q.as_slice()).collect();
+        let displacements = surface.displacements(&sets);
+        let fields: Vec<_> = fields.iter().map(|(name, _)| *name).zip(&displacements).collect();
         let grid = Grid {
             points: &surface.nodes,
             cells: Cells::Patches(&surface.triangles),

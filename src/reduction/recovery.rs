@@ -4,6 +4,10 @@ use crate::Result;
 use crate::assembly::{Boundary, System};
 use crate::petsc::Block;
 
+/// Displacements summed up at a time, and terms that are summed in single precision.
+const STRIP: usize = 2048;
+const TERMS: usize = 16;
+
 /// The outer surface of all parts, in triangles between the corners of the facets, and how it moves.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct OuterSurface {
@@ -20,18 +24,28 @@ pub struct OuterSurface {
 }
 
 impl OuterSurface {
-    /// The displacements (m) of the surface's nodes under generalised coordinates.
+    /// The displacements (m) of the surface's nodes under several sets of generalised coordinates, in one pass over the basis.
     ///
     /// # Panics
     /// Where there are fewer coordinates than the basis has.
-    pub fn displacements(&self, q: &[f64]) -> Vec<[f64; 3]> {
-        let mut u = vec![[0.0; 3]; self.nodes.len()];
-        for (column, &q) in self.basis.chunks_exact(3 * self.nodes.len()).zip(q) {
-            for (value, &t) in u.as_flattened_mut().iter_mut().zip(column) {
-                *value += q * f64::from(t);
+    pub fn displacements(&self, sets: &[&[f64]]) -> Vec<Vec<[f64; 3]>> {
+        let width = 3 * self.nodes.len();
+        let mut all = vec![vec![[0.0; 3]; self.nodes.len()]; sets.len()];
+        for first in (0..width).step_by(STRIP) {
+            let strip = first..(first + STRIP).min(width);
+            // The basis has single precision; sums over many coordinates need more.
+            for (part, columns) in self.basis.chunks(TERMS * width).enumerate() {
+                for (u, q) in all.iter_mut().zip(sets) {
+                    let mut sum = [0.0_f32; STRIP];
+                    for (column, &q) in columns.chunks_exact(width).zip(&q[part * TERMS..]) {
+                        sum.iter_mut().zip(&column[strip.clone()]).for_each(|(sum, t)| *sum += q as f32 * t);
+                    }
+                    let u = &mut u.as_flattened_mut()[strip.clone()];
+                    u.iter_mut().zip(&sum).for_each(|(u, &sum)| *u += f64::from(sum));
+                }
             }
         }
-        u
+        all
     }
 
     /// The surface of a mesh with the basis of a reduction there; the root has the basis, other ranks have none. Collective.
@@ -57,7 +71,21 @@ mod tests {
     fn a_surface_moves_by_its_coordinates() {
         let mut surface = OuterSurface { nodes: vec![[0.0; 3]; 5], ..OuterSurface::default() };
         surface.basis = (0..30).map(|i| i as f32).collect();
-        let u = surface.displacements(&[2.0, -1.0]);
-        assert_eq!(u[1], [2.0 * 3.0 - 18.0, 2.0 * 4.0 - 19.0, 2.0 * 5.0 - 20.0]);
+        let u = surface.displacements(&[&[2.0, -1.0], &[0.0, 1.0]]);
+        assert_eq!(u[0][1], [2.0 * 3.0 - 18.0, 2.0 * 4.0 - 19.0, 2.0 * 5.0 - 20.0]);
+        assert_eq!(u[1][1], [18.0, 19.0, 20.0]);
+    }
+
+    #[test]
+    fn sums_of_many_terms_keep_single_precision() {
+        let n = 1000;
+        let mut surface = OuterSurface { nodes: vec![[0.0; 3]; 1500], ..OuterSurface::default() };
+        surface.basis = (0..4500 * n).map(|i| ((i % 7) as f32 - 3.0) / 3.0).collect();
+        let q: Vec<f64> = (0..n).map(|j| (j as f64).sin()).collect();
+        let u = &surface.displacements(&[&q])[0];
+        for i in [0, 2047, 2048, 4499] {
+            let exact: f64 = q.iter().zip(surface.basis.chunks(4500)).map(|(q, t)| q * f64::from(t[i])).sum();
+            assert!((u.as_flattened()[i] - exact).abs() < 1e-5 * exact.abs().max(1.0), "{i}");
+        }
     }
 }

@@ -151,20 +151,11 @@ pub fn solve(
     band: [f64; 2],
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Band> {
-    solver.basis = None;
-    let available_mb = || memory::available_mb(pencil.k.comm());
-    if SYMMETRIC_OVER_LU * lu.stats().used_mb > available_mb() && !solver.inertia.is_made() {
-        lu.release();
-    }
-    let expected = solver.estimate(pencil, band[1])?;
-    if !lu.is_made() && solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU > available_mb() {
-        solver.inertia.release();
-    }
-    factorise_shifted(pencil, lu, solver.shift)?;
+    let expected = prepare(pencil, lu, solver, band[1])?;
     let (mut n_solves, mut last, mut gave_up) = (0, None, false);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
-        if solver.labels.is_some() && search::needs_mb(expected + margin, n_equations(pencil)) > available_mb() {
+        if solver.labels.is_some() && !solver.has_room(pencil, expected + margin) {
             solver.inertia.release();
         }
         let beyond = BEYOND.get(attempt as usize).filter(|_| !gave_up);
@@ -199,6 +190,22 @@ pub fn solve(
             band[0], band[1]
         ))),
     }
+}
+
+/// About how many modes there are below the band's end (Hz), and the factor about which is searched; where both do not fit into memory, the
+/// factor that counts and the one that solves make room for one another.
+fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<usize> {
+    solver.basis = None;
+    let has_mb = |needed| memory::has_mb(pencil.k.comm(), needed);
+    if !solver.inertia.is_made() && !has_mb(SYMMETRIC_OVER_LU * lu.stats().used_mb) {
+        lu.release();
+    }
+    let expected = solver.estimate(pencil, end)?;
+    if !lu.is_made() && !has_mb(solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU) {
+        solver.inertia.release();
+    }
+    factorise_shifted(pencil, lu, solver.shift)?;
+    Ok(expected)
 }
 
 fn n_equations(pencil: &Pencil) -> usize {
@@ -327,6 +334,11 @@ impl Solver {
         self.basis.take()
     }
 
+    /// Whether there is memory for a search in blocks.
+    fn has_room(&self, pencil: &Pencil, n_modes: usize) -> bool {
+        memory::has_mb(pencil.k.comm(), search::needs_mb(n_modes, n_equations(pencil)))
+    }
+
     /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up. In blocks if it is told how far
     /// `beyond` the end, and can; else by TOAR.
     fn search(
@@ -339,8 +351,8 @@ impl Solver {
         progress: &mut dyn FnMut(usize, usize, usize),
     ) -> Result<Option<Search>> {
         let shift = self.shift;
-        let room = memory::available_mb(pencil.k.comm()) / search::needs_mb(n_modes, n_equations(pencil));
-        let in_blocks = self.labels.as_ref().filter(|_| shift == 0.0 && room > 1.0);
+        let has_room = self.has_room(pencil, n_modes);
+        let in_blocks = self.labels.as_ref().filter(|_| shift == 0.0 && has_room);
         if let Some((labels, beyond)) = in_blocks.zip(beyond) {
             let problem = Problem { pencil, factor: lu, shift, labels };
             let reach = beyond * end;
