@@ -48,13 +48,15 @@ fn main() -> squeal::Result<()> {
         factor.factorise(&matrix)?;
         let cost = factor.stats();
         tell(format!(
-            "{:<31} {:8.2} s  analysis {:.2} s, {:.1} M entries, {:.1} GFlop, {:.0} MB, ordering {}",
+            "{:<31} {:8.2} s  analysis {:.2} s, {:.1} M entries, {:.1} GFlop, {:.0} MB of {:.0} estimated{}, ordering {}",
             format!("factorisation, {kind:?}"),
             cost.factorisation_seconds,
             cost.analysis_seconds,
             1e-6 * cost.entries,
             1e-9 * cost.flops,
             cost.used_mb,
+            cost.estimated_mb,
+            if cost.out_of_core { ", out of core" } else { "" },
             cost.ordering_name()
         ));
         let (b, mut x) = (system.load.duplicate()?, system.zeros()?);

@@ -20,7 +20,7 @@ const ROOMS: [(&str, &[&str]); 19] = [
     ("matrices", &["error", "petsc"]),
     ("assembly", &["error", "algebra", "model", "mesh", "element", "contact", "petsc"]),
     ("equilibrium", &["error", "algebra", "model", "mesh", "contact", "petsc", "assembly"]),
-    ("stability", &["error", "contact", "petsc", "assembly", "equilibrium"]),
+    ("stability", &["error", "algebra", "contact", "petsc", "assembly", "equilibrium"]),
     (
         "reduction",
         &["error", "hdf", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"],
