@@ -71,6 +71,8 @@ pub struct Factor {
     stats: FactorStats,
     /// The factor of a densely stored matrix, instead of MUMPS's.
     dense: Option<DenseFactor>,
+    /// Memory that others will need beside it, MB.
+    left_mb: f64,
     /// Passes, right-hand sides and seconds, counted by solves that leave the factor as it is.
     solves: Cell<(usize, usize, f64)>,
 }
@@ -94,7 +96,7 @@ impl Factor {
     /// A factor to be; nothing is computed yet.
     pub fn new(kind: FactorKind) -> Factor {
         let (comm, stats, solves) = (None, FactorStats::default(), Cell::default());
-        Factor { kind, raw: ptr::null_mut(), comm, stats, dense: None, solves }
+        Factor { kind, raw: ptr::null_mut(), comm, stats, dense: None, left_mb: 0.0, solves }
     }
 
     /// Orders the equations and makes the symbolic factorisation, unless that is done. No values are used.
@@ -124,12 +126,18 @@ impl Factor {
         self.stats.estimated_mb = self.infog(17)?;
         self.stats.n_analyses += 1;
         self.stats.analysis_seconds += start.elapsed().as_secs_f64();
-        if !memory::has_room(a.comm(), TOUCHED * self.stats.estimated_mb, self.stats.estimated_mb) {
+        let [touched, reserved] = [TOUCHED, 1.0].map(|share| share * self.stats.estimated_mb + self.left_mb);
+        if !memory::has_room(a.comm(), touched, reserved) {
             self.set_icntl(22, 1)?;
             self.stats.out_of_core = true;
             self.stats.estimated_mb = self.infog(27)?;
         }
         memory::require(a.comm(), self.stats.estimated_mb)
+    }
+
+    /// From now on an analysis chooses to keep the factor out of core unless so much memory is left beside it, MB. Not collective.
+    pub fn leave_mb(&mut self, mb: f64) {
+        self.left_mb = mb;
     }
 
     /// Whether there is a factor. Not collective.

@@ -193,7 +193,7 @@ pub fn solve(
 }
 
 /// About how many modes there are below the band's end (Hz), and the factor about which is searched; where both do not fit into memory, the
-/// factor that counts and the one that solves make room for one another.
+/// factor that counts and the one that solves make room for one another, and the latter leaves room for the search.
 fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<usize> {
     solver.basis = None;
     let has_mb = |needed| memory::has_mb(pencil.k.comm(), needed);
@@ -201,8 +201,12 @@ fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> R
         lu.release();
     }
     let expected = solver.estimate(pencil, end)?;
-    if !lu.is_made() && !has_mb(solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU) {
-        solver.inertia.release();
+    if !lu.is_made() {
+        let search_mb = search::needs_mb(expected, n_equations(pencil));
+        if !has_mb(solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU + search_mb) {
+            solver.inertia.release();
+        }
+        lu.leave_mb(search_mb);
     }
     factorise_shifted(pencil, lu, solver.shift)?;
     Ok(expected)
@@ -368,9 +372,8 @@ impl Solver {
         }
         let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, factor: lu };
         let n_all = 2 * n_equations(pencil);
-        let n_wanted = (2 * n_modes).min(n_all);
-        let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
-        let mut hear = |converged, solves| progress(converged, n_wanted, solves);
+        let options = Options::nearest(2 * n_modes, n_all, TOLERANCE, 200);
+        let mut hear = |converged, solves| progress(converged, options.n_wanted, solves);
         let found = eigen::solve_or_none(&problem, &options, &mut hear)?;
         Ok(found.map(|Found { pairs, n_converged, n_solves }| {
             let furthest = pairs.iter().map(|pair| pair.lambda.norm() / TAU).fold(0.0, f64::max);
