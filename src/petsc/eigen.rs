@@ -38,19 +38,6 @@ pub struct Options {
     pub max_restarts: usize,
 }
 
-/// Columns of the search space over eigenvalues wanted. On a super-element of 782 coordinates, 112 eigenvalues wanted: 249 solves with 1.3,
-/// 288 with 2, which is SLEPc's choice, and 368 with 1.07; 0.36, 0.67 and 0.66 s.
-const BASIS: f64 = 1.3;
-
-impl Options {
-    /// For the `n_wanted` eigenvalues nearest to the shift of so many that there are.
-    pub fn nearest(n_wanted: usize, n_all: usize, tolerance: f64, max_restarts: usize) -> Options {
-        let n_wanted = n_wanted.min(n_all);
-        let n_basis = (BASIS * n_wanted as f64) as usize + 16;
-        Options { n_wanted, n_basis: if n_basis < n_all { n_basis } else { 0 }, tolerance, max_restarts }
-    }
-}
-
 /// One eigenvalue with non-negative imaginary part, and its vector.
 pub struct Pair {
     /// The eigenvalue, 1/s.

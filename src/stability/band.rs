@@ -372,8 +372,9 @@ impl Solver {
         }
         let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, factor: lu };
         let n_all = 2 * n_equations(pencil);
-        let options = Options::nearest(2 * n_modes, n_all, TOLERANCE, 200);
-        let mut hear = |converged, solves| progress(converged, options.n_wanted, solves);
+        let n_wanted = (2 * n_modes).min(n_all);
+        let options = Options { n_wanted, n_basis: 0, tolerance: TOLERANCE, max_restarts: 200 };
+        let mut hear = |converged, solves| progress(converged, n_wanted, solves);
         let found = eigen::solve_or_none(&problem, &options, &mut hear)?;
         Ok(found.map(|Found { pairs, n_converged, n_solves }| {
             let furthest = pairs.iter().map(|pair| pair.lambda.norm() / TAU).fold(0.0, f64::max);

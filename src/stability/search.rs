@@ -127,7 +127,8 @@ fn ritz(space: &Space, radius: f64, n_expected: usize) -> Result<Vec<Ritz>> {
     let mut factor = Factor::new(FactorKind::Unsymmetric);
     factor.factorise(&k)?;
     for margin in MARGINS {
-        let options = eigen::Options::nearest(2 * (n_expected + margin), 2 * n, 1e-13, 500);
+        let n_wanted = (2 * (n_expected + margin)).min(2 * n);
+        let options = eigen::Options { n_wanted, n_basis: 0, tolerance: 1e-13, max_restarts: 500 };
         let problem = Quadratic { m: &m, c: &c, k: &k, shift: 0.0, factor: &factor };
         let Some(found) = eigen::solve_or_none(&problem, &options, &mut |_, _| ())? else { continue };
         let reach = found.pairs.iter().map(|pair| pair.lambda.norm()).fold(0.0, f64::max);
