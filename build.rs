@@ -2,6 +2,6 @@
 //! PETSc's calls find it. Nothing of ours names its symbols, hence `--no-as-needed`.
 
 fn main() {
-    println!("cargo:rustc-link-arg=-Wl,--push-state,--no-as-needed,-ldmumps_ptscotch,--pop-state");
+    println!("cargo:rustc-link-arg=-Wl,--push-state,--no-as-needed,-ldmumps_ptscotch,-lsmumps_ptscotch,--pop-state");
     println!("cargo:rerun-if-changed=build.rs");
 }

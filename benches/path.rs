@@ -8,7 +8,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use squeal::petsc::{Block, Factor, FactorKind, Session};
+use squeal::petsc::{Block, Factor, FactorKind, Precision, Session};
 use squeal::sweep::{Brake, Sweep};
 
 fn main() -> squeal::Result<()> {
@@ -37,7 +37,10 @@ fn main() -> squeal::Result<()> {
         1e-6 * entries
     ));
 
-    for kind in [FactorKind::Unsymmetric, FactorKind::Symmetric] {
+    let (double, single) = (Precision::Double, Precision::Single);
+    let wanted =
+        [(FactorKind::Unsymmetric, double), (FactorKind::Unsymmetric, single), (FactorKind::Symmetric, double)];
+    for (kind, precision) in wanted {
         let mut matrix = system.k.duplicate()?;
         // Held by its mass where only contact would hold a part.
         matrix.axpy(1e8, &system.m)?;
@@ -45,11 +48,12 @@ fn main() -> squeal::Result<()> {
             matrix.declare_symmetric()?;
         }
         let mut factor = Factor::new(kind);
+        factor.set_precision(precision);
         factor.factorise(&matrix)?;
         let cost = factor.stats();
         tell(format!(
             "{:<31} {:8.2} s  analysis {:.2} s, {:.1} M entries, {:.1} GFlop, {:.0} MB of {:.0} estimated{}, ordering {}",
-            format!("factorisation, {kind:?}"),
+            format!("{kind:?}, {precision:?}"),
             cost.factorisation_seconds,
             cost.analysis_seconds,
             1e-6 * cost.entries,
@@ -60,9 +64,16 @@ fn main() -> squeal::Result<()> {
             cost.ordering_name()
         ));
         let (b, mut x) = (system.load.duplicate()?, system.zeros()?);
-        let start = Instant::now();
-        factor.solve(&b, &mut x)?;
-        tell(format!("  one solve                     {:8.3} s", start.elapsed().as_secs_f64()));
+        for _ in 0..2 {
+            let start = Instant::now();
+            factor.solve(&b, &mut x)?;
+            let seconds = start.elapsed().as_secs_f64();
+            let mut residual = system.zeros()?;
+            matrix.multiply(&x, &mut residual)?;
+            residual.axpy(-1.0, &b)?;
+            let relative = residual.norm()? / b.norm()?;
+            tell(format!("  one solve                     {seconds:8.3} s  residual {relative:.1e}"));
+        }
         for n_columns in [8, 16, 24, 32, 64, 128] {
             let block = Block::from_columns(&comm, b.n_local(), b.to_vec()?.repeat(n_columns));
             let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Finds Debian's real PETSc and SLEPc, METIS and MPI, and generates the bindings that `squeal` uses.
+//! Finds Debian's real PETSc and SLEPc, MUMPS, METIS and MPI, and generates the bindings that `squeal` uses.
 
 use std::env;
 use std::path::PathBuf;
@@ -10,8 +10,8 @@ const REAL: &str = "/usr/lib/slepcdir/slepc-real/lib/pkgconfig:/usr/lib/petscdir
 
 /// Everything `squeal` calls; whatever these need comes along.
 const FUNCTIONS: &[&str] = &[
-    "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Bcast|Send|Recv|Barrier|Abort)",
-    "Petsc(InitializeNoArguments|OptionsSetValue|OptionsClearValue|PushErrorHandler|PopErrorHandler|Error|GetVersion)",
+    "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Alltoall|Alltoallv|Bcast|Send|Recv|Barrier|Abort)",
+    "Petsc(InitializeNoArguments|OptionsSetValue|OptionsClearValue|OptionsGetInt|OptionsGetReal|PushErrorHandler|PopErrorHandler|Error|GetVersion)",
     "PetscObject(TypeCompare|SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
     "Slepc(Initialize|InitializeNoArguments|Finalize|GetVersion)",
     "Vec(Create|CreateMPI|CreateSeq|CreateMPIWithArray|CreateSeqWithArray|Destroy|Duplicate|Copy|Set|Scale|AXPY|AYPX|WAXPY|Dot|Norm|MDot|PointwiseMult)",
@@ -21,8 +21,7 @@ const FUNCTIONS: &[&str] = &[
     "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
     "Mat(CreateSeqAIJWithArrays|CreateMPIAIJWithSplitArrays|MPIAIJGetSeqAIJ|SeqAIJGetArray|SeqAIJRestoreArray|SeqAIJGetArrayRead|SeqAIJRestoreArrayRead|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|GetRowIJ|RestoreRowIJ|ConvertIfNeeded)",
     "Mat(MatMult|TransposeMatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseGetArrayRead|DenseRestoreArrayRead|Convert|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
-    "Mat(GetFactor|LUFactorSymbolic|LUFactorNumeric|CholeskyFactorSymbolic|CholeskyFactorNumeric|Solve|SolveTranspose|MatSolve|FactorInfoInitialize|GetInertia)",
-    "MatMumps(SetIcntl|SetCntl|GetInfog|GetRinfog|GetInfo|GetIcntl)",
+    "[ds]mumps_c",
     "KSP(Create|Destroy|Solve|GMRESSetRestart|SetPCSide|SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
     "PC(SetType|ShellSetApply|ShellSetApplyTranspose|ShellSetContext|ShellGetContext|ShellSetName)",
     "SNES(Create|Destroy|SetType|SetFunction|SetJacobian|SetConvergenceTest|SetTolerances|SetFromOptions|SetOptionsPrefix|Solve|GetKSP|GetLineSearch)",
@@ -40,7 +39,7 @@ fn main() {
     let path = env::var("PKG_CONFIG_PATH").unwrap_or_default();
     // SAFETY: a build script is single-threaded here.
     unsafe { env::set_var("PKG_CONFIG_PATH", format!("{REAL}:{path}")) };
-    for library in ["metis", "lapack", "blas"] {
+    for library in ["dmumps_ptscotch", "smumps_ptscotch", "metis", "lapack", "blas"] {
         println!("cargo:rustc-link-lib={library}");
     }
     let slepc = probe("slepc", "libslepc-real-dev");

@@ -3,6 +3,7 @@
 
 MPI_Comm squeal_comm_world(void) { return MPI_COMM_WORLD; }
 MPI_Comm squeal_comm_self(void) { return MPI_COMM_SELF; }
+int squeal_comm_fortran(MPI_Comm comm) { return (int)MPI_Comm_c2f(comm); }
 MPI_Op squeal_op_sum(void) { return MPI_SUM; }
 MPI_Op squeal_op_max(void) { return MPI_MAX; }
 MPI_Op squeal_op_min(void) { return MPI_MIN; }

@@ -2,6 +2,7 @@
 #include <petscsys.h>
 MPI_Comm squeal_comm_world(void);
 MPI_Comm squeal_comm_self(void);
+int squeal_comm_fortran(MPI_Comm comm);
 MPI_Op squeal_op_sum(void);
 MPI_Op squeal_op_max(void);
 MPI_Op squeal_op_min(void);

@@ -24,7 +24,7 @@ fn both(model: &Path, friction: f64) -> [Vec<Mode>; 2] {
     let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
     let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
     let one_by_one = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
-    sweep.search_in_blocks();
+    sweep.solve_as_large();
     let in_blocks = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
     assert!(one_by_one.count.agrees() && in_blocks.count.agrees());
     [one_by_one.modes, in_blocks.modes]

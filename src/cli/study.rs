@@ -309,8 +309,9 @@ fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
     let factors = [("LU", costs.lu), ("LDL^T", costs.symmetric)];
     for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
         text += &format!(
-            "{name}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \
+            "{name}{}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \
              {:.0} MB of {:.0} MB estimated{}, ordering {}\n",
+            if cost.single { " in single precision" } else { "" },
             cost.n_analyses,
             cost.analysis_seconds,
             cost.n_factorisations,

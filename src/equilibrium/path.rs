@@ -5,7 +5,7 @@ use super::newton::{self, Iteration, Step, Workspace};
 use crate::assembly::System;
 use crate::contact::interface::{Interface, Pair};
 use crate::contact::{Response, Stage};
-use crate::petsc::{Factor, Matrix, Vector};
+use crate::petsc::{Factor, Matrix, Precision, Vector};
 
 use super::step_factor::StepFactor;
 use crate::{Error, Result};
@@ -22,6 +22,8 @@ pub struct Equilibrium {
     pub steps: Vec<Step>,
 }
 
+/// Equations from which tangents are factorised in single precision: below, a factor costs too little.
+const SINGLE_FROM: usize = 50_000;
 /// Friction rises from rest by this much at first, then by twice as much.
 const FIRST_RISE: f64 = 0.1;
 /// A failing step is halved down to this.
@@ -50,10 +52,16 @@ impl<'a> Path<'a> {
     /// PETSc's.
     pub fn new(system: &'a System, interface: &'a Interface) -> Result<Path<'a>> {
         let contacts = Contacts::new(interface, system)?;
-        let (tangent, factor) = (system.k.duplicate()?, StepFactor::new());
+        let precision = if system.dofs.n_global() >= SINGLE_FROM { Precision::Single } else { Precision::Double };
+        let (tangent, factor) = (system.k.duplicate()?, StepFactor::new(precision));
         let (steps, pulled) = (Vec::new(), Vec::new());
         let (state, before, is_settled_only) = (None, None, true);
         Ok(Path { system, contacts, tangent, factor, state, before, steps, is_settled_only, pulled })
+    }
+
+    /// From now on factorises in this precision, whatever the size. Collective.
+    pub fn set_precision(&mut self, precision: Precision) {
+        self.factor.set_precision(precision);
     }
 
     /// The evaluator of the contact points.

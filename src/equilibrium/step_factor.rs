@@ -10,13 +10,16 @@
 //! (Sherman, Morrison and Woodbury; Golub and Van Loan, Matrix Computations, 2.1.4). W comes from solves with many right-hand sides at
 //! a time. What A' lacks, the smooth change of friction and of slip directions, is left to GMRES with A' for its preconditioner. All
 //! that is paid since the last factorisation is counted in solves; when it reaches the price of a factorisation, one is made.
+//!
+//! A factor in single precision takes half the time and memory, and GMRES the few digits that its solutions lack. Where it does not, the
+//! factor is made in double precision from then on.
 
 use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3};
 
 use super::contacts::Contacts;
 use crate::Result;
 use crate::contact::Response;
-use crate::petsc::{Block, Factor, FactorKind, Matrix, Vector, linear, memory};
+use crate::petsc::{Block, Factor, FactorKind, Matrix, Precision, Vector, linear, memory};
 
 /// Price of a right-hand side among many, in single solves: 0.09 s against 0.35 s on the full demo brake, two ranks.
 const BLOCKED_PRICE: f64 = 0.3;
@@ -26,6 +29,8 @@ const MAX_UPDATES: usize = 200;
 const AT_A_TIME: usize = 32;
 /// Share of the free memory that updates may take; while they grow there are two of them.
 const SHARE_OF_MEMORY: f64 = 0.4;
+/// Iterations at most with a tangent's own factor in single precision: the full demo brake takes one or two.
+const MAX_OWN_ITERATIONS: usize = 20;
 /// A change of tangent this much smaller than the tangents themselves is GMRES's.
 const NEGLIGIBLE: f64 = 1e-6;
 
@@ -63,9 +68,11 @@ pub(super) struct StepFactor {
 }
 
 impl StepFactor {
-    pub(super) fn new() -> StepFactor {
+    pub(super) fn new(precision: Precision) -> StepFactor {
+        let mut factor = Factor::new(FactorKind::Unsymmetric);
+        factor.set_precision(precision);
         StepFactor {
-            factor: Factor::new(FactorKind::Unsymmetric),
+            factor,
             made_for: Vec::new(),
             current: Vec::new(),
             updated_for: Vec::new(),
@@ -82,7 +89,7 @@ impl StepFactor {
         self.exact = false;
     }
 
-    /// `x = A^-1 b`: with an old factor to the relative tolerance, else exactly. Collective.
+    /// `x = A^-1 b`: exactly with an own factor in double precision, else to the relative tolerance. Collective.
     pub(super) fn solve(
         &mut self,
         a: &Matrix,
@@ -91,14 +98,31 @@ impl StepFactor {
         tolerance: f64,
         contacts: &mut Contacts,
     ) -> Result<()> {
-        if !self.exact && !self.iterate(a, b, x, tolerance, contacts)? {
-            self.factor.factorise(a)?;
-            self.made_for.clone_from(&self.current);
-            self.update = None;
-            self.exact = true;
-            self.spent = 0.0;
+        if !self.exact {
+            if self.iterate(a, b, x, tolerance, contacts)? {
+                return Ok(());
+            }
+            self.factorise(a)?;
         }
-        if self.exact { self.factor.solve(b, x) } else { Ok(()) }
+        if !self.factor.is_exact() {
+            let mut inverse = |b: &Vector, x: &mut Vector| self.factor.solve(b, x);
+            if linear::gmres(a, &mut inverse, b, x, tolerance, MAX_OWN_ITERATIONS)?.is_some() {
+                return Ok(());
+            }
+            self.factor.set_precision(Precision::Double);
+            self.factorise(a)?;
+        }
+        self.factor.solve(b, x)
+    }
+
+    /// Makes the current tangent's factor.
+    fn factorise(&mut self, a: &Matrix) -> Result<()> {
+        self.factor.factorise(a)?;
+        self.made_for.clone_from(&self.current);
+        self.update = None;
+        self.exact = true;
+        self.spent = 0.0;
+        Ok(())
     }
 
     /// Tries GMRES with the updated old factor; tells whether it did.
@@ -176,6 +200,12 @@ impl StepFactor {
         self.exact = false;
         self.spent = 0.0;
         &mut self.factor
+    }
+
+    /// Goes on in another precision. Collective.
+    pub(super) fn set_precision(&mut self, precision: Precision) {
+        self.factor.set_precision(precision);
+        self.made_for.clear();
     }
 
     /// The factor.

@@ -194,10 +194,9 @@ impl Block {
         }
         for first in (0..self.n_columns).step_by(AT_ONCE) {
             let columns = first..(first + AT_ONCE).min(self.n_columns);
-            let b = View::new(self, columns.clone(), self.values.as_ptr().cast_mut())?;
-            let pointer = solution.values.as_mut_ptr();
-            let x = View::new(&solution, columns.clone(), pointer)?;
-            factor.solve_dense(b.raw, x.raw, columns.len(), transposed)?;
+            let rows = columns.start * self.n_local..columns.end * self.n_local;
+            let (b, x) = (&self.values[rows.clone()], &mut solution.values[rows]);
+            factor.solve_columns(b, x, columns.len(), transposed)?;
         }
         Ok(solution)
     }

@@ -1,16 +1,13 @@
 //! Direct factors: of sparse matrices by MUMPS, analysed once for a pattern and factorised again as often as values change; of
 //! densely stored ones by LAPACK.
 
-use std::cell::Cell;
-use std::ptr;
+use std::cell::{Cell, RefCell};
 use std::time::Instant;
 
-use squeal_sys as sys;
-
 use super::dense_factor::DenseFactor;
-use super::error::check;
-use super::{Comm, Matrix, Vector, memory};
-use crate::{Error, Result};
+use super::mumps::{Mumps, Precision};
+use super::{Matrix, Vector, memory};
+use crate::Result;
 
 /// Which factors are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +23,8 @@ pub enum FactorKind {
 pub struct FactorStats {
     /// Ordering used, MUMPS's number (3 is SCOTCH, 4 PORD); none where the matrix is dense and LAPACK factorises it.
     pub ordering: Option<i32>,
+    /// Whether it is in single precision.
+    pub single: bool,
     /// Entries in the factors.
     pub entries: f64,
     /// Floating-point operations of one numerical factorisation.
@@ -65,9 +64,8 @@ impl FactorStats {
 /// A factorised matrix. The first factorisation analyses the pattern, which all later ones share.
 pub struct Factor {
     kind: FactorKind,
-    raw: sys::Mat,
-    /// Keeps the session alive as long as the factor.
-    comm: Option<Comm>,
+    precision: Precision,
+    sparse: Option<RefCell<Mumps>>,
     stats: FactorStats,
     /// The factor of a densely stored matrix, instead of MUMPS's.
     dense: Option<DenseFactor>,
@@ -77,15 +75,6 @@ pub struct Factor {
     solves: Cell<(usize, usize, f64)>,
 }
 
-impl Drop for Factor {
-    fn drop(&mut self) {
-        if self.comm.is_some() {
-            // SAFETY: this handle owns the factor, and the session is alive.
-            unsafe { sys::MatDestroy(&mut self.raw) };
-        }
-    }
-}
-
 /// Percentage of extra workspace over MUMPS's estimate, and how often it is doubled when pivoting needs more.
 const WORKSPACE: i32 = 30;
 const WORKSPACE_TRIES: usize = 4;
@@ -93,45 +82,55 @@ const WORKSPACE_TRIES: usize = 4;
 const TOUCHED: f64 = 0.82;
 
 impl Factor {
-    /// A factor to be; nothing is computed yet.
+    /// A factor to be, in double precision; nothing is computed yet.
     pub fn new(kind: FactorKind) -> Factor {
-        let (comm, stats, solves) = (None, FactorStats::default(), Cell::default());
-        Factor { kind, raw: ptr::null_mut(), comm, stats, dense: None, left_mb: 0.0, solves }
+        let (stats, solves) = (FactorStats::default(), Cell::default());
+        Factor { kind, precision: Precision::Double, sparse: None, stats, dense: None, left_mb: 0.0, solves }
+    }
+
+    /// Goes on in another precision, which a densely stored matrix's factor does not have: what is factorised is released. Collective.
+    pub fn set_precision(&mut self, precision: Precision) {
+        if self.precision != precision {
+            self.precision = precision;
+            self.release();
+        }
+    }
+
+    /// Whether solutions are as exact as the matrix's condition lets them be, and not only good for preconditioning. Not collective.
+    pub fn is_exact(&self) -> bool {
+        self.precision == Precision::Double || self.dense.is_some()
     }
 
     /// Orders the equations and makes the symbolic factorisation, unless that is done. No values are used.
     ///
     /// # Errors
-    /// PETSc's, MUMPS's with its code, or [`Error::Input`] where the machine has too little memory for the factor.
+    /// PETSc's, MUMPS's with its code, or [`crate::Error::Input`] where the machine has too little memory for the factor.
     pub fn analyse(&mut self, a: &Matrix) -> Result<()> {
-        if !self.raw.is_null() {
+        if self.sparse.is_some() {
             return Ok(());
         }
         let start = Instant::now();
-        let kind_raw = match self.kind {
-            FactorKind::Unsymmetric => sys::MatFactorType::MAT_FACTOR_LU,
-            FactorKind::Symmetric => sys::MatFactorType::MAT_FACTOR_CHOLESKY,
-        };
-        // SAFETY: the handle is alive and the solver's name static.
-        check(unsafe { sys::MatGetFactor(a.raw(), c"mumps".as_ptr(), kind_raw, &mut self.raw) })?;
-        self.comm = Some(a.comm().clone());
-        self.set_icntl(14, WORKSPACE)?;
+        let mut mumps = Mumps::new(a.comm(), self.kind, self.precision)?;
+        mumps.set_icntl(14, WORKSPACE);
         if self.kind == FactorKind::Symmetric {
             // The inertia is right only with null pivots detected, and on several ranks without a parallel root.
-            self.set_icntl(24, 1)?;
-            self.set_icntl(13, 1)?;
+            mumps.set_icntl(24, 1);
+            mumps.set_icntl(13, 1);
         }
-        self.symbolic(a)?;
-        self.stats.ordering = Some(self.infog(7)? as i32);
-        self.stats.estimated_mb = self.infog(17)?;
+        mumps.analyse(a)?;
+        mumps.verdict("analysis")?;
+        self.stats.ordering = Some(mumps.infog(7) as i32);
+        self.stats.single = self.precision == Precision::Single;
+        self.stats.estimated_mb = mumps.infog(17);
         self.stats.n_analyses += 1;
         self.stats.analysis_seconds += start.elapsed().as_secs_f64();
         let [touched, reserved] = [TOUCHED, 1.0].map(|share| share * self.stats.estimated_mb + self.left_mb);
         if !memory::has_room(a.comm(), touched, reserved) {
-            self.set_icntl(22, 1)?;
+            mumps.set_icntl(22, 1);
             self.stats.out_of_core = true;
-            self.stats.estimated_mb = self.infog(27)?;
+            self.stats.estimated_mb = mumps.infog(27);
         }
+        self.sparse = Some(RefCell::new(mumps));
         memory::require(a.comm(), self.stats.estimated_mb)
     }
 
@@ -142,29 +141,12 @@ impl Factor {
 
     /// Whether there is a factor. Not collective.
     pub fn is_made(&self) -> bool {
-        !self.raw.is_null()
+        self.sparse.is_some()
     }
 
     /// Gives the memory back; the next factorisation analyses anew. Collective.
     pub fn release(&mut self) {
-        if self.comm.take().is_some() {
-            // SAFETY: this handle owns the factor; PETSc sets the pointer to null.
-            unsafe { sys::MatDestroy(&mut self.raw) };
-        }
-    }
-
-    fn symbolic(&self, a: &Matrix) -> Result<()> {
-        let mut info = sys::MatFactorInfo::default();
-        let none = ptr::null_mut();
-        // SAFETY: MUMPS orders by itself, so that no permutations are passed.
-        unsafe {
-            check(sys::MatFactorInfoInitialize(&mut info))?;
-            check(match self.kind {
-                FactorKind::Unsymmetric => sys::MatLUFactorSymbolic(self.raw, a.raw(), none, none, &info),
-                FactorKind::Symmetric => sys::MatCholeskyFactorSymbolic(self.raw, a.raw(), none, &info),
-            })?;
-        }
-        self.verdict("analysis")
+        self.sparse = None;
     }
 
     /// Factorises the values of `a`, whose pattern is that of all earlier calls. Workspace is enlarged where pivoting needs it.
@@ -177,19 +159,20 @@ impl Factor {
         }
         self.analyse(a)?;
         let start = Instant::now();
+        let mumps = self.sparse.as_mut().expect("analysed above").get_mut();
         let mut workspace = WORKSPACE;
         for attempt in 0..WORKSPACE_TRIES {
-            self.numeric(a)?;
-            if !matches!(self.infog(1)? as i32, -8 | -9 | -11 | -12 | -14 | -15) || attempt + 1 == WORKSPACE_TRIES {
+            mumps.factorise(a)?;
+            if !matches!(mumps.infog(1) as i32, -8 | -9 | -11 | -12 | -14 | -15) || attempt + 1 == WORKSPACE_TRIES {
                 break;
             }
             workspace *= 2;
-            self.set_icntl(14, workspace)?;
+            mumps.set_icntl(14, workspace);
         }
-        self.verdict("factorisation")?;
-        self.stats.entries = self.infog(29)?;
-        self.stats.used_mb = self.infog(22)?;
-        self.stats.flops = self.rinfog(3)?;
+        mumps.verdict("factorisation")?;
+        self.stats.entries = mumps.infog(29);
+        self.stats.used_mb = mumps.infog(22);
+        self.stats.flops = mumps.rinfog(3);
         self.stats.n_factorisations += 1;
         self.stats.factorisation_seconds += start.elapsed().as_secs_f64();
         Ok(())
@@ -211,60 +194,13 @@ impl Factor {
         self.dense.as_ref()
     }
 
-    fn numeric(&self, a: &Matrix) -> Result<()> {
-        let mut info = sys::MatFactorInfo::default();
-        // SAFETY: the factor was analysed for this pattern.
-        unsafe {
-            check(sys::MatFactorInfoInitialize(&mut info))?;
-            check(match self.kind {
-                FactorKind::Unsymmetric => sys::MatLUFactorNumeric(self.raw, a.raw(), &info),
-                FactorKind::Symmetric => sys::MatCholeskyFactorNumeric(self.raw, a.raw(), &info),
-            })
-        }
-    }
-
-    fn set_icntl(&self, index: i32, value: i32) -> Result<()> {
-        // SAFETY: the handle is a MUMPS factor.
-        check(unsafe { sys::MatMumpsSetIcntl(self.raw, index, value) })
-    }
-
-    /// MUMPS's global real information number.
-    fn rinfog(&self, index: i32) -> Result<f64> {
-        let mut value = 0.0;
-        // SAFETY: the handle is a MUMPS factor.
-        check(unsafe { sys::MatMumpsGetRinfog(self.raw, index, &mut value) })?;
-        Ok(value)
-    }
-
-    /// MUMPS's global information number; large counts, which MUMPS gives as negative millions, are turned into counts.
-    fn infog(&self, index: i32) -> Result<f64> {
-        let mut value = 0;
-        // SAFETY: the handle is a MUMPS factor.
-        check(unsafe { sys::MatMumpsGetInfog(self.raw, index, &mut value) })?;
-        let counts = [3, 20, 29].contains(&index);
-        Ok(if counts && value < 0 { -1e6 * f64::from(value) } else { f64::from(value) })
-    }
-
-    /// MUMPS fails silently through PETSc: its own code is looked at each time.
-    fn verdict(&self, phase: &str) -> Result<()> {
-        let (code, detail) = (self.infog(1)? as i32, self.infog(2)?);
-        if code >= 0 {
-            return Ok(());
-        }
-        let meaning = match code {
-            -5 | -7 | -13 => "not enough memory; use a smaller mesh or a machine with more",
-            -8 | -9 | -11 | -12 | -14 | -15 => "its workspace was too small even after enlarging",
-            -6 | -10 => "the matrix is singular: a part is held by nothing, or the load has reached a limit point",
-            -16 => "the matrix is empty",
-            _ => "see MUMPS's manual, INFOG(1)",
-        };
-        Err(Error::Library(format!("MUMPS {phase} failed with INFOG(1) = {code}, INFOG(2) = {detail}: {meaning}")))
-    }
-
     /// `x = A^-1 b`.
     ///
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
+    ///
+    /// # Panics
+    /// Where nothing is factorised.
     pub fn solve(&self, b: &Vector, x: &mut Vector) -> Result<()> {
         let start = Instant::now();
         if let Some(dense) = &self.dense {
@@ -273,10 +209,8 @@ impl Factor {
             self.count(1, start);
             return Ok(());
         }
-        // SAFETY: all handles are alive.
-        check(unsafe { sys::MatSolve(self.raw, b.raw(), x.raw()) })?;
-        self.count(1, start);
-        self.verdict("solve")
+        let b = b.to_vec()?;
+        x.local_mut(|x| self.solve_columns(&b, x, 1, false))?
     }
 
     fn count(&self, n_right_hand_sides: usize, start: Instant) {
@@ -284,29 +218,27 @@ impl Factor {
         self.solves.set((n + 1, n_all + n_right_hand_sides, seconds + start.elapsed().as_secs_f64()));
     }
 
-    /// Dense right-hand sides and solutions of one shape, with A or its transpose.
-    pub(super) fn solve_dense(&self, b: sys::Mat, x: sys::Mat, n_columns: usize, transposed: bool) -> Result<()> {
+    /// This rank's rows of right-hand sides and solutions, column after column, with A or its transpose.
+    pub(super) fn solve_columns(&self, b: &[f64], x: &mut [f64], n_columns: usize, transposed: bool) -> Result<()> {
         let start = Instant::now();
-        // ICNTL(9): 1 solves with A, anything else with its transpose.
-        self.set_icntl(9, i32::from(!transposed))?;
-        // SAFETY: both are dense matrices of the factor's row layout.
-        let outcome = check(unsafe { sys::MatMatSolve(self.raw, b, x) });
-        self.set_icntl(9, 1)?;
-        outcome?;
+        self.sparse.as_ref().expect("factorised before").borrow_mut().solve(b, x, n_columns, transposed)?;
         self.count(n_columns, start);
-        self.verdict("solve")
+        Ok(())
     }
 
     /// Number of negative pivots of a symmetric factor: how many eigenvalues of the matrix are negative.
     ///
     /// # Errors
     /// PETSc's.
+    ///
+    /// # Panics
+    /// Where nothing is factorised.
     pub fn n_negative(&self) -> Result<usize> {
         debug_assert_eq!(self.kind, FactorKind::Symmetric);
         if let Some(dense) = &self.dense {
             return Ok(dense.n_negative());
         }
-        Ok(self.infog(12)? as usize)
+        Ok(self.sparse.as_ref().expect("factorised before").borrow().infog(12) as usize)
     }
 
     /// How many solves cost about as much as one factorisation. A factorisation is bound by arithmetic and a solve, two

@@ -68,6 +68,17 @@ pub(super) struct Part<'a> {
     pub values: &'a [f64],
 }
 
+impl Part<'_> {
+    /// Visits the entries: row and column, counted within the part, and value.
+    fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        for (row, bounds) in self.offsets.windows(2).enumerate() {
+            let entries = bounds[0] as usize..bounds[1] as usize;
+            let pairs = self.columns[entries.clone()].iter().zip(&self.values[entries]);
+            pairs.for_each(|(&column, &value)| visit(row, column as usize, value));
+        }
+    }
+}
+
 /// The part of a rank that needs no columns of others.
 const NOTHING: Part = Part { offsets: &[], columns: &[], values: &[] };
 
@@ -183,17 +194,47 @@ impl Matrix {
     /// PETSc's.
     pub(super) fn ghosts(&self, from: &Vector) -> Result<&Gather> {
         if self.ghosts.get().is_none() {
-            let (_, other, numbers) = self.sequential()?;
-            let (mut rows, mut n) = (0, 0);
-            // SAFETY: there are as many numbers as columns.
-            let numbers = unsafe {
-                check(sys::MatGetSize(other, &mut rows, &mut n))?;
-                if n == 0 { &[] } else { std::slice::from_raw_parts(numbers, n as usize) }
-            };
-            let gather = Gather::new(from, numbers)?;
+            let gather = Gather::new(from, self.other_columns()?)?;
             return Ok(self.ghosts.get_or_init(|| gather));
         }
         Ok(self.ghosts.get().expect("looked at above"))
+    }
+
+    /// Global numbers of the columns that this rank's rows have and other ranks own. Not collective.
+    fn other_columns(&self) -> Result<&[i32]> {
+        let (_, other, numbers) = self.sequential()?;
+        if other.is_null() {
+            return Ok(&[]);
+        }
+        let (mut rows, mut n) = (0, 0);
+        // SAFETY: there are as many numbers as columns, and the matrix keeps them.
+        unsafe {
+            check(sys::MatGetSize(other, &mut rows, &mut n))?;
+            Ok(if n == 0 { &[] } else { std::slice::from_raw_parts(numbers, n as usize) })
+        }
+    }
+
+    /// Global number of this rank's first row. Not collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub(super) fn first_row(&self) -> Result<usize> {
+        let (mut first, mut end) = (0, 0);
+        // SAFETY: the handle is alive.
+        check(unsafe { sys::MatGetOwnershipRange(self.raw, &mut first, &mut end) })?;
+        Ok(first as usize)
+    }
+
+    /// Visits the stored entries of this rank's rows: global row and column, value. Not collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub(super) fn visit_entries(&self, mut visit: impl FnMut(usize, usize, f64)) -> Result<()> {
+        let (first, others) = (self.first_row()?, self.other_columns()?);
+        self.with_parts(|[own, other]| {
+            own.visit(|row, column, value| visit(first + row, first + column, value));
+            other.visit(|row, column, value| visit(first + row, others[column] as usize, value));
+        })
     }
 
     /// A full square matrix of `n` rows from its values by rows, on one rank.
@@ -283,10 +324,8 @@ impl Matrix {
     /// # Errors
     /// PETSc's.
     pub fn visit_rows(&self, mut visit: impl FnMut(usize, &[i32], &[f64])) -> Result<()> {
-        let (mut first, mut end) = (0, 0);
-        // SAFETY: the handle is alive.
-        check(unsafe { sys::MatGetOwnershipRange(self.raw, &mut first, &mut end) })?;
-        for row in first..end {
+        let first = self.first_row()? as i32;
+        for row in first..first + self.n_local as i32 {
             let (mut n, mut columns, mut values) = (0, ptr::null(), ptr::null());
             // SAFETY: the arrays have n entries between Get and Restore; they may be null where n is 0.
             unsafe {

@@ -219,6 +219,41 @@ impl Comm {
         all
     }
 
+    /// What each rank has for this one, from what this one has for each. Collective.
+    ///
+    /// # Panics
+    /// Where there is not one part for each rank.
+    pub fn exchange(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        assert_eq!(parts.len(), self.size);
+        let sizes: Vec<i32> = parts.iter().map(|part| part.len() as i32).collect();
+        let mut their_sizes = vec![0; self.size];
+        // SAFETY: one number for and from each rank.
+        unsafe {
+            let int = sys::squeal_type_int();
+            sys::MPI_Alltoall(sizes.as_ptr().cast(), 1, int, their_sizes.as_mut_ptr().cast(), 1, int, self.raw);
+        }
+        let starts = |sizes: &[i32]| -> Vec<i32> { (0..self.size).map(|rank| sizes[..rank].iter().sum()).collect() };
+        let (own, own_starts, their_starts) = (parts.concat(), starts(&sizes), starts(&their_sizes));
+        let mut theirs = vec![0.0; their_sizes.iter().sum::<i32>() as usize];
+        // SAFETY: sizes and starts were exchanged above.
+        unsafe {
+            let double = sys::squeal_type_double();
+            sys::MPI_Alltoallv(
+                own.as_ptr().cast(),
+                sizes.as_ptr(),
+                own_starts.as_ptr(),
+                double,
+                theirs.as_mut_ptr().cast(),
+                their_sizes.as_ptr(),
+                their_starts.as_ptr(),
+                double,
+                self.raw,
+            );
+        }
+        let part = |(&start, &size): (&i32, &i32)| theirs[start as usize..][..size as usize].to_vec();
+        their_starts.iter().zip(&their_sizes).map(part).collect()
+    }
+
     /// Sends bytes to a rank, which must be receiving them. Not collective.
     pub fn send(&self, bytes: &[u8], to: usize) {
         let length = (bytes.len() as u64).to_le_bytes();

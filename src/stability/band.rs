@@ -13,7 +13,7 @@ use super::space::{Basis, Problem};
 use super::{Mode, Pencil};
 use crate::assembly::System;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::petsc::{Block, Factor, Matrix, memory};
+use crate::petsc::{Block, Factor, Matrix, Precision, memory};
 use crate::{Error, Result};
 
 /// How modes are searched for, and what serves all pencils of one pattern.
@@ -112,8 +112,9 @@ pub struct Band {
 
 /// Eigenvalue tolerance handed to SLEPc: near double roots an error e in the residual is sqrt(e) in the eigenvalue.
 const TOLERANCE: f64 = 1e-12;
-/// Memory of a symmetric factor over that of an LU on the same pattern: 3.3 and 5.6 GB on the full demo brake.
-const SYMMETRIC_OVER_LU: f64 = 0.6;
+/// Memory of a symmetric factor over that of an LU on the same pattern: 3.0 GB over 5.3 GB on the full demo brake, or over 2.8 GB in single
+/// precision.
+const SYMMETRIC_OVER_LU: [f64; 2] = [0.6, 1.1];
 /// By this factor the shift moves where TOAR gave up: about another shift it does not meet the same blocks.
 const ELSEWHERE: f64 = 1.3;
 /// How often the search is widened before the band is given up.
@@ -197,13 +198,14 @@ pub fn solve(
 fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<usize> {
     solver.basis = None;
     let has_mb = |needed| memory::has_mb(pencil.k.comm(), needed);
-    if !solver.inertia.is_made() && !has_mb(SYMMETRIC_OVER_LU * lu.stats().used_mb) {
+    let symmetric_over_lu = SYMMETRIC_OVER_LU[usize::from(!lu.is_exact())];
+    if !solver.inertia.is_made() && !has_mb(symmetric_over_lu * lu.stats().used_mb) {
         lu.release();
     }
     let expected = solver.estimate(pencil, end)?;
     if !lu.is_made() {
         let search_mb = search::needs_mb(expected, n_equations(pencil));
-        if !has_mb(solver.inertia.stats().used_mb / SYMMETRIC_OVER_LU + search_mb) {
+        if !has_mb(solver.inertia.stats().used_mb / symmetric_over_lu + search_mb) {
             solver.inertia.release();
         }
         lu.leave_mb(search_mb);
@@ -328,11 +330,6 @@ impl Solver {
         }
     }
 
-    /// The real shift about which was searched last, 1/s: the factor is that of `sigma^2 M + sigma C + K`.
-    pub fn shift(&self) -> f64 {
-        self.shift
-    }
-
     /// The space of the last search, for left vectors of what was found; none where it was made by TOAR.
     pub fn take_basis(&mut self) -> Option<Basis> {
         self.basis.take()
@@ -348,7 +345,7 @@ impl Solver {
     fn search(
         &mut self,
         pencil: &Pencil,
-        lu: &Factor,
+        lu: &mut Factor,
         n_modes: usize,
         end: f64,
         beyond: Option<&f64>,
@@ -358,7 +355,7 @@ impl Solver {
         let has_room = self.has_room(pencil, n_modes);
         let in_blocks = self.labels.as_ref().filter(|_| shift == 0.0 && has_room);
         if let Some((labels, beyond)) = in_blocks.zip(beyond) {
-            let problem = Problem { pencil, factor: lu, shift, labels };
+            let problem = Problem { pencil, factor: lu, labels };
             let reach = beyond * end;
             let outcome = search::solve(&problem, TAU * reach, n_modes, progress);
             return match outcome {
@@ -369,6 +366,10 @@ impl Solver {
                 Err(Error::NotConverged(_)) => Ok(None),
                 Err(error) => Err(error),
             };
+        }
+        if !lu.is_exact() {
+            lu.set_precision(Precision::Double);
+            factorise_shifted(pencil, lu, shift)?;
         }
         let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, factor: lu };
         let n_all = 2 * n_equations(pencil);

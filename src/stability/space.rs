@@ -19,10 +19,8 @@ const LOWEST: f64 = 0.01;
 pub struct Problem<'a> {
     /// M, C and K.
     pub pencil: &'a Pencil<'a>,
-    /// The factor of `sigma^2 M + sigma C + K`.
+    /// The factor of `P(sigma)` at a real shift, exact or not.
     pub factor: &'a Factor,
-    /// The real shift sigma, 1/s; [`super::Solver::shift`] tells.
-    pub shift: f64,
     /// A number for each of this rank's equations, whatever the number of ranks.
     pub labels: &'a [u64],
 }
@@ -195,8 +193,7 @@ impl<'a> Space<'a> {
 
     /// Real and imaginary parts of the residuals where they are few, else random combinations of them,
     /// `sum_i Re(z_ij^* P(lambda_i) V y_i)`, `z_ij` normal with the deviation `|lambda_i|^-2`, which makes residuals count as they
-    /// change eigenvalues, relatively. Of `P(lambda) = P(sigma) + (lambda - sigma) C + (lambda^2 - sigma^2) M` the first term is left out:
-    /// the factor makes a vector of it that V has. Column j is `C V a_j + M V b_j`.
+    /// change eigenvalues, relatively. Column j is `K V a_j + C V b_j + M V c_j`.
     ///
     /// # Errors
     /// PETSc's.
@@ -206,8 +203,7 @@ impl<'a> Space<'a> {
         let largest = ritz.iter().map(|r| r.lambda.norm()).fold(0.0, f64::max);
         // A rigid motion's zero counts like a low mode.
         let deviation = |r: &Ritz| r.lambda.norm().max(LOWEST * largest).powi(-2);
-        let shift = self.problem.shift;
-        let mut coefficients = [1, 2].map(|power| (power, vec![0.0; n * n_columns]));
+        let mut coefficients = [0, 1, 2].map(|power| (power, vec![0.0; n * n_columns]));
         for j in 0..n_columns {
             for (i, r) in ritz.iter().enumerate() {
                 let z = match (n_columns < SKETCH, j == 2 * i, j == 2 * i + 1) {
@@ -217,14 +213,18 @@ impl<'a> Space<'a> {
                     (false, ..) => deviation(r) * Complex64::new(self.noise.normal(), self.noise.normal()),
                 };
                 for (power, a) in &mut coefficients {
-                    let factor = z.conj() * (r.lambda.powi(*power) - shift.powi(*power));
+                    let factor = z.conj() * r.lambda.powi(*power);
                     let column = a[j * n..(j + 1) * n].iter_mut().zip(r.re.iter().zip(&r.im));
                     column.for_each(|(a, (re, im))| *a += factor.re * re - factor.im * im);
                 }
             }
         }
-        let mut sum = Block::zeros(self.v.comm(), self.v.n_local(), n_columns);
-        for (matrix, (_, coefficients)) in [pencil.c, pencil.m].into_iter().zip(&coefficients) {
+        let columns = self.v.combined(&coefficients[0].1, n_columns);
+        let mut sum = columns.multiplied_by(pencil.k)?;
+        if self.side == Side::Left {
+            sum = pencil.transposed_stiffness_times(&columns, &sum)?;
+        }
+        for (matrix, (_, coefficients)) in [pencil.c, pencil.m].into_iter().zip(&coefficients[1..]) {
             let columns = self.v.combined(coefficients, n_columns);
             let product = match self.side {
                 Side::Left if !pencil.symmetric_mc => columns.multiplied_by_transpose(matrix)?,

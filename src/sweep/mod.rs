@@ -25,7 +25,7 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
-use crate::petsc::{Block, FactorStats, Matrix, Vector};
+use crate::petsc::{Block, FactorStats, Matrix, Precision, Vector};
 use crate::stability::{self, Band, Linearised, Mode, Pencil, Problem, Solver};
 
 /// A structure under analysis at one friction after the other.
@@ -122,9 +122,11 @@ impl<'a> Sweep<'a> {
         look(&linearised.pencil(self.system, contacts, k))
     }
 
-    /// Finds the modes with blocks of right-hand sides, whatever the size: [`Solver::blocked`].
-    pub fn search_in_blocks(&mut self) {
+    /// Goes about it as for a large structure, whatever the size: with blocks of right-hand sides ([`Solver::blocked`]) and factors in single
+    /// precision. Collective.
+    pub fn solve_as_large(&mut self) {
         self.solver = Solver::blocked(self.system);
+        self.path.set_precision(Precision::Single);
     }
 
     /// Left vectors of the modes of the last [`Sweep::modes`], each to the accuracy asked for. Collective.
@@ -134,8 +136,7 @@ impl<'a> Sweep<'a> {
     pub fn left_vectors(&mut self, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<(Block, usize)> {
         let start = Instant::now();
         let pencil = self.linearised.pencil(self.system, self.path.contacts(), self.path.tangent());
-        let (factor, shift, labels) = (self.path.factor(), self.solver.shift(), self.system.dofs.labels());
-        let problem = Problem { pencil: &pencil, factor, shift, labels: &labels };
+        let problem = Problem { pencil: &pencil, factor: self.path.factor(), labels: &self.system.dofs.labels() };
         let outcome = stability::left_vectors(&problem, modes, self.solver.take_basis(), accuracy);
         self.seconds[2] += start.elapsed().as_secs_f64();
         outcome

@@ -1,0 +1,359 @@
+//! MUMPS through its own interface: matrices, right-hand sides and solutions distributed over the ranks, in double or single precision.
+//!
+//! PETSc's interface to MUMPS knows no single precision, cannot pass an ordering on several ranks, and sorts the numbers of all entries of
+//! all solutions anew with every call. Here the way of the solutions to their owners ([`Route`]) is planned once for a factor.
+
+use squeal_sys as sys;
+
+use super::error::check;
+use super::{Comm, FactorKind, Matrix};
+use crate::{Error, Result};
+
+/// In which numbers a factor is made and solves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// 64 bits: solutions as exact as the matrix's condition lets them be.
+    #[default]
+    Double,
+    /// 32 bits: half the memory and time; solutions to a few digits, for preconditioning.
+    Single,
+}
+
+/// MUMPS's data, which it finds where they were: they stay in their box.
+enum Data {
+    Double(Box<sys::DMUMPS_STRUC_C>),
+    Single(Box<sys::SMUMPS_STRUC_C>),
+}
+
+/// The same for both precisions.
+macro_rules! both {
+    ($data:expr, $id:ident => $body:expr) => {
+        match $data {
+            Data::Double($id) => $body,
+            Data::Single($id) => $body,
+        }
+    };
+}
+
+/// A number of either precision.
+trait Real: Copy {
+    fn of(x: f64) -> Self;
+    fn to(self) -> f64;
+}
+
+impl Real for f64 {
+    fn of(x: f64) -> f64 {
+        x
+    }
+    fn to(self) -> f64 {
+        self
+    }
+}
+
+impl Real for f32 {
+    fn of(x: f64) -> f32 {
+        x as f32
+    }
+    fn to(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+/// MUMPS's data of either precision.
+trait Run {
+    /// Runs a job whose arrays are in place.
+    fn run(&mut self, job: i32);
+}
+
+impl Run for sys::DMUMPS_STRUC_C {
+    fn run(&mut self, job: i32) {
+        self.job = job;
+        // SAFETY: what the job reads and writes is in place.
+        unsafe { sys::dmumps_c(self) };
+    }
+}
+
+impl Run for sys::SMUMPS_STRUC_C {
+    fn run(&mut self, job: i32) {
+        self.job = job;
+        // SAFETY: what the job reads and writes is in place.
+        unsafe { sys::smumps_c(self) };
+    }
+}
+
+/// Jobs by MUMPS's numbers.
+const START: i32 = -1;
+const END: i32 = -2;
+const ANALYSE: i32 = 1;
+const FACTORISE: i32 = 2;
+const SOLVE: i32 = 3;
+
+/// How many parameters of either kind there are.
+const N_ICNTL: i32 = 60;
+const N_CNTL: i32 = 15;
+
+/// One matrix's factors, from the analysis on.
+pub(super) struct Mumps {
+    data: Data,
+    kind: FactorKind,
+    /// Keeps MPI alive as long as the factors.
+    comm: Comm,
+    /// Global numbers of this rank's equations, from 1.
+    equations: Vec<i32>,
+    /// Global numbers of the unknowns that MUMPS has on this rank.
+    unknowns: Vec<i32>,
+    route: Option<Route>,
+}
+
+impl Drop for Mumps {
+    fn drop(&mut self) {
+        self.run(END);
+    }
+}
+
+impl Mumps {
+    /// Without any matrix. Collective.
+    ///
+    /// # Errors
+    /// PETSc's, where an option `-mat_mumps_icntl_N` or `-mat_mumps_cntl_N` is no number.
+    pub fn new(comm: &Comm, kind: FactorKind, precision: Precision) -> Result<Mumps> {
+        let data = match precision {
+            Precision::Double => Data::Double(Box::default()),
+            Precision::Single => Data::Single(Box::default()),
+        };
+        let mut new = Mumps { data, kind, comm: comm.clone(), equations: Vec::new(), unknowns: Vec::new(), route: None };
+        both!(&mut new.data, id => {
+            // SAFETY: a valid communicator.
+            id.comm_fortran = unsafe { sys::squeal_comm_fortran(comm.raw()) };
+            id.par = 1;
+            id.sym = if kind == FactorKind::Symmetric { 2 } else { 0 };
+        });
+        new.run(START);
+        // Silent.
+        (1..=3).for_each(|stream| new.set_icntl(stream, -1));
+        new.set_icntl(4, 0);
+        // Everything distributed: matrix, right-hand sides, solutions.
+        for (number, value) in [(18, 3), (20, 10), (21, 1)] {
+            new.set_icntl(number, value);
+        }
+        new.take_options()?;
+        Ok(new)
+    }
+
+    /// Takes what the user wants of MUMPS, by PETSc's names for it.
+    fn take_options(&mut self) -> Result<()> {
+        let found = |flag: sys::PetscBool| flag == sys::PetscBool::PETSC_TRUE;
+        let none = std::ptr::null_mut();
+        for number in 1..=N_ICNTL {
+            let (name, mut value, mut flag) = (option("icntl", number), 0, sys::PetscBool::PETSC_FALSE);
+            // SAFETY: PETSC reads the name, and writes value and flag.
+            check(unsafe { sys::PetscOptionsGetInt(none, std::ptr::null(), name.as_ptr(), &mut value, &mut flag) })?;
+            if found(flag) {
+                self.set_icntl(number, value);
+            }
+        }
+        for number in 1..=N_CNTL {
+            let (name, mut value, mut flag) = (option("cntl", number), 0.0, sys::PetscBool::PETSC_FALSE);
+            // SAFETY: as above.
+            check(unsafe { sys::PetscOptionsGetReal(none, std::ptr::null(), name.as_ptr(), &mut value, &mut flag) })?;
+            if found(flag) {
+                both!(&mut self.data, id => id.cntl[number as usize - 1] = Real::of(value));
+            }
+        }
+        Ok(())
+    }
+
+    fn run(&mut self, job: i32) {
+        both!(&mut self.data, id => id.run(job));
+    }
+
+    /// Sets a control parameter, numbered from 1.
+    pub fn set_icntl(&mut self, number: i32, value: i32) {
+        both!(&mut self.data, id => id.icntl[number as usize - 1] = value);
+    }
+
+    /// A global information number, numbered from 1; large counts, which MUMPS gives as negative millions, are turned into counts.
+    pub fn infog(&self, number: i32) -> f64 {
+        let value = both!(&self.data, id => id.infog[number as usize - 1]);
+        let counts = [3, 20, 29].contains(&number);
+        if counts && value < 0 { -1e6 * f64::from(value) } else { f64::from(value) }
+    }
+
+    /// A global real information number, numbered from 1.
+    pub fn rinfog(&self, number: i32) -> f64 {
+        both!(&self.data, id => id.rinfog[number as usize - 1].to())
+    }
+
+    /// What MUMPS says of its last job.
+    ///
+    /// # Errors
+    /// Its code, in words.
+    pub fn verdict(&self, phase: &str) -> Result<()> {
+        both!(&self.data, id => verdict(phase, id.infog[0], id.infog[1]))
+    }
+
+    /// Orders the equations and makes the symbolic factorisation. Collective.
+    ///
+    /// # Errors
+    /// PETSc's; [`Mumps::verdict`] tells MUMPS's.
+    pub fn analyse(&mut self, a: &Matrix) -> Result<()> {
+        let first = a.first_row()?;
+        self.equations = (0..a.n_local()).map(|i| (first + i) as i32 + 1).collect();
+        let n = self.comm.sum(a.n_local() as f64) as i32;
+        both!(&mut self.data, id => id.n = n);
+        self.with_entries(a, false, ANALYSE)
+    }
+
+    /// Factorises a matrix of the pattern analysed. Collective.
+    ///
+    /// # Errors
+    /// PETSc's; [`Mumps::verdict`] tells MUMPS's.
+    pub fn factorise(&mut self, a: &Matrix) -> Result<()> {
+        self.route = None;
+        self.with_entries(a, true, FACTORISE)
+    }
+
+    /// Runs a job with the entries of this rank's rows: the upper triangle for a symmetric factor.
+    fn with_entries(&mut self, a: &Matrix, with_values: bool, job: i32) -> Result<()> {
+        let upper = self.kind == FactorKind::Symmetric;
+        let (mut rows, mut columns) = (Vec::new(), Vec::new());
+        a.visit_entries(|row, column, _| {
+            if !upper || column >= row {
+                rows.push(row as i32 + 1);
+                columns.push(column as i32 + 1);
+            }
+        })?;
+        both!(&mut self.data, id => {
+            let mut values = Vec::new();
+            if with_values {
+                values.reserve_exact(rows.len());
+                a.visit_entries(|row, column, value| {
+                    if !upper || column >= row {
+                        values.push(Real::of(value));
+                    }
+                })?;
+            }
+            id.nnz_loc = rows.len() as i64;
+            id.irn_loc = rows.as_mut_ptr();
+            id.jcn_loc = columns.as_mut_ptr();
+            id.a_loc = values.as_mut_ptr();
+            id.run(job);
+            id.irn_loc = std::ptr::null_mut();
+            id.jcn_loc = std::ptr::null_mut();
+            id.a_loc = std::ptr::null_mut();
+        });
+        Ok(())
+    }
+
+    /// `X = A^-1 B`, or with the transpose of A; columns of this rank's rows one after the other. Collective.
+    ///
+    /// # Errors
+    /// MUMPS's.
+    pub fn solve(&mut self, b: &[f64], x: &mut [f64], n_columns: usize, transposed: bool) -> Result<()> {
+        let n = self.equations.len();
+        let n_unknowns = both!(&self.data, id => id.info[22]) as usize;
+        self.unknowns.resize(n_unknowns, 0);
+        self.set_icntl(9, i32::from(!transposed));
+        // Columns at a largest entry of 1: single precision reaches from 1e-38 to 1e38.
+        let mut scales: Vec<f64> = (0..n_columns).map(|j| largest(&b[j * n..(j + 1) * n])).collect();
+        self.comm.max_all(&mut scales);
+        scales.iter_mut().filter(|scale| **scale == 0.0).for_each(|scale| *scale = 1.0);
+        let entries = |j: usize| b[j * n..(j + 1) * n].iter().map(move |b| (j, b));
+        both!(&mut self.data, id => {
+            let mut right: Vec<_> = (0..n_columns).flat_map(entries).map(|(j, b)| Real::of(b / scales[j])).collect();
+            let mut solution = vec![Real::of(0.0); n_unknowns.max(1) * n_columns];
+            id.nrhs = n_columns as i32;
+            id.nloc_rhs = n as i32;
+            id.lrhs_loc = n.max(1) as i32;
+            id.irhs_loc = self.equations.as_mut_ptr();
+            id.rhs_loc = right.as_mut_ptr();
+            id.lsol_loc = n_unknowns.max(1) as i32;
+            id.isol_loc = self.unknowns.as_mut_ptr();
+            id.sol_loc = solution.as_mut_ptr();
+            id.run(SOLVE);
+            drop(right);
+            verdict("solve", id.infog[0], id.infog[1])?;
+            if self.route.is_none() {
+                let first = self.equations.first().map_or(0, |&equation| equation as usize - 1);
+                self.route = Some(Route::new(&self.comm, &self.unknowns, first, n));
+            }
+            let route = self.route.as_ref().expect("made above");
+            route.bring(&self.comm, &solution, n_unknowns, x, &scales);
+        });
+        Ok(())
+    }
+}
+
+/// What MUMPS's codes say.
+fn verdict(phase: &str, code: i32, detail: i32) -> Result<()> {
+    if code >= 0 {
+        return Ok(());
+    }
+    let meaning = match code {
+        -5 | -7 | -13 => "not enough memory; use a smaller mesh or a machine with more",
+        -8 | -9 | -11 | -12 | -14 | -15 => "its workspace was too small even after enlarging",
+        -6 | -10 => "the matrix is singular: a part is held by nothing, or the load has reached a limit point",
+        -16 => "the matrix is empty",
+        _ => "see MUMPS's manual, INFOG(1)",
+    };
+    Err(Error::Library(format!("MUMPS {phase} failed with INFOG(1) = {code}, INFOG(2) = {detail}: {meaning}")))
+}
+
+/// PETSc's name of an option of MUMPS.
+fn option(kind: &str, number: i32) -> std::ffi::CString {
+    std::ffi::CString::new(format!("-mat_mumps_{kind}_{number}")).expect("no zero in it")
+}
+
+/// The largest modulus.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, x| x.abs().max(largest))
+}
+
+/// How the unknowns get from where MUMPS has them to the ranks that own them.
+struct Route {
+    /// Of this rank: where MUMPS has the unknown, and its row.
+    own: Vec<(usize, usize)>,
+    /// For each other rank, where MUMPS has its unknowns here.
+    sent: Vec<Vec<usize>>,
+    /// For each other rank, the rows of the unknowns that it has for this one.
+    received: Vec<Vec<usize>>,
+}
+
+impl Route {
+    /// For unknowns by their global numbers from 1; this rank owns `n` from the `first` on. Collective.
+    fn new(comm: &Comm, unknowns: &[i32], first: usize, n: usize) -> Route {
+        let ends = comm.join(&[(first + n) as f64]);
+        let (mut own, mut sent) = (Vec::new(), vec![Vec::new(); comm.size()]);
+        for (place, &unknown) in unknowns.iter().enumerate() {
+            let row = unknown as usize - 1;
+            let owner = ends.partition_point(|&end| end as usize <= row);
+            if owner == comm.rank() {
+                own.push((place, row - first));
+            } else {
+                sent[owner].push(place);
+            }
+        }
+        let rows = |places: &Vec<usize>| places.iter().map(|&place| f64::from(unknowns[place] - 1)).collect();
+        let received = comm.exchange(&sent.iter().map(rows).collect::<Vec<_>>());
+        let rows = |numbers: Vec<f64>| numbers.iter().map(|&row| row as usize - first).collect();
+        Route { own, sent, received: received.into_iter().map(rows).collect() }
+    }
+
+    /// Brings solutions, times their scales. Collective.
+    fn bring<T: Real>(&self, comm: &Comm, solution: &[T], n_unknowns: usize, x: &mut [f64], scales: &[f64]) {
+        let n = x.len() / scales.len().max(1);
+        let column = |j: usize| &solution[j * n_unknowns..(j + 1) * n_unknowns];
+        let packed = |places: &Vec<usize>| -> Vec<f64> {
+            (0..scales.len()).flat_map(|j| places.iter().map(move |&place| column(j)[place].to())).collect()
+        };
+        let others = comm.exchange(&self.sent.iter().map(packed).collect::<Vec<_>>());
+        for (j, &scale) in scales.iter().enumerate() {
+            let x = &mut x[j * n..(j + 1) * n];
+            self.own.iter().for_each(|&(place, row)| x[row] = scale * column(j)[place].to());
+            for (rows, values) in self.received.iter().zip(&others) {
+                let values = &values[j * rows.len()..(j + 1) * rows.len()];
+                rows.iter().zip(values).for_each(|(&row, value)| x[row] = scale * value);
+            }
+        }
+    }
+}
