@@ -37,6 +37,13 @@ fn main() -> squeal::Result<()> {
         1e-6 * entries
     ));
 
+    let block = Block::from_columns(&comm, system.load.n_local(), system.load.to_vec()?.repeat(32));
+    for (name, matrix) in [("K", &system.k), ("K", &system.k), ("C", &system.c), ("M", &system.m)] {
+        let start = Instant::now();
+        block.multiplied_by(matrix)?;
+        tell(format!("{name} times 32 columns            {:8.3} s", start.elapsed().as_secs_f64()));
+    }
+
     let (double, single) = (Precision::Double, Precision::Single);
     let wanted =
         [(FactorKind::Unsymmetric, double), (FactorKind::Unsymmetric, single), (FactorKind::Symmetric, double)];

@@ -68,6 +68,11 @@ impl Block {
         Block { comm: comm.clone(), n_local, n_columns, values: vec![0.0; n_local * n_columns] }
     }
 
+    /// A block without columns, with room for some. Not collective.
+    pub fn with_room(comm: &Comm, n_local: usize, n_columns: usize) -> Block {
+        Block { comm: comm.clone(), n_local, n_columns: 0, values: Vec::with_capacity(n_local * n_columns) }
+    }
+
     /// Columns one after the other, `n_local` values each on this rank. Not collective.
     ///
     /// # Panics
@@ -204,6 +209,30 @@ impl Block {
     /// `self^T other`, column-major, the same on every rank.
     pub fn gram(&self, other: &Block) -> Vec<f64> {
         self.leading_gram(self.n_columns, other)
+    }
+
+    /// As [`Block::gram`] with a block that has few rows other than zero: the others are left out.
+    pub fn gram_of_few_rows(&self, other: &Block) -> Vec<f64> {
+        let is_there = |&row: &usize| (0..other.n_columns).any(|j| other.values[j * other.n_local + row] != 0.0);
+        let rows: Vec<usize> = (0..other.n_local).filter(is_there).collect();
+        match rows.len() {
+            n if 2 * n > self.n_local => self.gram(other),
+            _ => self.of_rows(&rows).gram(&other.of_rows(&rows)),
+        }
+    }
+
+    /// Some rows of this rank. Not collective.
+    fn of_rows(&self, rows: &[usize]) -> Block {
+        let values = (0..self.n_columns).flat_map(|j| rows.iter().map(move |row| self.column(j)[*row])).collect();
+        Block { comm: self.comm.clone(), n_local: rows.len(), n_columns: self.n_columns, values }
+    }
+
+    /// Lengths of the columns.
+    pub fn lengths(&self) -> Vec<f64> {
+        let square = |j: usize| self.column(j).iter().map(|x| x * x).sum();
+        let mut squares: Vec<f64> = (0..self.n_columns).map(square).collect();
+        self.comm.sum_all(&mut squares);
+        squares.into_iter().map(f64::sqrt).collect()
     }
 
     /// `self coefficients`, with column-major coefficients of as many rows as this block has columns. Not collective.

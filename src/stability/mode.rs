@@ -41,13 +41,17 @@ pub struct Points<'a> {
 }
 
 impl Pencil<'_> {
-    /// `K^T X`, given `K X`: with contact points `K X - B^T (D - D^T) B X`, which takes their entries alone. Collective.
+    /// `K^T X - K X`, given `K X`: with contact points `-B^T (D - D^T) B X`, which takes their entries alone. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub(super) fn transposed_stiffness_times(&self, x: &Block, kx: &Block) -> Result<Block> {
-        let Some(Points { contacts, skew, .. }) = self.points else { return x.multiplied_by_transpose(self.k) };
-        let mut product = kx.clone();
+    pub(super) fn transposed_less_stiffness_times(&self, x: &Block, kx: &Block) -> Result<Block> {
+        let Some(Points { contacts, skew, .. }) = self.points else {
+            let mut difference = x.multiplied_by_transpose(self.k)?;
+            difference.axpy(-1.0, kx);
+            return Ok(difference);
+        };
+        let mut product = Block::zeros(x.comm(), x.n_local(), x.n_columns());
         for j in 0..x.n_columns() {
             let gaps = contacts.gaps(&x.vector(j)?)?;
             for &(a, difference) in skew {

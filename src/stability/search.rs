@@ -39,10 +39,13 @@ const MAX_ROUNDS: usize = 40;
 /// How often the projected problem is asked for more eigenpairs than seem to be within the radius.
 const MARGINS: [usize; 4] = [8, 24, 72, 216];
 
-/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for seven rounds, the vectors found, and a round's
+/// Rounds that most searches take.
+const ROUNDS_EXPECTED: usize = 8;
+
+/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for its rounds, the vectors found, and a round's
 /// right-hand sides, solutions and products.
 pub fn needs_mb(n_modes: usize, n_equations: usize) -> f64 {
-    let n_columns = n_krylov(n_modes) + (7 + 5) * SKETCH + 2 * n_modes;
+    let n_columns = n_krylov(n_modes) + (ROUNDS_EXPECTED + 5) * SKETCH + 2 * n_modes;
     8.0 * (n_columns * n_equations) as f64 / (1024.0 * 1024.0)
 }
 
@@ -108,11 +111,11 @@ fn worth_correcting(ritz: &[Ritz], rests: impl Fn(&Ritz) -> bool) -> Vec<&Ritz> 
 
 /// Krylov blocks of `K^-1 M`.
 fn krylov<'a>(problem: &Problem<'a>, n_expected: usize) -> Result<Space<'a>> {
-    let mut space = Space::new(*problem, Side::Right);
+    let mut space = Space::with_room(*problem, Side::Right, n_krylov(n_expected) + ROUNDS_EXPECTED * SKETCH);
     let n_columns = n_krylov(n_expected).min(space.n_equations);
     let mut image = space.random(KRYLOV_BLOCK.min(space.n_equations)).multiplied_by(problem.pencil.m)?;
     while space.v.n_columns() < n_columns && image.n_columns() > 0 {
-        image = space.extend_by_solves(&image)?;
+        image = space.extend_by_refined_solves(&image)?;
     }
     Ok(space)
 }

@@ -11,6 +11,8 @@ use crate::petsc::{Block, Factor, Matrix, Noise};
 pub(super) const SKETCH: usize = 32;
 /// Directions this much smaller than the largest of their block add nothing.
 const NEGLIGIBLE: f64 = 1e-7;
+/// Columns keep at least this share of their length where V is left but once.
+const CLEAR: f64 = 1e-4;
 /// No residual counts for more than that of a mode this far down, relative to the highest.
 const LOWEST: f64 = 0.01;
 
@@ -64,12 +66,37 @@ pub(super) struct Ritz {
     pub im: Vec<f64>,
 }
 
+/// `V^T B W`, `W^T B V` and `W^T B W`.
+struct Products {
+    right: DMatrix<f64>,
+    below: DMatrix<f64>,
+    corner: DMatrix<f64>,
+}
+
+impl Products {
+    /// `[V W]^T B [V W]` from `V^T B V`.
+    fn joined_to(&self, old: &DMatrix<f64>) -> DMatrix<f64> {
+        let (n, p) = self.right.shape();
+        let mut new = DMatrix::zeros(n + p, n + p);
+        new.view_mut((0, 0), (n, n)).copy_from(old);
+        new.view_mut((0, n), (n, p)).copy_from(&self.right);
+        new.view_mut((n, 0), (p, n)).copy_from(&self.below);
+        new.view_mut((n, n), (p, p)).copy_from(&self.corner);
+        new
+    }
+}
+
 impl<'a> Space<'a> {
     /// Without any column.
     pub fn new(problem: Problem<'a>, side: Side) -> Space<'a> {
+        Space::with_room(problem, side, 0)
+    }
+
+    /// Without any column, but room for some.
+    pub fn with_room(problem: Problem<'a>, side: Side, n_columns: usize) -> Space<'a> {
         let (comm, n_local) = (problem.pencil.k.comm(), problem.pencil.k.n_local());
         let none = || DMatrix::zeros(0, 0);
-        let v = Block::zeros(comm, n_local, 0);
+        let v = Block::with_room(comm, n_local, n_columns);
         let (noise, n_equations) = (Noise::new(problem.labels), comm.sum(n_local as f64) as usize);
         Space { problem, side, v, m: none(), c: none(), a: none(), noise, n_equations, n_solves: 0 }
     }
@@ -113,6 +140,22 @@ impl<'a> Space<'a> {
         }
     }
 
+    /// Appends `A^-1 R` as [`Space::extend_by_solves`], where the factor is in single precision with its digits squared: a residual is solved for,
+    /// too. The factor is that of K. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and MUMPS's.
+    pub fn extend_by_refined_solves(&mut self, r: &Block) -> Result<Block> {
+        let mut x = self.solved(r)?;
+        if !self.problem.factor.is_exact() {
+            let mut residual = r.clone();
+            residual.axpy(-1.0, &x.multiplied_by(self.problem.pencil.k)?);
+            x.axpy(1.0, &self.solved(&residual)?);
+        }
+        self.n_solves += r.n_columns();
+        self.extend(x)
+    }
+
     /// Appends `A^-1 R`, as far as V lacks it: W. Gives `M W`.
     ///
     /// # Errors
@@ -126,60 +169,84 @@ impl<'a> Space<'a> {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn extend(&mut self, mut w: Block) -> Result<Block> {
+    pub fn extend(&mut self, w: Block) -> Result<Block> {
+        let w = self.what_is_new(w);
+        let Pencil { m, c, .. } = *self.problem.pencil;
+        let (mw, products) = self.products(m, &w)?;
+        self.m = products.joined_to(&self.m);
+        let (_, products) = self.products(c, &w)?;
+        self.c = products.joined_to(&self.c);
+        self.a = self.stiffness_products(&w)?.joined_to(&self.a);
+        self.v.append(&w);
+        Ok(mw)
+    }
+
+    /// An orthonormal basis of what V lacks of some columns. Projection on V and W needs independent columns and not orthogonal ones: V is
+    /// left a second time only where that took most digits the first time, so that of V itself a part of 1e-5 may stay.
+    fn what_is_new(&self, mut w: Block) -> Block {
+        let mut is_clear = false;
         for _ in 0..2 {
-            let overlap = self.v.gram(&w);
-            w.subtract(&self.v, &overlap);
+            if !is_clear {
+                let overlap = self.v.gram(&w);
+                w.subtract(&self.v, &overlap);
+                is_clear = w.lengths().into_iter().enumerate().all(|(j, length)| {
+                    let taken = &overlap[j * self.v.n_columns()..(j + 1) * self.v.n_columns()];
+                    length > CLEAR * taken.iter().map(|x| x * x).sum::<f64>().sqrt()
+                });
+            }
             let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE);
             // No space has more directions than equations; what is beyond is rounding.
             n = n.min(self.n_equations - self.v.n_columns());
             basis.truncate(n * w.n_columns());
             w = w.combined(&basis, n);
         }
-        let Pencil { m, c, k, .. } = *self.problem.pencil;
-        let (mw, below) = self.images(m, &w)?;
-        self.m = self.growth(&self.m, &w, &mw, below.as_ref());
-        let (cw, below) = self.images(c, &w)?;
-        self.c = self.growth(&self.c, &w, &cw, below.as_ref());
-        drop((cw, below));
-        let kw = w.multiplied_by(k)?;
-        let transposed = self.problem.pencil.transposed_stiffness_times(&w, &kw)?;
-        let (aw, below) = self.own_first(kw, transposed);
-        self.a = self.growth(&self.a, &w, &aw, Some(&below));
-        self.v.append(&w);
-        Ok(mw)
+        w
     }
 
-    /// `B X` with B one of M and C or, for left vectors, its transpose; and `B^T X` where that is something else.
-    fn images(&self, b: &Matrix, x: &Block) -> Result<(Block, Option<Block>)> {
-        let product = x.multiplied_by(b)?;
+    /// `B W`, and its products with V and W, with B one of M and C or, for left vectors, its transpose.
+    fn products(&self, b: &Matrix, w: &Block) -> Result<(Block, Products)> {
+        let product = w.multiplied_by(b)?;
         if self.problem.pencil.symmetric_mc {
-            return Ok((product, None));
+            let right = self.v.gram(&product);
+            let products = self.arranged(w, right.clone(), right, w.gram(&product));
+            return Ok((product, products));
         }
-        let (own, other) = self.own_first(product, x.multiplied_by_transpose(b)?);
-        Ok((own, Some(other)))
+        let (own, other) = self.own_first(product, w.multiplied_by_transpose(b)?);
+        let products = self.arranged(w, self.v.gram(&own), self.v.gram(&other), w.gram(&own));
+        Ok((own, products))
     }
 
-    /// The product of this side, then the other one, of those with a matrix and with its transpose.
-    fn own_first(&self, product: Block, transposed: Block) -> (Block, Block) {
+    /// The products of `A W`. K and its transpose differ where contact points slide: a few rows tell the difference.
+    fn stiffness_products(&self, w: &Block) -> Result<Products> {
+        let kw = w.multiplied_by(self.problem.pencil.k)?;
+        let (of_k, mut corner) = (self.v.gram(&kw), w.gram(&kw));
+        let mut of_transpose = of_k.clone();
+        let add = |to: &mut [f64], what: Vec<f64>| to.iter_mut().zip(what).for_each(|(x, y)| *x += y);
+        let difference = self.problem.pencil.transposed_less_stiffness_times(w, &kw)?;
+        add(&mut of_transpose, self.v.gram_of_few_rows(&difference));
+        if self.side == Side::Left {
+            add(&mut corner, w.gram_of_few_rows(&difference));
+        }
+        let (right, below) = self.own_first(of_k, of_transpose);
+        Ok(self.arranged(w, right, below, corner))
+    }
+
+    /// What belongs to this side's own product and to the other one, of what belongs to that with a matrix and with its transpose.
+    fn own_first<T>(&self, direct: T, transposed: T) -> (T, T) {
         match self.side {
-            Side::Right => (product, transposed),
-            Side::Left => (transposed, product),
+            Side::Right => (direct, transposed),
+            Side::Left => (transposed, direct),
         }
     }
 
-    /// `[V W]^T B [V W]` from `V^T B V`, `B W` and `B^T W`, which is the same where it is not given.
-    fn growth(&self, old: &DMatrix<f64>, w: &Block, bw: &Block, transposed: Option<&Block>) -> DMatrix<f64> {
+    /// Column-major products as matrices.
+    fn arranged(&self, w: &Block, right: Vec<f64>, below: Vec<f64>, corner: Vec<f64>) -> Products {
         let (n, p) = (self.v.n_columns(), w.n_columns());
-        let mut new = DMatrix::zeros(n + p, n + p);
-        new.view_mut((0, 0), (n, n)).copy_from(old);
-        let right = DMatrix::from_vec(n, p, self.v.gram(bw));
-        // W^T B V = (V^T B^T W)^T
-        let below = transposed.map(|transposed| DMatrix::from_vec(n, p, self.v.gram(transposed)));
-        new.view_mut((n, 0), (p, n)).copy_from(&below.as_ref().unwrap_or(&right).transpose());
-        new.view_mut((0, n), (n, p)).copy_from(&right);
-        new.view_mut((n, n), (p, p)).copy_from(&DMatrix::from_vec(p, p, w.gram(bw)));
-        new
+        Products {
+            right: DMatrix::from_vec(n, p, right),
+            below: DMatrix::from_vec(n, p, below).transpose(),
+            corner: DMatrix::from_vec(p, p, corner),
+        }
     }
 
     /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than V columns, the others
@@ -222,7 +289,7 @@ impl<'a> Space<'a> {
         let columns = self.v.combined(&coefficients[0].1, n_columns);
         let mut sum = columns.multiplied_by(pencil.k)?;
         if self.side == Side::Left {
-            sum = pencil.transposed_stiffness_times(&columns, &sum)?;
+            sum.axpy(1.0, &pencil.transposed_less_stiffness_times(&columns, &sum)?);
         }
         for (matrix, (_, coefficients)) in [pencil.c, pencil.m].into_iter().zip(&coefficients[1..]) {
             let columns = self.v.combined(coefficients, n_columns);
