@@ -31,7 +31,7 @@ const FUNCTIONS: &[&str] = &[
     "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
     "d(gemm|syev|getrf|getrs|sytrf|sytrs|trsv)_",
     "zgesv_",
-    "METIS_PartMeshDual",
+    "METIS_(PartMeshDual|NodeND)",
     "squeal_.*",
 ];
 

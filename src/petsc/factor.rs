@@ -21,7 +21,7 @@ pub enum FactorKind {
 /// What a factor costs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FactorStats {
-    /// Ordering used, MUMPS's number (3 is SCOTCH, 4 PORD); none where the matrix is dense and LAPACK factorises it.
+    /// Ordering used, MUMPS's number (1 is METIS's, which is given, 3 SCOTCH, 4 PORD); none where the matrix is dense and LAPACK factorises it.
     pub ordering: Option<i32>,
     /// Whether it is in single precision.
     pub single: bool,
@@ -52,7 +52,7 @@ pub struct FactorStats {
 }
 
 /// Names of MUMPS's orderings.
-const ORDERINGS: [&str; 8] = ["AMD", "user", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
+const ORDERINGS: [&str; 8] = ["AMD", "METIS", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
 
 impl FactorStats {
     /// Name of the ordering.

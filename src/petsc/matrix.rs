@@ -269,7 +269,10 @@ impl Matrix {
     }
 
     /// Whether all entries are stored, also zeros: [`Matrix::store_dense`]. Not collective.
-    pub(super) fn is_dense(&self) -> Result<bool> {
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn is_dense(&self) -> Result<bool> {
         let mut is_dense = sys::PetscBool::PETSC_FALSE;
         // SAFETY: the handle is alive and the name static.
         check(unsafe { sys::PetscObjectTypeCompare(self.raw.cast(), c"seqdense".as_ptr(), &mut is_dense) })?;

@@ -47,6 +47,59 @@ pub fn partition(tets: &[[u32; 10]], n_nodes: usize, n_parts: usize) -> Result<V
     Ok(of_nodes.into_iter().map(|part| part as u32).collect())
 }
 
+/// Who is whose neighbour, compressed.
+pub(super) struct Graph {
+    /// Where each vertex's list starts, and the end of the last.
+    offsets: Vec<i32>,
+    neighbours: Vec<i32>,
+}
+
+impl Graph {
+    /// Two vertices are neighbours where one of them lists the other; lists rise and do not name their owner.
+    pub(super) fn undirected(lists: &[Vec<u32>]) -> Graph {
+        let mut listed_by = vec![Vec::new(); lists.len()];
+        for (vertex, list) in lists.iter().enumerate() {
+            list.iter().for_each(|&other| listed_by[other as usize].push(vertex as u32));
+        }
+        let (mut offsets, mut neighbours) = (vec![0], Vec::new());
+        for (list, mut all) in lists.iter().zip(listed_by) {
+            if *list != all {
+                all.extend(list);
+                all.sort_unstable();
+                all.dedup();
+            }
+            neighbours.extend(all.into_iter().map(|vertex| vertex as i32));
+            offsets.push(neighbours.len() as i32);
+        }
+        Graph { offsets, neighbours }
+    }
+}
+
+/// The vertices in an order of elimination that fills little. Not collective.
+///
+/// # Errors
+/// METIS's, with its code.
+pub(super) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Result<Vec<i32>> {
+    let mut n = weights.len() as i32;
+    let (mut order, mut places) = (vec![0_i32; weights.len()], vec![0_i32; weights.len()]);
+    // SAFETY: METIS reads the graph and the weights, and writes the two permutations; null means "default" for the options.
+    let status = unsafe {
+        sys::METIS_NodeND(
+            &mut n,
+            graph.offsets.as_ptr().cast_mut(),
+            graph.neighbours.as_ptr().cast_mut(),
+            weights.as_ptr().cast_mut(),
+            ptr::null_mut(),
+            order.as_mut_ptr(),
+            places.as_mut_ptr(),
+        )
+    };
+    match status {
+        1 => Ok(order),
+        _ => Err(Error::Library(format!("METIS_NodeND failed with code {status} on {n} vertices"))),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -62,5 +115,21 @@ mod tests {
         assert_eq!(changes, 1, "{part:?}");
         assert!((75..=91).contains(&first), "{first} of 166 nodes");
         assert_eq!(partition(&chain, 166, 1).unwrap(), vec![0; 166]);
+    }
+
+    /// Two cliques of five with one vertex between them, which only one of each lists.
+    #[test]
+    fn what_separates_is_eliminated_last() {
+        let clique = |first: u32| (first..first + 5).map(move |v| (first..first + 5).filter(|&w| w != v).collect());
+        let mut lists: Vec<Vec<u32>> = clique(0).chain(clique(5)).collect();
+        lists.push(vec![4, 5]);
+        let graph = Graph::undirected(&lists);
+        assert_eq!(graph.neighbours[graph.offsets[4] as usize..graph.offsets[5] as usize], [0, 1, 2, 3, 10]);
+        let order = nested_dissection(&graph, &[1; 11]).unwrap();
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..11).collect::<Vec<_>>());
+        let sides: Vec<i32> = order.iter().filter(|&&v| v < 10).map(|&v| v / 5).collect();
+        assert!(sides.windows(2).filter(|pair| pair[0] != pair[1]).count() <= 1 || order[10] == 10, "{order:?}");
     }
 }

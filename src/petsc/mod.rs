@@ -22,6 +22,7 @@ mod metis;
 mod mumps;
 mod noise;
 pub mod nonlinear;
+mod ordering;
 mod product;
 mod session;
 mod vector;

@@ -6,7 +6,7 @@
 use squeal_sys as sys;
 
 use super::error::check;
-use super::{Comm, FactorKind, Matrix};
+use super::{Comm, FactorKind, Matrix, ordering};
 use crate::{Error, Result};
 
 /// In which numbers a factor is made and solves.
@@ -88,6 +88,10 @@ const ANALYSE: i32 = 1;
 const FACTORISE: i32 = 2;
 const SOLVE: i32 = 3;
 
+/// Orderings by MUMPS's numbers: one that is given, and METIS's, which this MUMPS does not have.
+const GIVEN: i32 = 1;
+const METIS: i32 = 5;
+
 /// How many parameters of either kind there are.
 const N_ICNTL: i32 = 60;
 const N_CNTL: i32 = 15;
@@ -129,14 +133,14 @@ impl Mumps {
             id.sym = if kind == FactorKind::Symmetric { 2 } else { 0 };
         });
         new.run(START);
-        // Silent.
+        // Silent, unless the user asks for more.
         (1..=3).for_each(|stream| new.set_icntl(stream, -1));
         new.set_icntl(4, 0);
+        new.take_options()?;
         // Everything distributed: matrix, right-hand sides, solutions.
         for (number, value) in [(18, 3), (20, 10), (21, 1)] {
             new.set_icntl(number, value);
         }
-        new.take_options()?;
         Ok(new)
     }
 
@@ -200,8 +204,18 @@ impl Mumps {
         let first = a.first_row()?;
         self.equations = (0..a.n_local()).map(|i| (first + i) as i32 + 1).collect();
         let n = self.comm.sum(a.n_local() as f64) as i32;
-        both!(&mut self.data, id => id.n = n);
-        self.with_entries(a, false, ANALYSE)
+        let by_metis = both!(&self.data, id => id.icntl[6] == METIS);
+        let mut places = if by_metis { ordering::nested_dissection(a)? } else { Vec::new() };
+        both!(&mut self.data, id => {
+            id.n = n;
+            if by_metis {
+                id.icntl[6] = GIVEN;
+                id.perm_in = places.as_mut_ptr();
+            }
+        });
+        self.with_entries(a, false, ANALYSE)?;
+        both!(&mut self.data, id => id.perm_in = std::ptr::null_mut());
+        Ok(())
     }
 
     /// Factorises a matrix of the pattern analysed. Collective.

@@ -15,9 +15,9 @@ pub struct Session {
     _private: (),
 }
 
-/// Options that hold for every run. `mat_mumps_icntl_7` can be set on one rank through the option database only.
+/// Options that hold for every run unless the user sets others: orderings by METIS, made on one rank.
 const OPTIONS: &[(&str, &str)] =
-    &[("-no_signal_handler", "1"), ("-skip_petscrc", "1"), ("-mat_mumps_icntl_7", "3"), ("-mat_mumps_icntl_28", "1")];
+    &[("-no_signal_handler", "1"), ("-skip_petscrc", "1"), ("-mat_mumps_icntl_7", "5"), ("-mat_mumps_icntl_28", "1")];
 
 /// Where MUMPS puts factors that do not fit into memory: the user's choice, else the system's temporary folder.
 const OUT_OF_CORE: &str = "MUMPS_OOC_TMPDIR";

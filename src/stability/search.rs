@@ -24,14 +24,14 @@ use crate::petsc::{Factor, FactorKind, Matrix};
 use crate::{Error, Result};
 
 /// Columns of a Krylov block.
-const KRYLOV_BLOCK: usize = 8;
+const KRYLOV_BLOCK: usize = 16;
 /// Columns of the Krylov space for each mode expected.
 const KRYLOV: f64 = 2.2;
 /// Relative change of an eigenvalue from round to round at which it rests. A round wins a factor of three to five, so that the error
 /// left is below half the change.
 const REST: f64 = 1e-9;
 /// Backward error of an eigenpair that is found.
-const BACKWARD_ERROR: f64 = 1e-10;
+pub(super) const BACKWARD_ERROR: f64 = 1e-10;
 /// Pairs whose vectors are looked at together.
 const PAIRS_AT_ONCE: usize = 16;
 /// Rounds of correction before the search is given up.
