@@ -1,7 +1,7 @@
 //! Seconds, entries and memory of the stages on the demo brake: `cargo bench`, or `cargo bench -- meshes/brake-full.toml`.
 //!
 //! With `--factors` it ends after the factors and their solves, for comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for
-//! PORD. Debian's MUMPS has no METIS, and falls back in silence where 5 asks for it: the ordering used is printed.
+//! PORD, 3 for SCOTCH. The ordering used is printed.
 //!
 //! Not a timed test: it prints figures and judges nothing. Under mpirun run the executable that `cargo bench --no-run` names.
 

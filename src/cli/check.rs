@@ -7,6 +7,7 @@ use std::path::Path;
 
 use serde_json::{Value as Json, json};
 
+use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
 use crate::model::LoadKind;
 use crate::petsc::{Comm, Factor, FactorKind};
@@ -206,6 +207,7 @@ fn memory(told: &mut Told, comm: &Comm, brake: &Brake) -> Result<()> {
     let families = brake.families()?;
     let system = brake.assemble(comm, &families)?;
     let mut factor = Factor::new(FactorKind::Unsymmetric);
+    factor.set_precision(tangent_precision(&system));
     factor.analyse(&system.k)?;
     let stats = factor.stats();
     let entries = system.k.n_entries()?;

@@ -16,5 +16,5 @@ mod support;
 pub use balance::{Balance, PairForces, Wrench};
 pub use contacts::{Contacts, Counts};
 pub use newton::{Iteration, Step};
-pub use path::{Equilibrium, Path};
+pub use path::{Equilibrium, Path, tangent_precision};
 pub use support::{FreeMotion, free_motions};

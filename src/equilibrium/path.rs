@@ -29,6 +29,11 @@ const FIRST_RISE: f64 = 0.1;
 /// A failing step is halved down to this.
 const SMALLEST_RISE: f64 = 0.005;
 
+/// In which precision the tangents of a system are factorised.
+pub fn tangent_precision(system: &System) -> Precision {
+    if system.dofs.n_global() >= SINGLE_FROM { Precision::Single } else { Precision::Double }
+}
+
 /// The equilibria of one structure along rising or falling friction. Keeps the last state, from which the next starts.
 pub struct Path<'a> {
     system: &'a System,
@@ -52,8 +57,7 @@ impl<'a> Path<'a> {
     /// PETSc's.
     pub fn new(system: &'a System, interface: &'a Interface) -> Result<Path<'a>> {
         let contacts = Contacts::new(interface, system)?;
-        let precision = if system.dofs.n_global() >= SINGLE_FROM { Precision::Single } else { Precision::Double };
-        let (tangent, factor) = (system.k.duplicate()?, StepFactor::new(precision));
+        let (tangent, factor) = (system.k.duplicate()?, StepFactor::new(tangent_precision(system)));
         let (steps, pulled) = (Vec::new(), Vec::new());
         let (state, before, is_settled_only) = (None, None, true);
         Ok(Path { system, contacts, tangent, factor, state, before, steps, is_settled_only, pulled })

@@ -29,7 +29,7 @@ const MAX_UPDATES: usize = 200;
 const AT_A_TIME: usize = 32;
 /// Share of the free memory that updates may take; while they grow there are two of them.
 const SHARE_OF_MEMORY: f64 = 0.4;
-/// Iterations at most with a tangent's own factor in single precision: the full demo brake takes one or two.
+/// Iterations at most with a tangent's own factor in single precision.
 const MAX_OWN_ITERATIONS: usize = 20;
 /// A change of tangent this much smaller than the tangents themselves is GMRES's.
 const NEGLIGIBLE: f64 = 1e-6;

@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::dense_factor::DenseFactor;
 use super::mumps::{Mumps, Precision};
 use super::{Matrix, Vector, memory};
-use crate::Result;
+use crate::{Error, Result};
 
 /// Which factors are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,7 +104,7 @@ impl Factor {
     /// Orders the equations and makes the symbolic factorisation, unless that is done. No values are used.
     ///
     /// # Errors
-    /// PETSc's, MUMPS's with its code, or [`crate::Error::Input`] where the machine has too little memory for the factor.
+    /// PETSc's, MUMPS's with its code, or [`Error::Input`] where the machine has too little memory for the factor.
     pub fn analyse(&mut self, a: &Matrix) -> Result<()> {
         if self.sparse.is_some() {
             return Ok(());
@@ -149,7 +149,8 @@ impl Factor {
         self.sparse = None;
     }
 
-    /// Factorises the values of `a`, whose pattern is that of all earlier calls. Workspace is enlarged where pivoting needs it.
+    /// Factorises the values of `a`, whose pattern is that of all earlier calls. Workspace is enlarged where pivoting needs it, and where single
+    /// precision does not do, double precision serves from then on.
     ///
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
@@ -157,6 +158,16 @@ impl Factor {
         if let Some(values) = a.dense_values()? {
             return self.factorise_dense(a.n_local(), values);
         }
+        match self.factorise_sparse(a) {
+            Err(Error::Library(_)) if self.precision == Precision::Single => {
+                self.set_precision(Precision::Double);
+                self.factorise_sparse(a)
+            }
+            outcome => outcome,
+        }
+    }
+
+    fn factorise_sparse(&mut self, a: &Matrix) -> Result<()> {
         self.analyse(a)?;
         let start = Instant::now();
         let mumps = self.sparse.as_mut().expect("analysed above").get_mut();

@@ -2,7 +2,7 @@
 //!
 //! * [`Session`] starts MPI, PETSc and SLEPc and ends them; every handle holds the session through its [`Comm`], so that
 //!   finalisation comes last by construction.
-//! * [`Vector`], [`Matrix`], [`Factor`] own one PETSc object each. Borrowed arrays exist only inside closures.
+//! * [`Vector`], [`Matrix`] own one PETSc object each, [`Factor`] what MUMPS has of one matrix. Borrowed arrays exist only inside closures.
 //! * [`nonlinear`] runs SNES, [`eigen`] runs PEP on what the caller's trait objects compute; callbacks are registered
 //!   inside `solve` and forgotten when it returns. Errors and panics inside them come out of `solve`.
 //! * Every call goes through one checked door (`error::check`), which turns PETSc's frames into an error.

@@ -41,11 +41,15 @@ const MARGINS: [usize; 4] = [8, 24, 72, 216];
 
 /// Rounds that most searches take.
 const ROUNDS_EXPECTED: usize = 8;
+/// Rounds that the left vectors of a few unstable modes take.
+const LEFT_ROUNDS_EXPECTED: usize = 3;
 
-/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for its rounds, the vectors found, and a round's
-/// right-hand sides, solutions and products.
+/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for its rounds, the vectors found, a round's
+/// right-hand sides, solutions and products, and what left vectors then add.
 pub fn needs_mb(n_modes: usize, n_equations: usize) -> f64 {
-    let n_columns = n_krylov(n_modes) + (ROUNDS_EXPECTED + 5) * SKETCH + 2 * n_modes;
+    let right = n_krylov(n_modes) + (ROUNDS_EXPECTED + 5) * SKETCH + 2 * n_modes;
+    let left = LEFT_ROUNDS_EXPECTED * SKETCH + 6 * n_modes;
+    let n_columns = right + left;
     8.0 * (n_columns * n_equations) as f64 / (1024.0 * 1024.0)
 }
 
