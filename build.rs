@@ -1,5 +1,5 @@
 //! Links MUMPS's build with SCOTCH into every executable, ahead of the plain build that PETSc itself asks for, so that
-//! PETSc's calls find it. Nothing of ours names its symbols, hence `--no-as-needed`.
+//! all calls find it, PETSc's too, which name its symbols only at run time: hence `--no-as-needed`.
 
 fn main() {
     println!("cargo:rustc-link-arg=-Wl,--push-state,--no-as-needed,-ldmumps_ptscotch,-lsmumps_ptscotch,--pop-state");
