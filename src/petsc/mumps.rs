@@ -125,7 +125,8 @@ impl Mumps {
             Precision::Double => Data::Double(Box::default()),
             Precision::Single => Data::Single(Box::default()),
         };
-        let mut new = Mumps { data, kind, comm: comm.clone(), equations: Vec::new(), unknowns: Vec::new(), route: None };
+        let mut new =
+            Mumps { data, kind, comm: comm.clone(), equations: Vec::new(), unknowns: Vec::new(), route: None };
         both!(&mut new.data, id => {
             // SAFETY: a valid communicator.
             id.comm_fortran = unsafe { sys::squeal_comm_fortran(comm.raw()) };
