@@ -23,16 +23,18 @@ mod mumps;
 mod noise;
 pub mod nonlinear;
 mod ordering;
+mod pattern;
 mod product;
 mod session;
 mod vector;
 
 pub use block::Block;
 pub use factor::{Factor, FactorKind, FactorStats};
-pub use matrix::{Csr, Matrix, Rows};
+pub use matrix::Matrix;
 pub use metis::partition;
 pub use mumps::Precision;
 pub use noise::Noise;
+pub use pattern::{Csr, Rows};
 pub use session::{Comm, Session, libraries};
 pub use vector::{Gather, Vector};
 

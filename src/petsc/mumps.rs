@@ -214,7 +214,7 @@ impl Mumps {
                 id.perm_in = places.as_mut_ptr();
             }
         });
-        self.with_entries(a, false, ANALYSE)?;
+        self.with_entries(a, ANALYSE)?;
         both!(&mut self.data, id => id.perm_in = std::ptr::null_mut());
         Ok(())
     }
@@ -225,29 +225,24 @@ impl Mumps {
     /// PETSc's; [`Mumps::verdict`] tells MUMPS's.
     pub fn factorise(&mut self, a: &Matrix) -> Result<()> {
         self.route = None;
-        self.with_entries(a, true, FACTORISE)
+        self.with_entries(a, FACTORISE)
     }
 
     /// Runs a job with the entries of this rank's rows: the upper triangle for a symmetric factor.
-    fn with_entries(&mut self, a: &Matrix, with_values: bool, job: i32) -> Result<()> {
+    fn with_entries(&mut self, a: &Matrix, job: i32) -> Result<()> {
         let upper = self.kind == FactorKind::Symmetric;
-        let (mut rows, mut columns) = (Vec::new(), Vec::new());
-        a.visit_entries(|row, column, _| {
-            if !upper || column >= row {
-                rows.push(row as i32 + 1);
-                columns.push(column as i32 + 1);
-            }
-        })?;
+        let n = a.with_parts(|parts| parts.iter().map(|part| part.values.len()).sum::<usize>())?;
+        let n = if upper { n / 2 + a.n_local() } else { n };
         both!(&mut self.data, id => {
-            let mut values = Vec::new();
-            if with_values {
-                values.reserve_exact(rows.len());
-                a.visit_entries(|row, column, value| {
-                    if !upper || column >= row {
-                        values.push(Real::of(value));
-                    }
-                })?;
-            }
+            let (mut rows, mut columns) = (Vec::with_capacity(n), Vec::with_capacity(n));
+            let mut values = Vec::with_capacity(n);
+            a.visit_entries(|row, column, value| {
+                if !upper || column >= row {
+                    rows.push(row as i32 + 1);
+                    columns.push(column as i32 + 1);
+                    values.push(Real::of(value));
+                }
+            })?;
             id.nnz_loc = rows.len() as i64;
             id.irn_loc = rows.as_mut_ptr();
             id.jcn_loc = columns.as_mut_ptr();
