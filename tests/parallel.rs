@@ -22,6 +22,7 @@ fn stability(ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let arguments = ["stability", "brake.toml", "--band", "0:1500", "-o", "run"];
     let Said { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
     assert_eq!(code, 0, "{err}");
+    assert!(!place.path("pieces").exists(), "{ranks} ranks wrote beside their folder");
     let modes = numbers(&place.read("run/modes.csv")).iter().map(|row| [row[2], row[3]]).collect();
     (modes, numbers(&place.read("run/contact.csv")).concat())
 }

@@ -67,6 +67,10 @@ impl Drawing {
         }
         let draft = folder.map_or_else(Vec::new, |folder| folder.draft().as_os_str().as_encoded_bytes().to_vec());
         let draft = PathBuf::from(OsString::from_vec(comm.broadcast(0, draft)));
+        if draft.as_os_str().is_empty() {
+            // The root has no folder: nothing is to be drawn.
+            return Ok(());
+        }
         let piece = |rank: usize| format!("pieces/{name}.{rank}.vtu");
         comm.agree(folder::write_file(&draft.join(piece(comm.rank())), |mut out| grid.write(&mut out)))?;
         let pieces: Vec<String> = (0..comm.size()).map(piece).collect();
