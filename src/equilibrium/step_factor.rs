@@ -21,8 +21,6 @@ use crate::Result;
 use crate::contact::Response;
 use crate::petsc::{Block, Factor, FactorKind, Matrix, Precision, Vector, linear, memory};
 
-/// Price of a right-hand side among many, in single solves: 0.09 s against 0.35 s on the full demo brake, two ranks.
-const BLOCKED_PRICE: f64 = 0.3;
 /// Right-hand sides that updates may keep: more are not worth it, and each takes n doubles.
 const MAX_UPDATES: usize = 200;
 /// Right-hand sides solved for at a time.
@@ -166,7 +164,8 @@ impl StepFactor {
         let new = (0..self.current.len()).filter(flipped).filter(|a| !known.contains(a));
         let new: Vec<Dyad> =
             new.flat_map(|a| dyads_of(a, &self.made_for[a].tangent, &self.current[a].tangent)).collect();
-        let price = BLOCKED_PRICE * new.len() as f64;
+        let share_of_factorisation = new.len() as f64 / self.factor.right_hand_sides_per_factorisation();
+        let price = share_of_factorisation * self.factor.solves_per_factorisation();
         if dyads.len() + new.len() > room(like) || self.spent + price > self.factor.solves_per_factorisation() {
             return Ok(false);
         }

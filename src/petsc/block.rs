@@ -146,7 +146,26 @@ impl Block {
     /// # Errors
     /// PETSc's.
     pub fn multiplied_by(&self, a: &Matrix) -> Result<Block> {
-        if a.is_dense()? { self.product(a, sys::MatMatMult) } else { a.times(self) }
+        let mut product = self.like(self.n_columns);
+        product.add_product(0, a, self, 0..self.n_columns)?;
+        Ok(product)
+    }
+
+    /// Adds `A X` to the columns from `first` on, with X some columns of another block.
+    ///
+    /// # Errors
+    /// PETSc's.
+    ///
+    /// # Panics
+    /// Where there are fewer columns.
+    pub fn add_product(&mut self, first: usize, a: &Matrix, x: &Block, columns: Range<usize>) -> Result<()> {
+        if a.is_dense()? {
+            let product = x.columns(columns).product(a, sys::MatMatMult)?;
+            let to = &mut self.values[first * self.n_local..][..product.values.len()];
+            to.iter_mut().zip(&product.values).for_each(|(to, value)| *to += value);
+            return Ok(());
+        }
+        a.add_times(x, columns, self, first)
     }
 
     /// `A^T self`.
@@ -261,6 +280,12 @@ impl Block {
         let entry = |(i, j): (usize, usize)| scale[i] * eigen.eigenvectors[(i, j)] / eigen.eigenvalues[j].sqrt();
         let entries = kept.iter().flat_map(|&j| (0..n).map(move |i| (i, j)));
         (entries.map(entry).collect(), kept.len())
+    }
+
+    /// Keeps the first `n` columns. Not collective.
+    pub fn truncate(&mut self, n: usize) {
+        self.values.truncate(n * self.n_local);
+        self.n_columns = self.n_columns.min(n);
     }
 
     /// Overwrites the columns from `first` on. Not collective.

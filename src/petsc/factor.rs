@@ -260,6 +260,13 @@ impl Factor {
         self.stats.flops / (33.0 * self.stats.entries.max(1.0))
     }
 
+    /// How many right-hand sides, solved for many at a time, cost about as much as one factorisation: on the full demo brake, two ranks, one
+    /// takes an eighth (single precision) to a sixth of a single solve's time. Not collective.
+    pub fn right_hand_sides_per_factorisation(&self) -> f64 {
+        const PRICE: f64 = 0.15;
+        self.solves_per_factorisation() / PRICE
+    }
+
     /// What this factor has cost so far. Not collective.
     pub fn stats(&self) -> FactorStats {
         let (n_solves, n_right_hand_sides, solve_seconds) = self.solves.get();

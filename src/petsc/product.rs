@@ -3,42 +3,56 @@
 //! Some columns at a time are stored by rows, so that an entry of the matrix is read once for all of them and what it is multiplied by lies side by
 //! side. PETSc's MatMatMult reads the matrix once for four columns, and plans its exchange of others' entries with every call.
 
+use std::ops::Range;
+
+use multiversion::multiversion;
+
 use super::matrix::Part;
 use super::{Block, Matrix};
 use crate::Result;
 
-/// Columns at a time.
-const STRIP: usize = 8;
+/// Columns at a time: as many sums as registers hold.
+const STRIP: usize = 16;
+/// Rows between storage by rows and by columns that stay in the cache.
+const CHUNK: usize = 128;
 
 /// A row of a strip.
 type Row = [f64; STRIP];
 
 impl Matrix {
-    /// `self X`.
+    /// `Y += self X` for some columns of X and as many of Y, from `to` on.
     ///
     /// # Errors
     /// PETSc's.
-    pub(super) fn times(&self, x: &Block) -> Result<Block> {
-        let ghosts = self.ghost_columns(x)?;
-        let mut product = Block::zeros(x.comm(), x.n_local(), x.n_columns());
+    pub(super) fn add_times(&self, x: &Block, columns: Range<usize>, y: &mut Block, to: usize) -> Result<()> {
         self.with_parts(|parts| {
-            for first in (0..x.n_columns()).step_by(STRIP) {
-                let columns = first..(first + STRIP).min(x.n_columns());
-                let mut rows = vec![[0.0; STRIP]; x.n_local()];
-                let own = columns.clone().map(|j| x.column(j));
-                let other = columns.clone().map(|j| ghosts.get(j).map_or(&[][..], |ghosts| ghosts));
-                add_product(&parts[0], &by_rows(own), &mut rows);
-                add_product(&parts[1], &by_rows(other), &mut rows);
-                for (place, j) in columns.enumerate() {
-                    product.column_mut(j).iter_mut().zip(&rows).for_each(|(y, row)| *y = row[place]);
+            let mut strips = [Vec::new(), Vec::new()];
+            for first in columns.clone().step_by(STRIP) {
+                let strip = first..(first + STRIP).min(columns.end);
+                let own: Vec<&[f64]> = strip.clone().map(|j| x.column(j)).collect();
+                let ghosts = self.ghost_columns(x, strip)?;
+                let ghosts: Vec<&[f64]> = ghosts.iter().map(Vec::as_slice).collect();
+                by_rows(&own, &mut strips[0]);
+                by_rows(&ghosts, &mut strips[1]);
+                let mut chunk = [[0.0; STRIP]; CHUNK];
+                for begin in (0..x.n_local()).step_by(CHUNK) {
+                    let rows = begin..(begin + CHUNK).min(x.n_local());
+                    chunk.fill([0.0; STRIP]);
+                    for (part, strip) in parts.iter().zip(&strips) {
+                        add_product(part, strip, begin, &mut chunk[..rows.len()]);
+                    }
+                    for place in 0..own.len() {
+                        let column = &mut y.column_mut(to + first - columns.start + place)[rows.clone()];
+                        column.iter_mut().zip(&chunk).for_each(|(y, row)| *y += row[place]);
+                    }
                 }
             }
-        })?;
-        Ok(product)
+            Ok(())
+        })?
     }
 
-    /// For each column what other ranks own of it and this rank's rows need; nothing on one rank.
-    fn ghost_columns(&self, x: &Block) -> Result<Vec<Vec<f64>>> {
+    /// For some columns what other ranks own of each and this rank's rows need; nothing on one rank.
+    fn ghost_columns(&self, x: &Block, columns: Range<usize>) -> Result<Vec<Vec<f64>>> {
         if self.comm().size() == 1 {
             return Ok(Vec::new());
         }
@@ -46,28 +60,38 @@ impl Matrix {
             let column = x.vector(j)?;
             self.ghosts(&column)?.run(&column, <[f64]>::to_vec)
         };
-        (0..x.n_columns()).map(bring).collect()
+        columns.map(bring).collect()
     }
 }
 
 /// Columns of one length, at most [`STRIP`], by rows; zeros stand for those that lack.
-fn by_rows<'a>(columns: impl Iterator<Item = &'a [f64]> + Clone) -> Vec<Row> {
-    let n_rows = columns.clone().next().map_or(0, <[f64]>::len);
-    let mut rows = vec![[0.0; STRIP]; n_rows];
-    for (place, column) in columns.enumerate() {
-        rows.iter_mut().zip(column).for_each(|(row, x)| row[place] = *x);
+fn by_rows(columns: &[&[f64]], rows: &mut Vec<Row>) {
+    rows.resize(columns.first().map_or(0, |column| column.len()), [0.0; STRIP]);
+    for (chunk, rows) in rows.chunks_mut(CHUNK).enumerate() {
+        for place in 0..STRIP {
+            match columns.get(place) {
+                Some(column) => {
+                    let column = &column[chunk * CHUNK..];
+                    rows.iter_mut().zip(column).for_each(|(row, x)| row[place] = *x);
+                }
+                None => rows.iter_mut().for_each(|row| row[place] = 0.0),
+            }
+        }
     }
-    rows
 }
 
-/// `Y += A X`
-fn add_product(a: &Part, x: &[Row], y: &mut [Row]) {
-    for (bounds, y) in a.offsets.windows(2).zip(y) {
+/// `Y += A X` for the rows from `first` on that Y has. The sums are the same on every processor: its wider registers hold more of them, and
+/// products are not fused with sums.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2", "aarch64+neon"))]
+fn add_product(a: &Part, x: &[Row], first: usize, y: &mut [Row]) {
+    for (bounds, y) in a.offsets.get(first..).unwrap_or_default().windows(2).zip(y) {
         let entries = bounds[0] as usize..bounds[1] as usize;
         let mut sum = *y;
-        for (&column, value) in a.columns[entries.clone()].iter().zip(&a.values[entries]) {
+        for (&column, &value) in a.columns[entries.clone()].iter().zip(&a.values[entries]) {
             let x = &x[column as usize];
-            sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += value * x);
+            for k in 0..STRIP {
+                sum[k] += value * x[k];
+            }
         }
         *y = sum;
     }
@@ -81,11 +105,15 @@ mod tests {
     fn a_strip_is_multiplied_row_by_row() {
         // A = [1 0 2; 0 0 0; 0 3 0], columns x and 10 x
         let a = Part { offsets: &[0, 2, 2, 3], columns: &[0, 2, 1], values: &[1.0, 2.0, 3.0] };
-        let x = by_rows([[1.0, 2.0, 3.0].as_slice(), &[10.0, 20.0, 30.0]].into_iter());
+        let mut x = vec![[7.0; STRIP]; 5];
+        by_rows(&[&[1.0, 2.0, 3.0], &[10.0, 20.0, 30.0]], &mut x);
         let mut y = vec![[1.0; STRIP]; 3];
-        add_product(&a, &x, &mut y);
+        add_product(&a, &x, 0, &mut y);
         assert_eq!(y.iter().map(|row| row[0]).collect::<Vec<_>>(), [8.0, 1.0, 7.0]);
         assert_eq!(y.iter().map(|row| row[1]).collect::<Vec<_>>(), [71.0, 1.0, 61.0]);
         assert!(y.iter().all(|row| row[2..] == [1.0; STRIP - 2]));
+        let mut last = vec![[0.0; STRIP]; 1];
+        add_product(&a, &x, 2, &mut last);
+        assert_eq!(last[0][..2], [6.0, 60.0]);
     }
 }

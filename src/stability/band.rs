@@ -28,6 +28,8 @@ pub struct Solver {
     /// The space of the last blocked search, which holds the vectors of its modes.
     basis: Option<Basis>,
     evidence: Evidence,
+    /// Where the last count was taken in a gap beyond the band's end, Hz: the next one begins there.
+    gap: Option<f64>,
 }
 
 /// What shows that no mode is missing.
@@ -155,7 +157,7 @@ pub fn solve(
     band: [f64; 2],
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Band> {
-    let expected = prepare(pencil, lu, solver, band[1])?;
+    let (below, expected) = prepare(pencil, lu, solver, band[1])?;
     let (mut n_solves, mut last, mut gave_up) = (0, None, false);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
@@ -174,9 +176,9 @@ pub fn solve(
         n_solves += search.n_solves;
         let before = last.as_ref().map(|(_, count): &(Search, Count)| count.found);
         let count = match solver.evidence {
-            Evidence::Inertia => count(pencil, solver, &search, band[1], expected)?,
+            Evidence::Inertia => count(pencil, solver, &search, band[1], (below, expected))?,
             Evidence::Repetition { estimated } => {
-                repeated(&search, band[1], before.or(if estimated { Some(expected) } else { None }))
+                repeated(&search, below, before.or(if estimated { Some(expected) } else { None }))
             }
         };
         if let Some(count) = count {
@@ -196,16 +198,18 @@ pub fn solve(
     }
 }
 
-/// About how many modes there are below the band's end (Hz), and the factor about which is searched; where both do not fit into memory, the
-/// factor that counts and the one that solves make room for one another, and the latter leaves room for the search.
-fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<usize> {
+/// About how many modes there are below a frequency (Hz), the band's end or the gap beyond it where the last count was taken, and the factor
+/// about which is searched; where both do not fit into memory, the factor that counts and the one that solves make room for one another, and
+/// the latter leaves room for the search.
+fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<(f64, usize)> {
     solver.basis = None;
     let has_mb = |needed| memory::has_mb(pencil.k.comm(), needed);
     let symmetric_over_lu = SYMMETRIC_OVER_LU[usize::from(!lu.is_exact())];
     if !solver.inertia.is_made() && !has_mb(symmetric_over_lu * lu.stats().used_mb) {
         lu.release();
     }
-    let expected = solver.estimate(pencil, end)?;
+    let below = solver.gap.filter(|gap| (end..BEYOND[0] * end).contains(gap)).unwrap_or(end);
+    let expected = solver.estimate(pencil, below)?;
     if !lu.is_made() {
         let search_mb = search::needs_mb(expected, n_equations(pencil));
         if !has_mb(solver.inertia.stats().used_mb / symmetric_over_lu + search_mb) {
@@ -214,28 +218,36 @@ fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> R
         lu.leave_mb(search_mb);
     }
     factorise_shifted(pencil, lu, solver.shift)?;
-    Ok(expected)
+    Ok((below, expected))
 }
 
 fn n_equations(pencil: &Pencil) -> usize {
     pencil.k.comm().sum(pencil.k.n_local() as f64) as usize
 }
 
-/// How many modes were found below the band's end, and how many there should be; none where the search did not get there.
+/// How many modes were found below a frequency at the band's `end` or beyond it, and how many there should be; none where the search did not
+/// get there.
 ///
-/// Friction may carry a mode across the band's end, where the two problems then differ by one: the count is taken again
-/// in the widest gap between modes above it.
-fn count(pencil: &Pencil, solver: &mut Solver, search: &Search, end: f64, expected: usize) -> Result<Option<Count>> {
-    if search.reach <= end {
+/// Friction may carry a mode across that frequency, where the two problems then differ by one: the count is taken again
+/// in the widest gap between modes above the band's end.
+fn count(
+    pencil: &Pencil,
+    solver: &mut Solver,
+    search: &Search,
+    end: f64,
+    (below, expected): (f64, usize),
+) -> Result<Option<Count>> {
+    if search.reach <= below {
         return Ok(None);
     }
     let mut moduli: Vec<f64> = search.pairs.iter().map(|pair| pair.lambda.norm() / TAU).collect();
     moduli.extend(Some(search.reach).filter(|reach| reach.is_finite()));
     moduli.sort_by(f64::total_cmp);
-    let count = Count { below: end, expected, found: search.n_below(end) };
+    let count = Count { below, expected, found: search.n_below(below) };
     match widest_gap(&moduli, end).filter(|_| !count.agrees()) {
         Some(gap) => {
             let expected = solver.inertia.n_below(pencil, gap)?;
+            solver.gap = Some(gap);
             Ok(Some(Count { below: gap, expected, found: search.n_below(gap) }))
         }
         None => Ok(Some(count)),

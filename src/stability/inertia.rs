@@ -17,10 +17,11 @@ use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 
 use super::Pencil;
 use crate::Result;
+use crate::algebra::dot;
 use crate::petsc::{Block, Factor, FactorKind, FactorStats};
 
-/// Columns from which a new factor is cheaper: a right-hand side among many takes 0.09 s, the factor 8 s (full demo brake, two ranks).
-const MAX_COLUMNS: usize = 60;
+/// Columns of U that are solved for at a time.
+const AT_A_TIME: usize = 32;
 /// A change of a point's tangent this much smaller than the tangent itself is none.
 const NEGLIGIBLE: f64 = 1e-12;
 /// An eigenvalue of the small matrix this close to zero, relative to the largest, leaves its sign open.
@@ -76,17 +77,24 @@ impl Inertia {
         }
         let pairs = last.tangents.iter().zip(points.tangents).enumerate();
         let changes: Vec<Change> = pairs.flat_map(|(a, (old, new))| changes(a, old, new)).collect();
-        if changes.len() > MAX_COLUMNS {
+        if changes.len() as f64 > self.factor.right_hand_sides_per_factorisation() {
             return Ok(None);
         }
         if changes.is_empty() {
             return Ok(Some(last.n_negative));
         }
-        let mut u = Block::zeros(pencil.k.comm(), pencil.k.n_local(), changes.len());
-        for (j, change) in changes.iter().enumerate() {
-            points.contacts.spread_into(change.point, change.direction, 1.0, u.column_mut(j));
+        let mut flexibility = Vec::with_capacity(changes.len().pow(2));
+        for columns in changes.chunks(AT_A_TIME) {
+            let mut u = Block::zeros(pencil.k.comm(), pencil.k.n_local(), columns.len());
+            for (j, change) in columns.iter().enumerate() {
+                points.contacts.spread_into(change.point, change.direction, 1.0, u.column_mut(j));
+            }
+            let response = u.solved_by(&self.factor)?;
+            for j in 0..columns.len() {
+                let gaps = points.contacts.gaps(&response.vector(j)?)?;
+                flexibility.extend(changes.iter().map(|change| dot(change.direction, gaps[change.point])));
+            }
         }
-        let flexibility = u.gram(&u.solved_by(&self.factor)?);
         Ok(n_negative_after(last.n_negative, &changes, &flexibility))
     }
 

@@ -41,14 +41,14 @@ pub struct Points<'a> {
 }
 
 impl Pencil<'_> {
-    /// `K^T X - K X`, given `K X`: with contact points `-B^T (D - D^T) B X`, which takes their entries alone. Collective.
+    /// `K^T X - K X`: with contact points `-B^T (D - D^T) B X`, which takes their entries alone. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub(super) fn transposed_less_stiffness_times(&self, x: &Block, kx: &Block) -> Result<Block> {
+    pub(super) fn transposed_less_stiffness_times(&self, x: &Block) -> Result<Block> {
         let Some(Points { contacts, skew, .. }) = self.points else {
             let mut difference = x.multiplied_by_transpose(self.k)?;
-            difference.axpy(-1.0, kx);
+            difference.axpy(-1.0, &x.multiplied_by(self.k)?);
             return Ok(difference);
         };
         let mut product = Block::zeros(x.comm(), x.n_local(), x.n_columns());

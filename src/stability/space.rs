@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use super::Pencil;
 use crate::Result;
-use crate::petsc::{Block, Factor, Matrix, Noise};
+use crate::petsc::{Block, Factor, Noise};
 
 /// Random combinations of the residuals that join the space in a round.
 pub(super) const SKETCH: usize = 32;
@@ -66,24 +66,14 @@ pub(super) struct Ritz {
     pub im: Vec<f64>,
 }
 
-/// `V^T B W`, `W^T B V` and `W^T B W`.
-struct Products {
-    right: DMatrix<f64>,
-    below: DMatrix<f64>,
-    corner: DMatrix<f64>,
-}
-
-impl Products {
-    /// `[V W]^T B [V W]` from `V^T B V`.
-    fn joined_to(&self, old: &DMatrix<f64>) -> DMatrix<f64> {
-        let (n, p) = self.right.shape();
-        let mut new = DMatrix::zeros(n + p, n + p);
-        new.view_mut((0, 0), (n, n)).copy_from(old);
-        new.view_mut((0, n), (n, p)).copy_from(&self.right);
-        new.view_mut((n, 0), (p, n)).copy_from(&self.below);
-        new.view_mut((n, n), (p, p)).copy_from(&self.corner);
-        new
-    }
+/// `[V W]^T B [V W]` from `V^T B V`, `[V W]^T B W` and `[V W]^T B^T W`.
+fn joined(old: &DMatrix<f64>, columns: &DMatrix<f64>, rows: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, p) = (old.nrows(), columns.ncols());
+    let mut new = DMatrix::zeros(n + p, n + p);
+    new.view_mut((0, 0), (n, n)).copy_from(old);
+    new.view_mut((n, 0), (p, n)).copy_from(&rows.rows(0, n).transpose());
+    new.view_mut((0, n), (n + p, p)).copy_from(columns);
+    new
 }
 
 impl<'a> Space<'a> {
@@ -165,20 +155,51 @@ impl<'a> Space<'a> {
         self.extend(self.solved(r)?)
     }
 
-    /// Appends what V lacks of some columns W, orthonormal, and their projections. Gives `M W`.
+    /// Appends what V lacks of some columns W, orthonormal, and their projections. Gives `M W`, transposed for left vectors.
     ///
     /// # Errors
     /// PETSc's.
     pub fn extend(&mut self, w: Block) -> Result<Block> {
         let w = self.what_is_new(w);
-        let Pencil { m, c, .. } = *self.problem.pencil;
-        let (mw, products) = self.products(m, &w)?;
-        self.m = products.joined_to(&self.m);
-        let (_, products) = self.products(c, &w)?;
-        self.c = products.joined_to(&self.c);
-        self.a = self.stiffness_products(&w)?.joined_to(&self.a);
         self.v.append(&w);
-        Ok(mw)
+        let (n, p) = (self.v.n_columns(), w.n_columns());
+        let mut images = self.images(&w)?;
+        // One pass over V for all images: it is the longest of the operands.
+        let products = self.v.gram(&images);
+        let product = |i: usize| DMatrix::from_column_slice(n, p, &products[i * n * p..][..n * p]);
+        let [m, c, k] = [0, 1, 2].map(product);
+        let [m_t, c_t] = match self.problem.pencil.symmetric_mc {
+            true => [m.clone(), c.clone()],
+            false => [3, 4].map(product),
+        };
+        // K and its transpose differ where contact points slide: a few rows tell the difference.
+        let difference = self.v.gram_of_few_rows(&self.problem.pencil.transposed_less_stiffness_times(&w)?);
+        let k_t = &k + DMatrix::from_vec(n, p, difference);
+        let (direct, transposed) = ([m, c, k], [m_t, c_t, k_t]);
+        let ([m, c, a], [m_t, c_t, a_t]) = match self.side {
+            Side::Right => (direct, transposed),
+            Side::Left => (transposed, direct),
+        };
+        self.m = joined(&self.m, &m, &m_t);
+        self.c = joined(&self.c, &c, &c_t);
+        self.a = joined(&self.a, &a, &a_t);
+        images.truncate(p);
+        Ok(images)
+    }
+
+    /// `M W`, `C W` and `K W` side by side; where M and C are not symmetric, `M^T W` and `C^T W`, too.
+    fn images(&self, w: &Block) -> Result<Block> {
+        let Pencil { m, c, k, symmetric_mc, .. } = *self.problem.pencil;
+        let p = w.n_columns();
+        let mut images = Block::zeros(w.comm(), w.n_local(), if symmetric_mc { 3 * p } else { 5 * p });
+        for (i, b) in [m, c, k].into_iter().enumerate() {
+            images.add_product(i * p, b, w, 0..p)?;
+        }
+        if !symmetric_mc {
+            images.set_columns(3 * p, &w.multiplied_by_transpose(m)?);
+            images.set_columns(4 * p, &w.multiplied_by_transpose(c)?);
+        }
+        Ok(images)
     }
 
     /// An orthonormal basis of what V lacks of some columns. Projection on V and W needs independent columns and not orthogonal ones: V is
@@ -203,52 +224,6 @@ impl<'a> Space<'a> {
         w
     }
 
-    /// `B W`, and its products with V and W, with B one of M and C or, for left vectors, its transpose.
-    fn products(&self, b: &Matrix, w: &Block) -> Result<(Block, Products)> {
-        let product = w.multiplied_by(b)?;
-        if self.problem.pencil.symmetric_mc {
-            let right = self.v.gram(&product);
-            let products = self.arranged(w, right.clone(), right, w.gram(&product));
-            return Ok((product, products));
-        }
-        let (own, other) = self.own_first(product, w.multiplied_by_transpose(b)?);
-        let products = self.arranged(w, self.v.gram(&own), self.v.gram(&other), w.gram(&own));
-        Ok((own, products))
-    }
-
-    /// The products of `A W`. K and its transpose differ where contact points slide: a few rows tell the difference.
-    fn stiffness_products(&self, w: &Block) -> Result<Products> {
-        let kw = w.multiplied_by(self.problem.pencil.k)?;
-        let (of_k, mut corner) = (self.v.gram(&kw), w.gram(&kw));
-        let mut of_transpose = of_k.clone();
-        let add = |to: &mut [f64], what: Vec<f64>| to.iter_mut().zip(what).for_each(|(x, y)| *x += y);
-        let difference = self.problem.pencil.transposed_less_stiffness_times(w, &kw)?;
-        add(&mut of_transpose, self.v.gram_of_few_rows(&difference));
-        if self.side == Side::Left {
-            add(&mut corner, w.gram_of_few_rows(&difference));
-        }
-        let (right, below) = self.own_first(of_k, of_transpose);
-        Ok(self.arranged(w, right, below, corner))
-    }
-
-    /// What belongs to this side's own product and to the other one, of what belongs to that with a matrix and with its transpose.
-    fn own_first<T>(&self, direct: T, transposed: T) -> (T, T) {
-        match self.side {
-            Side::Right => (direct, transposed),
-            Side::Left => (transposed, direct),
-        }
-    }
-
-    /// Column-major products as matrices.
-    fn arranged(&self, w: &Block, right: Vec<f64>, below: Vec<f64>, corner: Vec<f64>) -> Products {
-        let (n, p) = (self.v.n_columns(), w.n_columns());
-        Products {
-            right: DMatrix::from_vec(n, p, right),
-            below: DMatrix::from_vec(n, p, below).transpose(),
-            corner: DMatrix::from_vec(p, p, corner),
-        }
-    }
-
     /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than V columns, the others
     /// are zero.
     pub fn vectors(&self, ritz: &[Ritz]) -> Block {
@@ -270,7 +245,7 @@ impl<'a> Space<'a> {
         let largest = ritz.iter().map(|r| r.lambda.norm()).fold(0.0, f64::max);
         // A rigid motion's zero counts like a low mode.
         let deviation = |r: &Ritz| r.lambda.norm().max(LOWEST * largest).powi(-2);
-        let mut coefficients = [0, 1, 2].map(|power| (power, vec![0.0; n * n_columns]));
+        let mut coefficients = vec![0.0; 3 * n * n_columns];
         for j in 0..n_columns {
             for (i, r) in ritz.iter().enumerate() {
                 let z = match (n_columns < SKETCH, j == 2 * i, j == 2 * i + 1) {
@@ -279,25 +254,28 @@ impl<'a> Space<'a> {
                     (true, ..) => continue,
                     (false, ..) => deviation(r) * Complex64::new(self.noise.normal(), self.noise.normal()),
                 };
-                for (power, a) in &mut coefficients {
-                    let factor = z.conj() * r.lambda.powi(*power);
-                    let column = a[j * n..(j + 1) * n].iter_mut().zip(r.re.iter().zip(&r.im));
+                for power in 0..3 {
+                    let factor = z.conj() * r.lambda.powi(power as i32);
+                    let column = &mut coefficients[(power * n_columns + j) * n..][..n];
+                    let column = column.iter_mut().zip(r.re.iter().zip(&r.im));
                     column.for_each(|(a, (re, im))| *a += factor.re * re - factor.im * im);
                 }
             }
         }
-        let columns = self.v.combined(&coefficients[0].1, n_columns);
-        let mut sum = columns.multiplied_by(pencil.k)?;
+        let columns = self.v.combined(&coefficients, 3 * n_columns);
+        let of = |power: usize| power * n_columns..(power + 1) * n_columns;
+        let mut sum = Block::zeros(columns.comm(), columns.n_local(), n_columns);
+        sum.add_product(0, pencil.k, &columns, of(0))?;
         if self.side == Side::Left {
-            sum.axpy(1.0, &pencil.transposed_less_stiffness_times(&columns, &sum)?);
+            sum.axpy(1.0, &pencil.transposed_less_stiffness_times(&columns.columns(of(0)))?);
         }
-        for (matrix, (_, coefficients)) in [pencil.c, pencil.m].into_iter().zip(&coefficients[1..]) {
-            let columns = self.v.combined(coefficients, n_columns);
-            let product = match self.side {
-                Side::Left if !pencil.symmetric_mc => columns.multiplied_by_transpose(matrix)?,
-                _ => columns.multiplied_by(matrix)?,
-            };
-            sum.axpy(1.0, &product);
+        for (matrix, power) in [(pencil.c, 1), (pencil.m, 2)] {
+            match self.side {
+                Side::Left if !pencil.symmetric_mc => {
+                    sum.axpy(1.0, &columns.columns(of(power)).multiplied_by_transpose(matrix)?);
+                }
+                _ => sum.add_product(0, matrix, &columns, of(power))?,
+            }
         }
         Ok(sum)
     }
