@@ -151,15 +151,9 @@ impl StepFactor {
     fn bring_up_to_date(&mut self, like: &Vector, contacts: &mut Contacts) -> Result<bool> {
         let flipped = |a: &usize| self.made_for[*a].status != self.current[*a].status;
         let kept = |a: usize| self.updated_for.get(a).is_some_and(|old| old.status == self.current[a].status);
-        let (mut dyads, mut w) = (Vec::new(), Block::zeros(like.comm(), like.n_local(), 0));
-        if let Some(Update { dyads: old, w: columns, .. }) = self.update.take() {
-            for (j, dyad) in old.into_iter().enumerate() {
-                if flipped(&dyad.point) && kept(dyad.point) {
-                    w.append(&columns.columns(j..j + 1));
-                    dyads.push(dyad);
-                }
-            }
-        }
+        let (old, old_columns) = self.update.take().map_or((Vec::new(), None), |old| (old.dyads, Some(old.w)));
+        let still_true = old.into_iter().enumerate().filter(|(_, dyad)| flipped(&dyad.point) && kept(dyad.point));
+        let (places, mut dyads): (Vec<usize>, Vec<Dyad>) = still_true.unzip();
         let known: Vec<usize> = dyads.iter().map(|dyad| dyad.point).collect();
         let new = (0..self.current.len()).filter(flipped).filter(|a| !known.contains(a));
         let new: Vec<Dyad> =
@@ -170,6 +164,9 @@ impl StepFactor {
             return Ok(false);
         }
         self.spent += price;
+        let mut w = Block::with_room(like.comm(), like.n_local(), dyads.len() + new.len());
+        old_columns.iter().for_each(|old| places.iter().for_each(|&j| w.append(&old.columns(j..j + 1))));
+        drop(old_columns);
         self.append_responses(&mut w, &new, contacts)?;
         dyads.extend(new);
         self.updated_for.clone_from(&self.current);

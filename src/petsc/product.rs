@@ -19,38 +19,39 @@ const CHUNK: usize = 128;
 /// A row of a strip.
 type Row = [f64; STRIP];
 
-impl Matrix {
-    /// `Y += self X` for some columns of X and as many of Y, from `to` on.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub(super) fn add_times(&self, x: &Block, columns: Range<usize>, y: &mut Block, to: usize) -> Result<()> {
-        self.with_parts(|parts| {
-            let mut strips = [Vec::new(), Vec::new()];
-            for first in columns.clone().step_by(STRIP) {
-                let strip = first..(first + STRIP).min(columns.end);
-                let own: Vec<&[f64]> = strip.clone().map(|j| x.column(j)).collect();
-                let ghosts = self.ghost_columns(x, strip)?;
-                let ghosts: Vec<&[f64]> = ghosts.iter().map(Vec::as_slice).collect();
-                by_rows(&own, &mut strips[0]);
-                by_rows(&ghosts, &mut strips[1]);
+/// `Y += [A_1 X, A_2 X, ...]` for some columns of X and some sparse matrices.
+///
+/// # Errors
+/// PETSc's.
+pub(super) fn add_times(matrices: &[&Matrix], x: &Block, columns: Range<usize>, y: &mut Block) -> Result<()> {
+    let (mut own_rows, mut ghost_rows) = (Vec::new(), Vec::new());
+    for first in columns.clone().step_by(STRIP) {
+        let strip = first..(first + STRIP).min(columns.end);
+        let own: Vec<&[f64]> = strip.clone().map(|j| x.column(j)).collect();
+        by_rows(&own, &mut own_rows);
+        for (i, a) in matrices.iter().enumerate() {
+            let ghosts = a.ghost_columns(x, strip.clone())?;
+            let ghosts: Vec<&[f64]> = ghosts.iter().map(Vec::as_slice).collect();
+            by_rows(&ghosts, &mut ghost_rows);
+            a.with_parts(|parts| {
                 let mut chunk = [[0.0; STRIP]; CHUNK];
                 for begin in (0..x.n_local()).step_by(CHUNK) {
                     let rows = begin..(begin + CHUNK).min(x.n_local());
                     chunk.fill([0.0; STRIP]);
-                    for (part, strip) in parts.iter().zip(&strips) {
-                        add_product(part, strip, begin, &mut chunk[..rows.len()]);
-                    }
+                    add_product(&parts[0], &own_rows, begin, &mut chunk[..rows.len()]);
+                    add_product(&parts[1], &ghost_rows, begin, &mut chunk[..rows.len()]);
                     for place in 0..own.len() {
-                        let column = &mut y.column_mut(to + first - columns.start + place)[rows.clone()];
+                        let column = &mut y.column_mut(first - columns.start + i * columns.len() + place)[rows.clone()];
                         column.iter_mut().zip(&chunk).for_each(|(y, row)| *y += row[place]);
                     }
                 }
-            }
-            Ok(())
-        })?
+            })?;
+        }
     }
+    Ok(())
+}
 
+impl Matrix {
     /// For some columns what other ranks own of each and this rank's rows need; nothing on one rank.
     fn ghost_columns(&self, x: &Block, columns: Range<usize>) -> Result<Vec<Vec<f64>>> {
         if self.comm().size() == 1 {

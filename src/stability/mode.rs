@@ -147,12 +147,13 @@ pub(super) fn backward_errors(pencil: &Pencil, lambdas: &[Complex64], x: &Block)
     let mut errors = Vec::new();
     for (part, lambdas) in lambdas.chunks(BLOCK / 2).enumerate() {
         let x = x.columns(BLOCK * part..BLOCK * part + 2 * lambdas.len());
-        let images = [x.multiplied_by(pencil.k)?, x.multiplied_by(pencil.c)?, x.multiplied_by(pencil.m)?];
+        let n = x.n_columns();
+        let mut images = Block::zeros(x.comm(), x.n_local(), 3 * n);
+        images.add_products(&[pencil.k, pencil.c, pencil.m], &x, 0..n)?;
         for (i, lambda) in lambdas.iter().enumerate() {
             let powers = [Complex64::ONE, *lambda, lambda * lambda];
             let residual = |row: usize| -> Complex64 {
-                let term = |(image, power): (&Block, &Complex64)| power * entry(image, i, row);
-                images.iter().zip(&powers).map(term).sum()
+                powers.iter().enumerate().map(|(b, power)| power * entry(&images, b * lambdas.len() + i, row)).sum()
             };
             let largest = |value: &dyn Fn(usize) -> Complex64| {
                 (0..x.n_local()).map(|row| value(row).norm_sqr()).fold(0.0, f64::max).sqrt()

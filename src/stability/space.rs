@@ -192,9 +192,7 @@ impl<'a> Space<'a> {
         let Pencil { m, c, k, symmetric_mc, .. } = *self.problem.pencil;
         let p = w.n_columns();
         let mut images = Block::zeros(w.comm(), w.n_local(), if symmetric_mc { 3 * p } else { 5 * p });
-        for (i, b) in [m, c, k].into_iter().enumerate() {
-            images.add_product(i * p, b, w, 0..p)?;
-        }
+        images.add_products(&[m, c, k], w, 0..p)?;
         if !symmetric_mc {
             images.set_columns(3 * p, &w.multiplied_by_transpose(m)?);
             images.set_columns(4 * p, &w.multiplied_by_transpose(c)?);
@@ -265,7 +263,7 @@ impl<'a> Space<'a> {
         let columns = self.v.combined(&coefficients, 3 * n_columns);
         let of = |power: usize| power * n_columns..(power + 1) * n_columns;
         let mut sum = Block::zeros(columns.comm(), columns.n_local(), n_columns);
-        sum.add_product(0, pencil.k, &columns, of(0))?;
+        sum.add_products(&[pencil.k], &columns, of(0))?;
         if self.side == Side::Left {
             sum.axpy(1.0, &pencil.transposed_less_stiffness_times(&columns.columns(of(0)))?);
         }
@@ -274,7 +272,7 @@ impl<'a> Space<'a> {
                 Side::Left if !pencil.symmetric_mc => {
                     sum.axpy(1.0, &columns.columns(of(power)).multiplied_by_transpose(matrix)?);
                 }
-                _ => sum.add_product(0, matrix, &columns, of(power))?,
+                _ => sum.add_products(&[matrix], &columns, of(power))?,
             }
         }
         Ok(sum)
