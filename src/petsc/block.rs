@@ -216,11 +216,12 @@ impl Block {
     }
 
     fn solution(&self, factor: &Factor, transposed: bool) -> Result<Block> {
-        let mut solution = self.clone();
         if let Some(dense) = factor.dense() {
+            let mut solution = self.clone();
             dense.solve(&mut solution.values, transposed);
             return Ok(solution);
         }
+        let mut solution = self.like(self.n_columns);
         for first in (0..self.n_columns).step_by(AT_ONCE) {
             let columns = first..(first + AT_ONCE).min(self.n_columns);
             let rows = columns.start * self.n_local..columns.end * self.n_local;

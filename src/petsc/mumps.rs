@@ -107,6 +107,8 @@ pub(super) struct Mumps {
     /// Global numbers of the unknowns that MUMPS has on this rank.
     unknowns: Vec<i32>,
     route: Option<Route>,
+    /// What this rank's rows, and columns of the same numbers, are multiplied with before MUMPS sees them.
+    equilibration: Vec<f64>,
 }
 
 impl Drop for Mumps {
@@ -125,8 +127,15 @@ impl Mumps {
             Precision::Double => Data::Double(Box::default()),
             Precision::Single => Data::Single(Box::default()),
         };
-        let mut new =
-            Mumps { data, kind, comm: comm.clone(), equations: Vec::new(), unknowns: Vec::new(), route: None };
+        let mut new = Mumps {
+            data,
+            kind,
+            comm: comm.clone(),
+            equations: Vec::new(),
+            unknowns: Vec::new(),
+            route: None,
+            equilibration: Vec::new(),
+        };
         both!(&mut new.data, id => {
             // SAFETY: a valid communicator.
             id.comm_fortran = unsafe { sys::squeal_comm_fortran(comm.raw()) };
@@ -137,6 +146,8 @@ impl Mumps {
         // Silent, unless the user asks for more.
         (1..=3).for_each(|stream| new.set_icntl(stream, -1));
         new.set_icntl(4, 0);
+        // Equilibrated before: MUMPS's own scaling iterates over all entries.
+        new.set_icntl(8, 0);
         new.take_options()?;
         // Everything distributed: matrix, right-hand sides, solutions.
         for (number, value) in [(18, 3), (20, 10), (21, 1)] {
@@ -214,22 +225,28 @@ impl Mumps {
                 id.perm_in = places.as_mut_ptr();
             }
         });
-        self.with_entries(a, ANALYSE)?;
+        self.with_entries(a, ANALYSE, &|_, _, value| value)?;
         both!(&mut self.data, id => id.perm_in = std::ptr::null_mut());
         Ok(())
     }
 
-    /// Factorises a matrix of the pattern analysed. Collective.
+    /// Factorises a matrix of the pattern analysed: as `S A S`, `s_i = 1/sqrt(max_j |a_ij|)`, in which units and the materials' stiffness make no
+    /// difference to pivots, and symmetry and inertia are A's. Collective.
     ///
     /// # Errors
     /// PETSc's; [`Mumps::verdict`] tells MUMPS's.
     pub fn factorise(&mut self, a: &Matrix) -> Result<()> {
         self.route = None;
-        self.with_entries(a, FACTORISE)
+        let (first, mut largest) = (a.first_row()?, vec![0.0_f64; a.n_local()]);
+        a.visit_entries(|row, _, value| largest[row - first] = largest[row - first].max(value.abs()))?;
+        let scale = |largest: f64| if largest > 0.0 { largest.sqrt().recip() } else { 1.0 };
+        self.equilibration = largest.into_iter().map(scale).collect();
+        let all = self.comm.join(&self.equilibration);
+        self.with_entries(a, FACTORISE, &|row, column, value| all[row] * value * all[column])
     }
 
-    /// Runs a job with the entries of this rank's rows: the upper triangle for a symmetric factor.
-    fn with_entries(&mut self, a: &Matrix, job: i32) -> Result<()> {
+    /// Runs a job with the entries of this rank's rows, given by `entry` of row, column and value: the upper triangle for a symmetric factor.
+    fn with_entries(&mut self, a: &Matrix, job: i32, entry: &dyn Fn(usize, usize, f64) -> f64) -> Result<()> {
         let upper = self.kind == FactorKind::Symmetric;
         let n = a.with_parts(|parts| parts.iter().map(|part| part.values.len()).sum::<usize>())?;
         let n = if upper { n / 2 + a.n_local() } else { n };
@@ -240,7 +257,7 @@ impl Mumps {
                 if !upper || column >= row {
                     rows.push(row as i32 + 1);
                     columns.push(column as i32 + 1);
-                    values.push(Real::of(value));
+                    values.push(Real::of(entry(row, column, value)));
                 }
             })?;
             id.nnz_loc = rows.len() as i64;
@@ -265,12 +282,12 @@ impl Mumps {
         self.unknowns.resize(n_unknowns, 0);
         self.set_icntl(9, i32::from(!transposed));
         // Columns at a largest entry of 1: single precision reaches from 1e-38 to 1e38.
-        let mut scales: Vec<f64> = (0..n_columns).map(|j| largest(&b[j * n..(j + 1) * n])).collect();
+        let mut scales: Vec<f64> =
+            (0..n_columns).map(|j| largest(&b[j * n..(j + 1) * n], &self.equilibration)).collect();
         self.comm.max_all(&mut scales);
         scales.iter_mut().filter(|scale| **scale == 0.0).for_each(|scale| *scale = 1.0);
-        let entries = |j: usize| b[j * n..(j + 1) * n].iter().map(move |b| (j, b));
         both!(&mut self.data, id => {
-            let mut right: Vec<_> = (0..n_columns).flat_map(entries).map(|(j, b)| Real::of(b / scales[j])).collect();
+            let mut right = scaled(b, &scales, &self.equilibration);
             let mut solution = vec![Real::of(0.0); n_unknowns.max(1) * n_columns];
             id.nrhs = n_columns as i32;
             id.nloc_rhs = n as i32;
@@ -288,7 +305,7 @@ impl Mumps {
                 self.route = Some(Route::new(&self.comm, &self.unknowns, first, n));
             }
             let route = self.route.as_ref().expect("made above");
-            route.bring(&self.comm, &solution, n_unknowns, x, &scales);
+            route.bring(&self.comm, &solution, n_unknowns, x, [&scales, &self.equilibration]);
         });
         Ok(())
     }
@@ -314,9 +331,18 @@ fn option(kind: &str, number: i32) -> std::ffi::CString {
     std::ffi::CString::new(format!("-mat_mumps_{kind}_{number}")).expect("no zero in it")
 }
 
-/// The largest modulus.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, x| x.abs().max(largest))
+/// Columns over their scales, times the rows' scales.
+fn scaled<T: Real>(columns: &[f64], scales: &[f64], rows: &[f64]) -> Vec<T> {
+    let (n, mut all) = (rows.len(), Vec::with_capacity(columns.len()));
+    for (j, scale) in scales.iter().enumerate() {
+        all.extend(columns[j * n..(j + 1) * n].iter().zip(rows).map(|(x, s)| T::of(x * s / scale)));
+    }
+    all
+}
+
+/// The largest modulus of a column times the rows' scales.
+fn largest(column: &[f64], rows: &[f64]) -> f64 {
+    column.iter().zip(rows).fold(0.0, |largest, (x, s)| (x * s).abs().max(largest))
 }
 
 /// How the unknowns get from where MUMPS has them to the ranks that own them.
@@ -349,9 +375,16 @@ impl Route {
         Route { own, sent, received: received.into_iter().map(rows).collect() }
     }
 
-    /// Brings solutions, times their scales. Collective.
-    fn bring<T: Real>(&self, comm: &Comm, solution: &[T], n_unknowns: usize, x: &mut [f64], scales: &[f64]) {
-        let n = x.len() / scales.len().max(1);
+    /// Brings solutions, times their scales and those of the rows. Collective.
+    fn bring<T: Real>(
+        &self,
+        comm: &Comm,
+        solution: &[T],
+        n_unknowns: usize,
+        x: &mut [f64],
+        [scales, of_rows]: [&[f64]; 2],
+    ) {
+        let n = of_rows.len();
         let column = |j: usize| &solution[j * n_unknowns..(j + 1) * n_unknowns];
         let packed = |places: &Vec<usize>| -> Vec<f64> {
             (0..scales.len()).flat_map(|j| places.iter().map(move |&place| column(j)[place].to())).collect()
@@ -359,10 +392,10 @@ impl Route {
         let others = comm.exchange(&self.sent.iter().map(packed).collect::<Vec<_>>());
         for (j, &scale) in scales.iter().enumerate() {
             let x = &mut x[j * n..(j + 1) * n];
-            self.own.iter().for_each(|&(place, row)| x[row] = scale * column(j)[place].to());
+            self.own.iter().for_each(|&(place, row)| x[row] = scale * of_rows[row] * column(j)[place].to());
             for (rows, values) in self.received.iter().zip(&others) {
                 let values = &values[j * rows.len()..(j + 1) * rows.len()];
-                rows.iter().zip(values).for_each(|(&row, value)| x[row] = scale * value);
+                rows.iter().zip(values).for_each(|(&row, value)| x[row] = scale * of_rows[row] * value);
             }
         }
     }

@@ -26,7 +26,7 @@ use crate::{Error, Result};
 /// Columns of a Krylov block.
 const KRYLOV_BLOCK: usize = 16;
 /// Columns of the Krylov space for each mode expected.
-const KRYLOV: f64 = 2.2;
+const KRYLOV: f64 = 1.4;
 /// Relative change of an eigenvalue from round to round at which it rests. A round wins a factor of three to five, so that the error
 /// left is below half the change.
 const REST: f64 = 1e-9;
@@ -119,7 +119,7 @@ fn krylov<'a>(problem: &Problem<'a>, n_expected: usize) -> Result<Space<'a>> {
     let n_columns = n_krylov(n_expected).min(space.n_equations);
     let mut image = space.random(KRYLOV_BLOCK.min(space.n_equations)).multiplied_by(problem.pencil.m)?;
     while space.v.n_columns() < n_columns && image.n_columns() > 0 {
-        image = space.extend_by_refined_solves(&image)?;
+        image = space.extend_by_solves(&image)?;
     }
     Ok(space)
 }

@@ -130,22 +130,6 @@ impl<'a> Space<'a> {
         }
     }
 
-    /// Appends `A^-1 R` as [`Space::extend_by_solves`], where the factor is in single precision with its digits squared: a residual is solved for,
-    /// too. The factor is that of K. Collective.
-    ///
-    /// # Errors
-    /// PETSc's and MUMPS's.
-    pub fn extend_by_refined_solves(&mut self, r: &Block) -> Result<Block> {
-        let mut x = self.solved(r)?;
-        if !self.problem.factor.is_exact() {
-            let mut residual = r.clone();
-            residual.axpy(-1.0, &x.multiplied_by(self.problem.pencil.k)?);
-            x.axpy(1.0, &self.solved(&residual)?);
-        }
-        self.n_solves += r.n_columns();
-        self.extend(x)
-    }
-
     /// Appends `A^-1 R`, as far as V lacks it: W. Gives `M W`.
     ///
     /// # Errors
