@@ -136,7 +136,7 @@ pub fn text(group: &Group, name: &str, text: &str) -> hdf5::Result<()> {
 /// # Errors
 /// HDF5's.
 pub fn list<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<()> {
-    array(group, name, &[values.len()], values, Packing::Plain)
+    array(group, name, &[values.len()], values)
 }
 
 /// Keeps rows of so many values.
@@ -144,37 +144,18 @@ pub fn list<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<
 /// # Errors
 /// HDF5's.
 pub fn table<T: H5Type>(group: &Group, name: &str, width: usize, values: &[T]) -> hdf5::Result<()> {
-    array(group, name, &[values.len() / width.max(1), width], values, Packing::Plain)
-}
-
-/// Whether an array is compressed.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Packing {
-    /// As it is.
-    Plain,
-    /// Compressed.
-    Packed,
+    array(group, name, &[values.len() / width.max(1), width], values)
 }
 
 /// Keeps an array, the last index running fastest.
 ///
 /// # Errors
 /// HDF5's; where the values do not fill the shape.
-pub fn array<T: H5Type>(
-    group: &Group,
-    name: &str,
-    shape: &[usize],
-    values: &[T],
-    packing: Packing,
-) -> hdf5::Result<()> {
+pub fn array<T: H5Type>(group: &Group, name: &str, shape: &[usize], values: &[T]) -> hdf5::Result<()> {
     let view = ArrayView::from_shape(IxDyn(shape), values).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
     let builder = group.new_dataset_builder().with_data(view);
     // What is empty has no chunks.
-    let builder = match (values.is_empty(), packing) {
-        (true, _) => builder,
-        (false, Packing::Plain) => builder.chunk(chunk::<T>(shape)).fletcher32(),
-        (false, Packing::Packed) => builder.chunk(chunk::<T>(shape)).shuffle().deflate(1).fletcher32(),
-    };
+    let builder = if values.is_empty() { builder } else { builder.chunk(chunk::<T>(shape)).fletcher32() };
     builder.create(name).map(|_| ())
 }
 

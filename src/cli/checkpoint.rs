@@ -299,5 +299,5 @@ fn read_block(comm: &Comm, group: &Group, name: &str) -> hdf5::Result<Block> {
 
 fn write_block(group: &Group, name: &str, block: &Block) -> hdf5::Result<()> {
     let values: Vec<f32> = block.values().iter().map(|&x| x as f32).collect();
-    array(group, name, &[block.n_columns(), block.n_local()], &values, hdf::Packing::Plain)
+    array(group, name, &[block.n_columns(), block.n_local()], &values)
 }

@@ -9,14 +9,14 @@ use crate::petsc::{Comm, Vector};
 use crate::report::contact_surface::{ContactSurface, Fields};
 use crate::report::folder::Folder;
 use crate::results::{About, ContactFaces, Part};
-use crate::stability::{Complex, Mode};
+use crate::stability::Complex;
 use crate::sweep::{Brake, Source, Sweep, digest};
 use crate::{Error, Result};
 
 use super::motion::{Motion, NodeMotion};
 use super::reduced::ReducedBrake;
 use super::state::{self, State};
-use super::subject::{self, Subject, Told};
+use super::subject::{self, Drawn, Subject, Told};
 
 impl Subject for Brake {
     fn about(&self, comm: &Comm) -> Result<About> {
@@ -87,8 +87,8 @@ impl Subject for Brake {
         Ok(Told { checks: found.checks(comm, self), pairs: found.balance.pairs })
     }
 
-    fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, mode: (usize, &Mode)) -> Result<()> {
-        state::write_mode(folder, self, system, friction, mode)
+    fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, drawn: &Drawn) -> Result<()> {
+        state::write_mode(folder, self, system, friction, (drawn.number, drawn.mode))
     }
 
     fn explain(

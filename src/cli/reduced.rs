@@ -16,14 +16,14 @@ use crate::report::contact_surface;
 use crate::report::folder::Folder;
 use crate::report::vtu::{Cells, Grid, Values};
 use crate::results::{About, ContactFaces, Part};
-use crate::stability::{Complex, Mode};
+use crate::stability::Complex;
 use crate::sweep::{Kind, Source, Sweep, digest, frictions_of};
 use crate::{Error, Result};
 
 use super::Run;
 use super::motion::{Motion, ReducedMotion, coordinates};
 use super::state;
-use super::subject::{self, Subject, Told};
+use super::subject::{self, Drawn, Subject, Told};
 
 /// A super-element under a law and loads.
 pub struct ReducedBrake {
@@ -61,16 +61,18 @@ impl ReducedBrake {
     }
 
     /// Draws the outer surface under some coordinates. Collective; the root has the folder and writes.
-    fn write(&self, system: &System, folder: Option<&Folder>, name: &str, fields: &[(&str, &Vec<f64>)]) -> Result<()> {
-        let written = folder.map_or(Ok(()), |folder| self.write_surface(folder, name, fields));
-        system.k.comm().agree(written)
+    fn write_displacement(&self, system: &System, folder: Option<&Folder>, name: &str, u: &Vector) -> Result<()> {
+        let q = coordinates(system, &[u])?;
+        let write = |folder| {
+            let displacement = self.surface.displacements(&[&q[0]]);
+            self.write(folder, name, &[("displacement", &displacement[0])])
+        };
+        system.k.comm().agree(folder.map_or(Ok(()), write))
     }
 
-    fn write_surface(&self, folder: &Folder, name: &str, fields: &[(&str, &Vec<f64>)]) -> Result<()> {
+    /// Writes the outer surface with displacements of its nodes. Not collective.
+    fn write(&self, folder: &Folder, name: &str, fields: &[(&str, &[[f64; 3]])]) -> Result<()> {
         let surface = &self.surface;
-        let sets: Vec<&[f64]> = fields.iter().map(|(_, q)| q.as_slice()).collect();
-        let displacements = surface.displacements(&sets);
-        let fields: Vec<_> = fields.iter().map(|(name, _)| *name).zip(&displacements).collect();
         let grid = Grid {
             points: &surface.nodes,
             cells: Cells::Patches(&surface.triangles),
@@ -141,17 +143,19 @@ impl Subject for ReducedBrake {
     }
 
     fn tell(&self, folder: Option<&Folder>, system: &System, equilibrium: &Equilibrium) -> Result<Told> {
-        let q = coordinates(system, &[&equilibrium.u])?;
         let name = format!("equilibrium_mu{}.vtu", state::friction_name(equilibrium.friction));
-        self.write(system, folder, &name, &[("displacement", &q[0])])?;
+        self.write_displacement(system, folder, &name, &equilibrium.u)?;
         Ok(Told { pairs: PairForces::all(&self.interface, &equilibrium.responses), checks: String::new() })
     }
 
-    fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, mode: (usize, &Mode)) -> Result<()> {
-        let (number, mode) = mode;
-        let q = coordinates(system, &[&mode.re, &mode.im])?;
+    fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, drawn: &Drawn) -> Result<()> {
+        let Drawn { number, mode, shape } = *drawn;
         let name = format!("{}.vtu", state::mode_name(friction, number, mode));
-        self.write(system, folder, &name, &[("real", &q[0]), ("imaginary", &q[1])])
+        let write = |folder| {
+            let [re, im] = [&shape.re, &shape.im].map(|part| part.iter().map(|u| u.map(f64::from)).collect::<Vec<_>>());
+            self.write(folder, &name, &[("real", &re), ("imaginary", &im)])
+        };
+        system.k.comm().agree(folder.map_or(Ok(()), write))
     }
 
     fn explain(
@@ -186,8 +190,8 @@ impl Subject for ReducedBrake {
     }
 
     fn draw_last(&self, folder: Option<&Folder>, system: &System, u: &Vector) -> Result<String> {
-        let (q, name) = (coordinates(system, &[u])?, format!("{}.vtu", state::LAST_STATE));
-        self.write(system, folder, &name, &[("displacement", &q[0])])?;
+        let name = format!("{}.vtu", state::LAST_STATE);
+        self.write_displacement(system, folder, &name, u)?;
         Ok(name)
     }
 }

@@ -12,6 +12,7 @@ use crate::tracking::track;
 
 use super::motion;
 use super::study::{Found, Study, Visit, Walk};
+use super::subject::Drawn;
 use super::{Run, Shell};
 
 pub fn run(shell: &Shell, run: &Run, band: Option<[f64; 2]>, anew: bool, branches: bool) -> Result<()> {
@@ -55,9 +56,7 @@ impl Solutions for Walk<'_, '_> {
             let (study, band) = (visit.study, visit.study.about.band);
             let modes = visit.sweep.modes(visit.equilibrium, wider(band), &mut |event| study.say(&event))?;
             let snapshot = Snapshot::new(visit.sweep, &modes, band[1])?;
-            let found = found(&mut visit, &modes, |visit, i, number| {
-                explained(visit, (number, &modes.modes[i]), snapshot.left(i)?)
-            })?;
+            let found = found(&mut visit, &modes, |visit, i, drawn| explained(visit, drawn, snapshot.left(i)?))?;
             Ok(Found { snapshot: Some(snapshot), ..found })
         })?;
         Ok(snapshot.expect("a visit without error has made it"))
@@ -82,8 +81,8 @@ fn find(mut visit: Visit) -> Result<Found> {
     let modes = visit.sweep.modes(visit.equilibrium, band, &mut |event| study.say(&event))?;
     let any_unstable = modes.modes.iter().any(Mode::is_unstable);
     let snapshot = any_unstable.then(|| Snapshot::of_unstable(visit.sweep, &modes, band[1])).transpose()?;
-    found(&mut visit, &modes, |visit, i, number| match &snapshot {
-        Some(snapshot) => explained(visit, (number, &modes.modes[i]), snapshot.left(i)?),
+    found(&mut visit, &modes, |visit, i, drawn| match &snapshot {
+        Some(snapshot) => explained(visit, drawn, snapshot.left(i)?),
         None => Ok(Vec::new()),
     })
 }
@@ -98,18 +97,18 @@ fn find_reduced(comm: &Comm, visit: Visit) -> Result<Found> {
     let equilibrium = sweep.equilibrium(friction, &mut |event| study.say(&event))?;
     let modes = sweep.modes(&equilibrium, band, &mut |event| study.say(&event))?;
     let mut motion = subject.motion(&system)?;
-    found(&mut Visit { motion: &mut *motion, ..visit }, &modes, |_, i, number| {
-        subject.draw(study.folder.as_ref(), &system, friction, (number, &modes.modes[i]))?;
+    found(&mut Visit { motion: &mut *motion, ..visit }, &modes, |_, _, drawn| {
+        subject.draw(study.folder.as_ref(), &system, friction, drawn)?;
         Ok(Vec::new())
     })
 }
 
-/// The modes of the band as plain data. Where the friction was asked for, `look` draws unstable ones, given by their place among `modes`
-/// and their number in the band, and explains them if it can.
+/// The modes of the band as plain data. Where the friction was asked for, `look` draws unstable ones, given with their place among `modes`,
+/// and explains them if it can.
 fn found(
     visit: &mut Visit,
     modes: &Band,
-    mut look: impl FnMut(&mut Visit, usize, usize) -> Result<Vec<Source>>,
+    mut look: impl FnMut(&mut Visit, usize, &Drawn) -> Result<Vec<Source>>,
 ) -> Result<Found> {
     let ([from, to], asked) = (visit.study.about.band, visit.asked);
     let inside: Vec<usize> =
@@ -117,15 +116,16 @@ fn found(
     let chosen: Vec<&Mode> = inside.iter().map(|&i| &modes.modes[i]).collect();
     let mut plain = motion::plain(visit.motion, &chosen, |mode| asked && mode.is_unstable())?;
     for ((number, &i), mode) in (1..).zip(&inside).zip(&mut plain).filter(|(_, mode)| asked && mode.unstable) {
-        mode.sources = look(visit, i, number)?;
+        let shape = mode.shape.as_ref().expect("unstable modes at a friction asked for have a shape");
+        mode.sources = look(visit, i, &Drawn { number, mode: &modes.modes[i], shape })?;
     }
     Ok(Found { modes: plain, count: Some(modes.count), snapshot: None })
 }
 
-/// Draws an unstable mode with its number and explains it.
-fn explained(visit: &mut Visit, (number, mode): (usize, &Mode), [re, im]: [Vector; 2]) -> Result<Vec<Source>> {
-    let (study, equilibrium) = (visit.study, visit.equilibrium);
-    study.subject.draw(study.folder.as_ref(), visit.system, equilibrium.friction, (number, mode))?;
+/// Draws an unstable mode and explains it.
+fn explained(visit: &mut Visit, drawn: &Drawn, [re, im]: [Vector; 2]) -> Result<Vec<Source>> {
+    let (study, equilibrium, mode) = (visit.study, visit.equilibrium, drawn.mode);
+    study.subject.draw(study.folder.as_ref(), visit.system, equilibrium.friction, drawn)?;
     let right = (mode.lambda, Complex { re: &mode.re, im: &mode.im });
     study.subject.explain(visit.sweep, equilibrium, right, Complex { re: &re, im: &im })
 }

@@ -11,7 +11,7 @@ use crate::hdf::is_hdf5;
 use crate::model::NormalLaw;
 use crate::petsc::{Comm, Vector};
 use crate::report::folder::Folder;
-use crate::results::{About, ContactFaces, Pair};
+use crate::results::{About, ContactFaces, Pair, Shape};
 use crate::stability::{Complex, Mode};
 use crate::sweep::{Brake, Source, Sweep};
 use crate::{Error, Result};
@@ -47,8 +47,8 @@ pub trait Subject {
     fn contact_fields(&self, responses: &[Response]) -> (Vec<f64>, Vec<i32>);
     /// Tells an equilibrium, and draws it where there is a folder. Collective.
     fn tell(&self, folder: Option<&Folder>, system: &System, equilibrium: &Equilibrium) -> Result<Told>;
-    /// Draws a mode with its number, from 1. Collective.
-    fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, mode: (usize, &Mode)) -> Result<()>;
+    /// Draws a mode. Collective.
+    fn draw(&self, folder: Option<&Folder>, system: &System, friction: f64, mode: &Drawn) -> Result<()>;
     /// Explains a mode, given by its eigenvalue and right vector, and its left vector. Collective.
     fn explain(
         &self,
@@ -63,6 +63,15 @@ pub trait Subject {
     fn rows(&self, system: &System) -> Vec<String>;
     /// Draws the displacement at which a solve gave up, and gives the file's name. Collective.
     fn draw_last(&self, folder: Option<&Folder>, system: &System, u: &Vector) -> Result<String>;
+}
+
+/// A mode to be drawn.
+pub struct Drawn<'a> {
+    /// Its number in the band, from 1.
+    pub number: usize,
+    pub mode: &'a Mode,
+    /// On the outer surface; only the root has it.
+    pub shape: &'a Shape,
 }
 
 /// Reads and checks what a command is run on. Collective.

@@ -30,7 +30,8 @@
 //!   doubtful            n x 2       intervals over which not all modes could be recognised
 //! ```
 //!
-//! Texts are arrays of bytes, UTF-8. All arrays are checksummed, displacements are compressed, in single precision.
+//! Texts are arrays of bytes, UTF-8. All arrays are checksummed, and none is compressed: of displacements, in single precision, deflate takes off
+//! 15 % at a quarter of the time of a sweep of a super-element.
 
 use std::path::Path;
 
@@ -42,7 +43,7 @@ use serde::{Deserialize, Serialize};
 use super::{About, ContactFaces, ModeData, Results, Shape, Surface, Value};
 use crate::Result;
 use crate::equilibrium::{PairForces, Step};
-use crate::hdf::{self, Format, Packing, array, list, read_text, table, text, triples, values};
+use crate::hdf::{self, Format, array, list, read_text, table, text, triples, values};
 use crate::stability::Count;
 use crate::sweep::Source;
 use crate::tracking::{Branch, Diagram, Hopf, Point};
@@ -233,7 +234,7 @@ fn write_shapes<'s>(
     let shape = [shapes.len(), shapes.clone().next().map_or(0, |first| first.re.len()), 3, 2];
     let pairs = shapes.flat_map(|shape| shape.re.as_flattened().iter().zip(shape.im.as_flattened()));
     let numbers: Vec<f32> = pairs.flat_map(|(&re, &im)| [re, im]).collect();
-    array(group, name, &shape, &numbers, Packing::Packed)
+    array(group, name, &shape, &numbers)
 }
 
 /// Reads one friction from its group.
