@@ -23,8 +23,6 @@ use crate::petsc::{Block, Factor, FactorKind, Matrix, Precision, Vector, linear,
 
 /// Right-hand sides that updates may keep: more are not worth it, and each takes n doubles.
 const MAX_UPDATES: usize = 200;
-/// Right-hand sides solved for at a time.
-const AT_A_TIME: usize = 32;
 /// Share of the free memory that updates may take; while they grow there are two of them.
 const SHARE_OF_MEMORY: f64 = 0.4;
 /// Iterations at most with a tangent's own factor in single precision.
@@ -158,8 +156,7 @@ impl StepFactor {
         let new = (0..self.current.len()).filter(flipped).filter(|a| !known.contains(a));
         let new: Vec<Dyad> =
             new.flat_map(|a| dyads_of(a, &self.made_for[a].tangent, &self.current[a].tangent)).collect();
-        let share_of_factorisation = new.len() as f64 / self.factor.right_hand_sides_per_factorisation();
-        let price = share_of_factorisation * self.factor.solves_per_factorisation();
+        let price = Factor::PRICE_AMONG_MANY * new.len() as f64;
         if dyads.len() + new.len() > room(like) || self.spent + price > self.factor.solves_per_factorisation() {
             return Ok(false);
         }
@@ -179,7 +176,7 @@ impl StepFactor {
 
     /// Appends `A_0^-1 B^T left` of each dyad.
     fn append_responses(&self, w: &mut Block, dyads: &[Dyad], contacts: &Contacts) -> Result<()> {
-        for dyads in dyads.chunks(AT_A_TIME) {
+        for dyads in dyads.chunks(Block::AT_ONCE) {
             let mut u = Block::zeros(w.comm(), w.n_local(), dyads.len());
             for (j, dyad) in dyads.iter().enumerate() {
                 contacts.spread_into(dyad.point, dyad.left, 1.0, u.column_mut(j));

@@ -11,10 +11,6 @@ use super::{Comm, Factor, Matrix, Vector};
 use super::{dense, product};
 use crate::Result;
 
-/// Right-hand sides in a pass over a factor: on the full demo brake, two ranks, single precision, 0.045 s each with 8, 0.022 s with 32, 0.024 s
-/// with 64.
-const AT_ONCE: usize = 32;
-
 /// Columns distributed over the ranks by rows, column-major on each.
 #[derive(Clone)]
 pub struct Block {
@@ -64,6 +60,10 @@ impl View {
 }
 
 impl Block {
+    /// Right-hand sides in a pass over a factor: on the full demo brake, two ranks, single precision, 0.045 s each with 8, 0.022 s with 32, 0.024 s
+    /// with 64.
+    pub const AT_ONCE: usize = 32;
+
     /// A block of zeros with `n_local` rows on this rank. Not collective.
     pub fn zeros(comm: &Comm, n_local: usize, n_columns: usize) -> Block {
         Block { comm: comm.clone(), n_local, n_columns, values: vec![0.0; n_local * n_columns] }
@@ -222,8 +222,8 @@ impl Block {
             return Ok(solution);
         }
         let mut solution = self.like(self.n_columns);
-        for first in (0..self.n_columns).step_by(AT_ONCE) {
-            let columns = first..(first + AT_ONCE).min(self.n_columns);
+        for first in (0..self.n_columns).step_by(Block::AT_ONCE) {
+            let columns = first..(first + Block::AT_ONCE).min(self.n_columns);
             let rows = columns.start * self.n_local..columns.end * self.n_local;
             let (b, x) = (&self.values[rows.clone()], &mut solution.values[rows]);
             factor.solve_columns(b, x, columns.len(), transposed)?;

@@ -252,19 +252,15 @@ impl Factor {
         Ok(self.sparse.as_ref().expect("factorised before").borrow().infog(12) as usize)
     }
 
+    /// Price of a right-hand side among many, in single solves: an eighth on the full demo brake, two ranks, in either precision.
+    pub const PRICE_AMONG_MANY: f64 = 0.15;
+
     /// How many solves cost about as much as one factorisation. A factorisation is bound by arithmetic and a solve, two
     /// operations an entry, by memory, which is taken for the time of 33 operations an entry: an estimate on the low side (18 for the medium
     /// demo brake, where `make bench` gave 2.32 s against 0.086 s, a ratio of 27). From counts and not from clocks, so that a run
     /// repeats itself. Not collective.
     pub fn solves_per_factorisation(&self) -> f64 {
         self.stats.flops / (33.0 * self.stats.entries.max(1.0))
-    }
-
-    /// How many right-hand sides, solved for many at a time, cost about as much as one factorisation: on the full demo brake, two ranks, one
-    /// takes an eighth (single precision) to a sixth of a single solve's time. Not collective.
-    pub fn right_hand_sides_per_factorisation(&self) -> f64 {
-        const PRICE: f64 = 0.15;
-        self.solves_per_factorisation() / PRICE
     }
 
     /// What this factor has cost so far. Not collective.

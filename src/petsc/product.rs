@@ -34,21 +34,28 @@ pub(super) fn add_times(matrices: &[&Matrix], x: &Block, columns: Range<usize>, 
             let ghosts: Vec<&[f64]> = ghosts.iter().map(Vec::as_slice).collect();
             by_rows(&ghosts, &mut ghost_rows);
             a.with_parts(|parts| {
-                let mut chunk = [[0.0; STRIP]; CHUNK];
-                for begin in (0..x.n_local()).step_by(CHUNK) {
-                    let rows = begin..(begin + CHUNK).min(x.n_local());
-                    chunk.fill([0.0; STRIP]);
-                    add_product(&parts[0], &own_rows, begin, &mut chunk[..rows.len()]);
-                    add_product(&parts[1], &ghost_rows, begin, &mut chunk[..rows.len()]);
-                    for place in 0..own.len() {
-                        let column = &mut y.column_mut(first - columns.start + i * columns.len() + place)[rows.clone()];
-                        column.iter_mut().zip(&chunk).for_each(|(y, row)| *y += row[place]);
-                    }
-                }
+                let to = first - columns.start + i * columns.len();
+                add_strip(&parts, [&own_rows, &ghost_rows], y, to..to + own.len());
             })?;
         }
     }
     Ok(())
+}
+
+/// `Y += A X` for a strip of X by rows, own ones and others', and as many columns of Y.
+fn add_strip(parts: &[Part; 2], x: [&[Row]; 2], y: &mut Block, columns: Range<usize>) {
+    let mut chunk = [[0.0; STRIP]; CHUNK];
+    for begin in (0..y.n_local()).step_by(CHUNK) {
+        let rows = begin..(begin + CHUNK).min(y.n_local());
+        chunk.fill([0.0; STRIP]);
+        for (part, x) in parts.iter().zip(x) {
+            add_product(part, x, begin, &mut chunk[..rows.len()]);
+        }
+        for (place, j) in columns.clone().enumerate() {
+            let column = &mut y.column_mut(j)[rows.clone()];
+            column.iter_mut().zip(&chunk).for_each(|(y, row)| *y += row[place]);
+        }
+    }
 }
 
 impl Matrix {

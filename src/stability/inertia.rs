@@ -20,8 +20,6 @@ use crate::Result;
 use crate::algebra::dot;
 use crate::petsc::{Block, Factor, FactorKind, FactorStats};
 
-/// Columns of U that are solved for at a time.
-const AT_A_TIME: usize = 32;
 /// A change of a point's tangent this much smaller than the tangent itself is none.
 const NEGLIGIBLE: f64 = 1e-12;
 /// An eigenvalue of the small matrix this close to zero, relative to the largest, leaves its sign open.
@@ -77,14 +75,14 @@ impl Inertia {
         }
         let pairs = last.tangents.iter().zip(points.tangents).enumerate();
         let changes: Vec<Change> = pairs.flat_map(|(a, (old, new))| changes(a, old, new)).collect();
-        if changes.len() as f64 > self.factor.right_hand_sides_per_factorisation() {
+        if Factor::PRICE_AMONG_MANY * changes.len() as f64 > self.factor.solves_per_factorisation() {
             return Ok(None);
         }
         if changes.is_empty() {
             return Ok(Some(last.n_negative));
         }
         let mut flexibility = Vec::with_capacity(changes.len().pow(2));
-        for columns in changes.chunks(AT_A_TIME) {
+        for columns in changes.chunks(Block::AT_ONCE) {
             let mut u = Block::zeros(pencil.k.comm(), pencil.k.n_local(), columns.len());
             for (j, change) in columns.iter().enumerate() {
                 points.contacts.spread_into(change.point, change.direction, 1.0, u.column_mut(j));
