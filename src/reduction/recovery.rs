@@ -1,5 +1,7 @@
 //! From the coordinates of a super-element back to the brake: its outer surface moves by `u = T q`.
 
+use multiversion::multiversion;
+
 use crate::Result;
 use crate::assembly::{Boundary, System};
 use crate::petsc::Block;
@@ -38,7 +40,7 @@ impl OuterSurface {
                 for (u, q) in all.iter_mut().zip(sets) {
                     let mut sum = [0.0_f32; STRIP];
                     for (column, &q) in columns.chunks_exact(width).zip(&q[part * TERMS..]) {
-                        sum.iter_mut().zip(&column[strip.clone()]).for_each(|(sum, t)| *sum += q as f32 * t);
+                        add_scaled(&mut sum, q as f32, &column[strip.clone()]);
                     }
                     let u = &mut u.as_flattened_mut()[strip.clone()];
                     u.iter_mut().zip(&sum).for_each(|(u, &sum)| *u += f64::from(sum));
@@ -61,6 +63,12 @@ impl OuterSurface {
         let Boundary { nodes, triangles, part, .. } = boundary;
         Ok(OuterSurface { nodes, triangles, part, parts: parts.to_vec(), basis: columns })
     }
+}
+
+/// `sum += q column`
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2", "aarch64+neon"))]
+fn add_scaled(sum: &mut [f32], q: f32, column: &[f32]) {
+    sum.iter_mut().zip(column).for_each(|(sum, t)| *sum += q * t);
 }
 
 #[cfg(test)]
