@@ -60,7 +60,7 @@ impl ReducedBrake {
         ReducedBrake { place: file.to_owned(), element, surface, interface, pressure }
     }
 
-    /// Draws the outer surface under some coordinates. Collective; the root has the folder and writes.
+    /// Draws the outer surface under a displacement. Collective; the root has the folder and writes.
     fn write_displacement(&self, system: &System, folder: Option<&Folder>, name: &str, u: &Vector) -> Result<()> {
         let q = coordinates(system, &[u])?;
         let write = |folder| {

@@ -238,10 +238,10 @@ impl Walk<'_, '_> {
             )));
         }
         self.study.progress.skip(value.asked);
-        self.results.values.push(value);
         if self.earlier.is_empty() {
-            self.sweep.restore(self.checkpoint.path(&self.system.load)?);
+            self.sweep.restore(self.checkpoint.path(&self.system.load)?, value.count.as_ref());
         }
+        self.results.values.push(value);
         Ok(snapshot)
     }
 

@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn sums_of_many_terms_keep_single_precision() {
-        let n = 300;
+        let n = 1000;
         let mut surface = OuterSurface { nodes: vec![[0.0; 3]; 6000], ..OuterSurface::default() };
         surface.basis = (0..18000 * n).map(|i| ((i % 7) as f32 - 3.0) / 3.0).collect();
         let q: Vec<f64> = (0..n).map(|j| (j as f64).sin()).collect();

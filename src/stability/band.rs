@@ -340,6 +340,11 @@ impl Solver {
         }
     }
 
+    /// Counts next where this count was taken, as the solver that took it would. Not collective.
+    pub fn go_on_from(&mut self, count: &Count) {
+        self.gap = Some(count.below);
+    }
+
     /// The space of the last search, for left vectors of what was found; none where it was made by TOAR.
     pub fn take_basis(&mut self) -> Option<Basis> {
         self.basis.take()

@@ -26,7 +26,7 @@ use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
 use crate::petsc::{Block, FactorStats, Matrix, Precision, Vector};
-use crate::stability::{self, Band, Linearised, Mode, Pencil, Problem, Solver};
+use crate::stability::{self, Band, Count, Linearised, Mode, Pencil, Problem, Solver};
 
 /// A structure under analysis at one friction after the other.
 pub struct Sweep<'a> {
@@ -174,9 +174,10 @@ impl<'a> Sweep<'a> {
         self.path.states()
     }
 
-    /// Puts the path back to where it was: [`Path::restore`].
-    pub fn restore(&mut self, states: Vec<(f64, Vector)>) {
+    /// Puts the path back to where it was ([`Path::restore`]), and the count of modes to where the last one was taken.
+    pub fn restore(&mut self, states: Vec<(f64, Vector)>, count: Option<&Count>) {
         self.path.restore(states);
+        count.into_iter().for_each(|count| self.solver.go_on_from(count));
     }
 
     /// The last state tried, for output after a failure.
