@@ -29,7 +29,7 @@ const FUNCTIONS: &[&str] = &[
     "PEP(Create|Destroy|SetOperators|SetProblemType|SetType|SetDimensions|SetTarget|SetWhichEigenpairs|SetTolerances|SetScale|SetRefine|SetExtract|SetFromOptions|SetOptionsPrefix)",
     "PEP(Solve|GetST|GetConverged|GetEigenpair|GetIterationNumber|GetConvergedReason|MonitorSet|SetStoppingTestFunction|StoppingBasic|SetInitialSpace|SetConvergenceTest|TOARSetRestart|TOARSetLocking|GetDimensions)",
     "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
-    "d(gemm|syev|getrf|getrs|sytrf|sytrs|trsv)_",
+    "d(gemm|gemv|syev|sygvd|getrf|getrs|sytrf|sytrs|trsv)_",
     "zgesv_",
     "METIS_(PartMeshDual|NodeND)",
     "squeal_.*",

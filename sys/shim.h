@@ -16,3 +16,5 @@ void squeal_give_memory_back(void);
 void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
             double *x, const int *incx);
 void zgesv_(const int *n, const int *columns, void *a, const int *lda, int *pivots, void *b, const int *ldb, int *info);
+void dsygvd_(const int *kind, const char *jobz, const char *uplo, const int *n, double *a, const int *lda, double *b,
+             const int *ldb, double *values, double *work, const int *n_work, int *integers, const int *n_integers, int *info);

@@ -39,6 +39,26 @@ fn update(
     }
     let [m, k, n] = [rows as i32, inner as i32, columns as i32];
     let (op, lda) = if transposed { (c"T", k) } else { (c"N", m) };
+    if n == 1 {
+        let (rows_of_a, one) = (lda, 1);
+        let columns_of_a = if transposed { m } else { k };
+        // SAFETY: the leading dimension and sizes are those of the slices, checked above.
+        return unsafe {
+            sys::dgemv_(
+                op.as_ptr(),
+                &rows_of_a,
+                &columns_of_a,
+                &alpha,
+                a.as_ptr(),
+                &lda,
+                b.as_ptr(),
+                &one,
+                &beta,
+                c.as_mut_ptr(),
+                &one,
+            );
+        };
+    }
     // SAFETY: the leading dimensions and sizes are those of the slices, checked above.
     unsafe {
         sys::dgemm_(
@@ -91,6 +111,39 @@ pub fn symmetric_eigen(n: usize, a: &mut [f64]) -> Result<Vec<f64>> {
     }
 }
 
+/// Eigenvalues, ascending, of `A x = lambda B x`, A symmetric, B symmetric and positive definite, both `n x n`; A becomes the eigenvectors,
+/// `X^T B X = I`, column by column. None where B is not positive definite. Not collective.
+///
+/// # Panics
+/// Where a slice is not `n x n`.
+pub fn generalised_eigen(n: usize, a: &mut [f64], mut b: Vec<f64>) -> Option<Vec<f64>> {
+    assert!(a.len() == n * n && b.len() == n * n);
+    let (size, mut info) = (n as i32, 0);
+    let mut values = vec![0.0; n];
+    let (mut work, mut integers) = (vec![0.0; 1 + 6 * n + 2 * n * n], vec![0; 3 + 5 * n]);
+    let (n_work, n_integers) = (work.len() as i32, integers.len() as i32);
+    // SAFETY: sizes are those of the arrays.
+    unsafe {
+        sys::dsygvd_(
+            &1,
+            c"V".as_ptr(),
+            c"U".as_ptr(),
+            &size,
+            a.as_mut_ptr(),
+            &size.max(1),
+            b.as_mut_ptr(),
+            &size.max(1),
+            values.as_mut_ptr(),
+            work.as_mut_ptr(),
+            &n_work,
+            integers.as_mut_ptr(),
+            &n_integers,
+            &mut info,
+        );
+    }
+    (info == 0).then_some(values)
+}
+
 /// Solves `A X = B` for a complex column-major A of `n x n`, which is destroyed; X overwrites B. False where A is singular. Not
 /// collective.
 ///
@@ -134,6 +187,16 @@ mod tests {
         let values = symmetric_eigen(2, &mut a).unwrap();
         assert!((values[0] - 1.0).abs() < 1e-15 && (values[1] - 3.0).abs() < 1e-15);
         assert!((a[0] + a[1]).abs() < 1e-15 && (a[2] - a[3]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn generalised_eigenvectors_are_normal_to_one_another_by_b() {
+        // [2 0; 0 3] x = lambda [4 0; 0 1] x: 1/2 with (1/2, 0) and 3 with (0, 1)
+        let mut a = [2.0, 0.0, 0.0, 3.0];
+        let values = generalised_eigen(2, &mut a, vec![4.0, 0.0, 0.0, 1.0]).unwrap();
+        assert!((values[0] - 0.5).abs() < 1e-15 && (values[1] - 3.0).abs() < 1e-15);
+        assert!((a[0].abs() - 0.5).abs() < 1e-15 && (a[3].abs() - 1.0).abs() < 1e-15, "{a:?}");
+        assert!(generalised_eigen(2, &mut [1.0, 0.0, 0.0, 1.0], vec![1.0, 2.0, 2.0, 1.0]).is_none());
     }
 
     #[test]

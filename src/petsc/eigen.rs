@@ -1,4 +1,4 @@
-//! Quadratic eigenproblems by SLEPc PEP with a factor of ours inside.
+//! Quadratic eigenproblems by SLEPc PEP with an inverse of ours inside.
 
 use std::ffi::c_void;
 use std::ptr;
@@ -8,10 +8,13 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Comm, Factor, Matrix, Vector};
+use super::{Comm, Matrix, Vector};
 use crate::{Error, Result};
 
-/// The polynomial `lambda^2 M + lambda C + K` and a factor of it at a real shift.
+/// `x = P(sigma)^-1 b`.
+pub type Inverse<'a> = dyn Fn(&Vector, &mut Vector) -> Result<()> + 'a;
+
+/// The polynomial `lambda^2 M + lambda C + K` and its inverse at a real shift.
 pub struct Quadratic<'a> {
     /// Mass.
     pub m: &'a Matrix,
@@ -21,8 +24,8 @@ pub struct Quadratic<'a> {
     pub k: &'a Matrix,
     /// The real shift sigma.
     pub shift: f64,
-    /// Factor of `sigma^2 M + sigma C + K`.
-    pub factor: &'a Factor,
+    /// Of `sigma^2 M + sigma C + K`.
+    pub inverse: &'a Inverse<'a>,
 }
 
 /// How the eigensolver is to run.
@@ -49,7 +52,7 @@ pub struct Pair {
 }
 
 struct Context<'a> {
-    factor: &'a Factor,
+    inverse: &'a Inverse<'a>,
     comm: Comm,
     n_solves: usize,
     progress: &'a mut dyn FnMut(usize, usize),
@@ -72,7 +75,7 @@ pub struct Found {
     pub pairs: Vec<Pair>,
     /// Number of eigenvalues that converged, conjugates counted.
     pub n_converged: usize,
-    /// Solves with the factor.
+    /// Applications of the inverse.
     pub n_solves: usize,
 }
 
@@ -87,7 +90,7 @@ pub struct Found {
 pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(usize, usize)) -> Result<Found> {
     let comm = problem.k.comm().clone();
     let mut context =
-        Context { factor: problem.factor, comm: comm.clone(), n_solves: 0, progress, trap: Trap::default() };
+        Context { inverse: problem.inverse, comm: comm.clone(), n_solves: 0, progress, trap: Trap::default() };
     let pointer = ptr::from_mut(&mut context).cast::<c_void>();
     let mut pep = Pep(ptr::null_mut());
     // SAFETY: `context` outlives the solver, and is reached through `pointer` only while PEPSolve runs.
@@ -97,7 +100,7 @@ pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(us
         let mut operators = [problem.k.raw(), problem.c.raw(), problem.m.raw()];
         check(sys::PEPSetOperators(pep.0, 3, operators.as_mut_ptr()))?;
         configure(pep.0, problem.shift, options)?;
-        use_factor(pep.0, problem.shift, pointer)?;
+        use_inverse(pep.0, problem.shift, pointer)?;
         check(sys::PEPMonitorSet(pep.0, Some(monitor), pointer, None))?;
         check(sys::PEPSetFromOptions(pep.0))?;
         let code = sys::PEPSolve(pep.0);
@@ -147,8 +150,8 @@ unsafe fn configure(pep: sys::PEP, shift: f64, options: &Options) -> Result<()> 
     }
 }
 
-/// The spectral transformation inverts with our factor.
-unsafe fn use_factor(pep: sys::PEP, shift: f64, context: *mut c_void) -> Result<()> {
+/// The spectral transformation inverts with ours.
+unsafe fn use_inverse(pep: sys::PEP, shift: f64, context: *mut c_void) -> Result<()> {
     let (mut st, mut ksp, mut pc) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
     // SAFETY: the solver is alive; the strings are static.
     unsafe {
@@ -166,14 +169,14 @@ unsafe fn use_factor(pep: sys::PEP, shift: f64, context: *mut c_void) -> Result<
 
 unsafe extern "C" fn apply(pc: sys::PC, b: sys::Vec, x: sys::Vec) -> sys::PetscErrorCode {
     let mut pointer: *mut c_void = ptr::null_mut();
-    // SAFETY: the context is the one that `use_factor` set; PEP runs its callbacks one at a time.
+    // SAFETY: the context is the one that `use_inverse` set; PEP runs its callbacks one at a time.
     let context = unsafe {
         sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast());
         &mut *pointer.cast::<Context>()
     };
     context.n_solves += 1;
-    let (factor, comm) = (context.factor, &context.comm);
-    context.trap.guard(c"solve", || factor.solve(&Borrowed::new(b, comm), Borrowed::new(x, comm).get_mut()))
+    let (inverse, comm) = (context.inverse, &context.comm);
+    context.trap.guard(c"solve", || inverse(&Borrowed::new(b, comm), Borrowed::new(x, comm).get_mut()))
 }
 
 unsafe extern "C" fn monitor(

@@ -215,6 +215,22 @@ impl Matrix {
         Ok(matrix)
     }
 
+    /// A diagonal matrix, on one rank.
+    ///
+    /// # Errors
+    /// PETSc's.
+    ///
+    /// # Panics
+    /// Where the communicator has several ranks.
+    pub fn diagonal(comm: &Comm, values: &[f64]) -> Result<Matrix> {
+        assert_eq!(comm.size(), 1);
+        let mut rows = Rows::default();
+        (0..values.len() as i32).for_each(|i| rows.push(&[i], &[]));
+        let mut matrix = Matrix::zeros(comm, rows)?;
+        Matrix::change_values(&mut [&mut matrix], |all| all[0][0].copy_from_slice(values))?;
+        Ok(matrix)
+    }
+
     /// Stores all entries, also zeros, without column numbers: worth it where most are not zero. On one rank; on several nothing changes.
     ///
     /// # Errors
@@ -241,7 +257,10 @@ impl Matrix {
     }
 
     /// The entries by columns where they are stored densely. Not collective.
-    pub(super) fn dense_values(&self) -> Result<Option<Vec<f64>>> {
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn dense_values(&self) -> Result<Option<Vec<f64>>> {
         if !self.is_dense()? {
             return Ok(None);
         }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::condition::condition;
 use super::inertia::Inertia;
+use super::modal::Modal;
 use super::mode::backward_errors;
 use super::search;
 use super::space::{Basis, Problem};
@@ -28,6 +29,8 @@ pub struct Solver {
     /// The space of the last blocked search, which holds the vectors of its modes.
     basis: Option<Basis>,
     evidence: Evidence,
+    /// Coordinates in which densely stored pencils are solved.
+    modal: Option<Modal>,
     /// Where the last count was taken in a gap beyond the band's end, Hz: the next one begins there.
     gap: Option<f64>,
 }
@@ -117,8 +120,8 @@ const TOLERANCE: f64 = 1e-12;
 /// Memory of a symmetric factor over that of an LU on the same pattern: 3.0 GB over 5.3 GB on the full demo brake, or over 2.8 GB in single
 /// precision.
 const SYMMETRIC_OVER_LU: [f64; 2] = [0.6, 1.1];
-/// Basis of TOAR over the eigenvalues wanted, first, for densely stored matrices: next to products with these its own upkeep counts, and half of
-/// SLEPc's basis takes half the time (782 coordinates). It restarts more often, which costs digits: a basis of SLEPc's size comes next.
+/// Basis of TOAR over the eigenvalues wanted in modal coordinates, first: next to products its own upkeep counts there, and half of
+/// SLEPc's basis takes half the time (782 coordinates). It restarts more often, which costs digits.
 const SMALL_BASIS: f64 = 1.3;
 /// By this factor the shift moves where TOAR gave up: about another shift it does not meet the same blocks.
 const ELSEWHERE: f64 = 1.3;
@@ -386,27 +389,38 @@ impl Solver {
             lu.set_precision(Precision::Double);
             factorise_shifted(pencil, lu, shift)?;
         }
-        let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, factor: lu };
         let n_all = 2 * n_equations(pencil);
         let n_wanted = (2 * n_modes).min(n_all);
+        let options = |n_basis: usize| Options { n_wanted, n_basis, tolerance: TOLERANCE, max_restarts: 200 };
+        let mut hear = |converged, solves| progress(converged, n_wanted, solves);
         let small = (SMALL_BASIS * n_wanted as f64) as usize;
-        let bases = if pencil.k.is_dense()? && small < n_all { vec![small, 0] } else { vec![0] };
-        for n_basis in bases {
-            let options = Options { n_wanted, n_basis, tolerance: TOLERANCE, max_restarts: 200 };
-            let mut hear = |converged, solves| progress(converged, n_wanted, solves);
-            let found = eigen::solve_or_none(&problem, &options, &mut hear)?;
-            let Some(Found { pairs, n_converged, n_solves }) = found else { continue };
-            let lambdas: Vec<Complex64> = pairs.iter().map(|pair| pair.lambda).collect();
-            let backward_errors = backward_errors(pencil, &lambdas, &vectors(pencil, &pairs)?)?;
-            if n_basis != 0 && backward_errors.iter().any(|&error| error > search::BACKWARD_ERROR) {
-                continue;
+        if shift == 0.0 && small < n_all && pencil.k.is_dense()? {
+            if self.modal.is_none() {
+                self.modal = Modal::new(pencil)?;
             }
-            let furthest = lambdas.iter().map(|lambda| lambda.norm() / TAU).fold(0.0, f64::max);
-            let reach = if n_converged >= n_all { f64::INFINITY } else { furthest };
-            return Ok(Some(Search { pairs, reach, n_solves, backward_errors }));
+            let search = match &mut self.modal {
+                Some(modal) => complete(pencil, modal.solve(pencil, &options(small), &mut hear)?)?,
+                None => None,
+            };
+            let is_good = |search: &Search| search.backward_errors.iter().all(|&error| error <= search::BACKWARD_ERROR);
+            if let Some(search) = search.filter(is_good) {
+                return Ok(Some(search));
+            }
         }
-        Ok(None)
+        let problem =
+            Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, inverse: &|b, x| lu.solve(b, x) };
+        complete(pencil, eigen::solve_or_none(&problem, &options(0), &mut hear)?)
     }
+}
+
+/// What TOAR has found, with its backward errors.
+fn complete(pencil: &Pencil, found: Option<Found>) -> Result<Option<Search>> {
+    let Some(Found { pairs, n_converged, n_solves }) = found else { return Ok(None) };
+    let lambdas: Vec<Complex64> = pairs.iter().map(|pair| pair.lambda).collect();
+    let backward_errors = backward_errors(pencil, &lambdas, &vectors(pencil, &pairs)?)?;
+    let furthest = lambdas.iter().map(|lambda| lambda.norm() / TAU).fold(0.0, f64::max);
+    let reach = if n_converged >= 2 * n_equations(pencil) { f64::INFINITY } else { furthest };
+    Ok(Some(Search { pairs, reach, n_solves, backward_errors }))
 }
 
 /// LU of `sigma^2 M + sigma C + K`.

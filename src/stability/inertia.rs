@@ -56,13 +56,13 @@ impl Inertia {
         }
         let mut shifted = pencil.k_symmetric.duplicate()?;
         if let Some(points) = pencil.points {
-            points.contacts.add_blocks(points.tangents.iter().copied(), &mut shifted)?;
+            points.contacts.add_blocks(points.symmetric.iter().copied(), &mut shifted)?;
         }
         shifted.axpy(-omega * omega, pencil.m)?;
         shifted.declare_symmetric()?;
         self.factor.factorise(&shifted)?;
         let n_negative = self.factor.n_negative()?;
-        let tangents = pencil.points.map(|points| points.tangents.to_vec());
+        let tangents = pencil.points.map(|points| points.symmetric.to_vec());
         self.last = tangents.map(|tangents| Last { omega, tangents, n_negative });
         Ok(n_negative)
     }
@@ -70,10 +70,10 @@ impl Inertia {
     /// The count by the last factor; none where it was made for something too different.
     fn updated(&self, pencil: &Pencil, omega: f64) -> Result<Option<usize>> {
         let (Some(last), Some(points)) = (&self.last, pencil.points) else { return Ok(None) };
-        if last.omega != omega || last.tangents.len() != points.tangents.len() {
+        if last.omega != omega || last.tangents.len() != points.symmetric.len() {
             return Ok(None);
         }
-        let pairs = last.tangents.iter().zip(points.tangents).enumerate();
+        let pairs = last.tangents.iter().zip(points.symmetric).enumerate();
         let changes: Vec<Change> = pairs.flat_map(|(a, (old, new))| changes(a, old, new)).collect();
         if Factor::PRICE_AMONG_MANY * changes.len() as f64 > self.factor.solves_per_factorisation() {
             return Ok(None);

@@ -15,8 +15,8 @@ pub struct Linearised {
     pub c: Option<Matrix>,
     /// What each contact point has without friction's coupling.
     symmetric: Vec<[[f64; 3]; 3]>,
-    /// The points with unsymmetric tangents D, and `D - D^T`.
-    skew: Vec<(usize, [[f64; 3]; 3])>,
+    /// The same with it.
+    tangents: Vec<[[f64; 3]; 3]>,
     /// What each contact point does, its tangent that of the stiffness.
     frozen: Vec<Response>,
 }
@@ -46,7 +46,6 @@ impl Linearised {
         };
         let tangents = blocks(&frictions);
         self.symmetric = blocks(&none);
-        self.skew = tangents.iter().map(skew_part).enumerate().filter(|(_, d)| *d != [[0.0; 3]; 3]).collect();
         k.copy_from(&system.k)?;
         contacts.add_blocks(tangents.iter().copied(), k)?;
         let freeze = |(a, tangent): (usize, _)| {
@@ -55,7 +54,8 @@ impl Linearised {
             let status = if sticks && response.status == Status::Slip { Status::Stick } else { response.status };
             Response { tangent, status, ..*response }
         };
-        self.frozen = tangents.into_iter().enumerate().map(freeze).collect();
+        self.frozen = tangents.iter().copied().enumerate().map(freeze).collect();
+        self.tangents = tangents;
         Ok(())
     }
 
@@ -67,14 +67,9 @@ impl Linearised {
     /// The pencil, with the stiffness that [`Linearised::update`] has made.
     pub fn pencil<'a>(&'a self, system: &'a System, contacts: &'a Contacts<'a>, k: &'a Matrix) -> Pencil<'a> {
         let c = self.c.as_ref().unwrap_or(&system.c);
-        let points = Some(Points { contacts, tangents: &self.symmetric, skew: &self.skew });
+        let points = Some(Points { contacts, tangents: &self.tangents, symmetric: &self.symmetric });
         Pencil { m: &system.m, c, k, k_symmetric: &system.k, points, symmetric_mc: true }
     }
-}
-
-/// `D - D^T`
-fn skew_part(d: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    std::array::from_fn(|i| std::array::from_fn(|j| d[i][j] - d[j][i]))
 }
 
 /// `C + B^T [mu p / |v| (I - n n^T - t t^T)] B` with the responses of all points: friction turns with the velocity of sliding points.

@@ -11,6 +11,7 @@ mod forms;
 mod inertia;
 mod left;
 mod linearise;
+mod modal;
 mod mode;
 mod search;
 mod space;

@@ -1,5 +1,7 @@
 //! The linearised problem and one solution of it.
 
+use std::array::from_fn;
+
 use num_complex::Complex64;
 
 use crate::Result;
@@ -34,10 +36,10 @@ pub struct Pencil<'a> {
 pub struct Points<'a> {
     /// Where the points stand among the equations.
     pub contacts: &'a Contacts<'a>,
-    /// Tangent without friction's coupling of each point, N/m.
+    /// Tangent D of each point, N/m: with friction's coupling, which is all that makes the stiffness unsymmetric.
     pub tangents: &'a [[[f64; 3]; 3]],
-    /// The points whose tangent D, with friction, is not symmetric, with `D - D^T`, N/m: all that makes the stiffness unsymmetric.
-    pub skew: &'a [(usize, [[f64; 3]; 3])],
+    /// Tangent without friction's coupling of each point, N/m.
+    pub symmetric: &'a [[[f64; 3]; 3]],
 }
 
 impl Pencil<'_> {
@@ -46,15 +48,18 @@ impl Pencil<'_> {
     /// # Errors
     /// PETSc's.
     pub(super) fn transposed_less_stiffness_times(&self, x: &Block) -> Result<Block> {
-        let Some(Points { contacts, skew, .. }) = self.points else {
+        let Some(Points { contacts, tangents, .. }) = self.points else {
             let mut difference = x.multiplied_by_transpose(self.k)?;
             difference.axpy(-1.0, &x.multiplied_by(self.k)?);
             return Ok(difference);
         };
         let mut product = Block::zeros(x.comm(), x.n_local(), x.n_columns());
+        let skew = |d: &[[f64; 3]; 3]| -> [[f64; 3]; 3] { from_fn(|i| from_fn(|j| d[i][j] - d[j][i])) };
+        let skew = tangents.iter().map(skew).enumerate().filter(|(_, difference)| *difference != [[0.0; 3]; 3]);
+        let skew: Vec<(usize, [[f64; 3]; 3])> = skew.collect();
         for j in 0..x.n_columns() {
             let gaps = contacts.gaps(&x.vector(j)?)?;
-            for &(a, difference) in skew {
+            for &(a, difference) in &skew {
                 let force = difference.map(|row| dot(row, gaps[a]));
                 contacts.spread_into(a, force, -1.0, product.column_mut(j));
             }
