@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::ptr;
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 use squeal_sys as sys;
 
 use super::error::check;
@@ -24,9 +24,6 @@ pub struct Block {
 struct View {
     raw: sys::Mat,
 }
-
-/// MatMatMult and its like.
-type Multiply = unsafe extern "C" fn(sys::Mat, sys::Mat, sys::MatReuse, f64, *mut sys::Mat) -> sys::PetscErrorCode;
 
 impl Drop for View {
     fn drop(&mut self) {
@@ -163,11 +160,11 @@ impl Block {
         if !first.is_dense()? {
             return product::add_times(matrices, x, columns, self);
         }
-        let x = x.columns(columns);
+        let n = self.n_local;
+        let (x, sizes) = (&x.values[columns.start * n..columns.end * n], [n, n, columns.len()]);
         for (i, a) in matrices.iter().enumerate() {
-            let product = x.product(a, sys::MatMatMult)?;
-            let to = &mut self.values[i * product.values.len()..][..product.values.len()];
-            to.iter_mut().zip(&product.values).for_each(|(to, value)| *to += value);
+            let to = &mut self.values[i * x.len()..][..x.len()];
+            a.with_dense_values(|a| dense::add_product(false, sizes, a, x, to))?;
         }
         Ok(())
     }
@@ -177,10 +174,16 @@ impl Block {
     /// # Errors
     /// PETSc's.
     pub fn multiplied_by_transpose(&self, a: &Matrix) -> Result<Block> {
-        self.product(a, sys::MatTransposeMatMult)
+        let mut product = self.like(self.n_columns);
+        let sizes = [self.n_local, self.n_local, self.n_columns];
+        let multiply = |a: &[f64]| dense::multiply(true, sizes, a, &self.values, &mut product.values);
+        match a.with_dense_values(multiply)? {
+            Some(()) => Ok(product),
+            None => self.multiplied_by_sparse_transpose(a),
+        }
     }
 
-    fn product(&self, a: &Matrix, multiply: Multiply) -> Result<Block> {
+    fn multiplied_by_sparse_transpose(&self, a: &Matrix) -> Result<Block> {
         if self.n_columns == 0 {
             return Ok(self.clone());
         }
@@ -189,7 +192,7 @@ impl Block {
         // SAFETY: the multiplication reads `view` only and creates `product`, which is read and destroyed here.
         unsafe {
             let reuse = sys::MatReuse::MAT_INITIAL_MATRIX;
-            check(multiply(a.raw(), view.raw, reuse, f64::from(super::DEFAULT), &mut product))?;
+            check(sys::MatTransposeMatMult(a.raw(), view.raw, reuse, f64::from(super::DEFAULT), &mut product))?;
             let product = View { raw: product };
             let mut pointer = ptr::null_mut();
             check(sys::MatDenseGetArray(product.raw, &mut pointer))?;
@@ -271,20 +274,25 @@ impl Block {
     /// Coefficients (column-major) and number of the combinations that make an orthonormal basis of the columns' span; directions smaller
     /// than `negligible` times the largest are dropped, columns taken at length 1. Its accuracy is the square of that ratio's: twice is
     /// enough. Collective.
-    pub fn orthonormalising(&self, negligible: f64) -> (Vec<f64>, usize) {
+    ///
+    /// # Errors
+    /// [`crate::Error::NotConverged`] where LAPACK's eigensolver fails.
+    pub fn orthonormalising(&self, negligible: f64) -> Result<(Vec<f64>, usize)> {
         let n = self.n_columns;
         if n == 0 {
-            return (Vec::new(), 0);
+            return Ok((Vec::new(), 0));
         }
         let gram = DMatrix::from_vec(n, n, self.gram(self));
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / gram[(j, j)].sqrt().max(f64::MIN_POSITIVE)).collect();
-        let eigen = SymmetricEigen::new(DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]));
-        let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
-        let mut kept: Vec<usize> = (0..n).filter(|&j| eigen.eigenvalues[j] > negligible.powi(2) * largest).collect();
-        kept.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
-        let entry = |(i, j): (usize, usize)| scale[i] * eigen.eigenvectors[(i, j)] / eigen.eigenvalues[j].sqrt();
-        let entries = kept.iter().flat_map(|&j| (0..n).map(move |i| (i, j)));
-        (entries.map(entry).collect(), kept.len())
+        let mut vectors = DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]);
+        let values = dense::symmetric_eigen(n, vectors.as_mut_slice())?;
+        let largest = values.last().copied().unwrap_or_default();
+        let kept = (0..n).rev().take_while(|&j| values[j] > negligible.powi(2) * largest);
+        let column = |j: usize| (0..n).map(move |i| (i, j));
+        let entry = |(i, j): (usize, usize)| scale[i] * vectors[(i, j)] / values[j].sqrt();
+        let entries: Vec<f64> = kept.flat_map(column).map(entry).collect();
+        let n_kept = entries.len() / n;
+        Ok((entries, n_kept))
     }
 
     /// Keeps the first `n` columns. Not collective.

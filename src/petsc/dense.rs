@@ -5,6 +5,9 @@ use squeal_sys as sys;
 
 use crate::{Error, Result};
 
+/// So many columns are multiplied one by one: for more, BLAS copies the matrix in an order of its own first.
+const FEW: usize = 6;
+
 /// `C = op(A) B` with A of `rows x inner` (or its transpose where `transposed`), B of `inner x columns`. Not collective.
 ///
 /// # Panics
@@ -14,6 +17,14 @@ pub fn multiply(transposed: bool, sizes: [usize; 3], a: &[f64], b: &[f64], c: &m
         return c.fill(0.0);
     }
     update(transposed, sizes, [1.0, 0.0], a, b, c);
+}
+
+/// `C += op(A) B` as in [`multiply`]. Not collective.
+///
+/// # Panics
+/// Where the slices do not have those sizes.
+pub fn add_product(transposed: bool, sizes: [usize; 3], a: &[f64], b: &[f64], c: &mut [f64]) {
+    update(transposed, sizes, [1.0, 1.0], a, b, c);
 }
 
 /// `C -= A B` with A of `rows x inner`, B of `inner x columns`. Not collective.
@@ -39,25 +50,16 @@ fn update(
     }
     let [m, k, n] = [rows as i32, inner as i32, columns as i32];
     let (op, lda) = if transposed { (c"T", k) } else { (c"N", m) };
-    if n == 1 {
-        let (rows_of_a, one) = (lda, 1);
-        let columns_of_a = if transposed { m } else { k };
-        // SAFETY: the leading dimension and sizes are those of the slices, checked above.
-        return unsafe {
-            sys::dgemv_(
-                op.as_ptr(),
-                &rows_of_a,
-                &columns_of_a,
-                &alpha,
-                a.as_ptr(),
-                &lda,
-                b.as_ptr(),
-                &one,
-                &beta,
-                c.as_mut_ptr(),
-                &one,
-            );
-        };
+    if columns <= FEW {
+        let (rows_of_a, columns_of_a) = if transposed { (k, m) } else { (m, k) };
+        for (b, c) in b.chunks(inner).zip(c.chunks_mut(rows)) {
+            let (b, c) = (b.as_ptr(), c.as_mut_ptr());
+            // SAFETY: the leading dimension and sizes are those of the slices, checked above.
+            unsafe {
+                sys::dgemv_(op.as_ptr(), &rows_of_a, &columns_of_a, &alpha, a.as_ptr(), &lda, b, &1, &beta, c, &1);
+            }
+        }
+        return;
     }
     // SAFETY: the leading dimensions and sizes are those of the slices, checked above.
     unsafe {

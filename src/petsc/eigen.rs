@@ -39,6 +39,8 @@ pub struct Options {
     pub tolerance: f64,
     /// Restarts at most.
     pub max_restarts: usize,
+    /// Angular frequency that counts as 1, 1/s (0: SLEPc's choice).
+    pub scale: f64,
 }
 
 /// One eigenvalue with non-negative imaginary part, and its vector.
@@ -141,7 +143,7 @@ unsafe fn configure(pep: sys::PEP, shift: f64, options: &Options) -> Result<()> 
         check(sys::PEPSetScale(
             pep,
             sys::PEPScale::PEP_SCALE_SCALAR,
-            f64::from(decide),
+            if options.scale == 0.0 { f64::from(decide) } else { options.scale },
             none,
             none,
             decide,

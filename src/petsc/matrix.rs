@@ -261,6 +261,11 @@ impl Matrix {
     /// # Errors
     /// PETSc's.
     pub fn dense_values(&self) -> Result<Option<Vec<f64>>> {
+        self.with_dense_values(<[f64]>::to_vec)
+    }
+
+    /// Lends the entries by columns where they are stored densely. Not collective.
+    pub(super) fn with_dense_values<T>(&self, look: impl FnOnce(&[f64]) -> T) -> Result<Option<T>> {
         if !self.is_dense()? {
             return Ok(None);
         }
@@ -268,9 +273,9 @@ impl Matrix {
         // SAFETY: the array is valid between Get and Restore, for `n_local` columns of as many rows.
         unsafe {
             check(sys::MatDenseGetArrayRead(self.raw, &mut pointer))?;
-            let values = std::slice::from_raw_parts(pointer, self.n_local * self.n_local).to_vec();
+            let outcome = look(std::slice::from_raw_parts(pointer, self.n_local * self.n_local));
             check(sys::MatDenseRestoreArrayRead(self.raw, &mut pointer))?;
-            Ok(Some(values))
+            Ok(Some(outcome))
         }
     }
 

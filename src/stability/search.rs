@@ -135,7 +135,7 @@ fn ritz(space: &Space, radius: f64, n_expected: usize) -> Result<Vec<Ritz>> {
     factor.factorise(&k)?;
     for margin in MARGINS {
         let n_wanted = (2 * (n_expected + margin)).min(2 * n);
-        let options = eigen::Options { n_wanted, n_basis: 0, tolerance: 1e-13, max_restarts: 500 };
+        let options = eigen::Options { n_wanted, n_basis: 0, tolerance: 1e-13, max_restarts: 500, scale: 0.0 };
         let problem = Quadratic { m: &m, c: &c, k: &k, shift: 0.0, inverse: &|b, x| factor.solve(b, x) };
         let Some(found) = eigen::solve_or_none(&problem, &options, &mut |_, _| ())? else { continue };
         let reach = found.pairs.iter().map(|pair| pair.lambda.norm()).fold(0.0, f64::max);

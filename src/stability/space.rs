@@ -144,7 +144,7 @@ impl<'a> Space<'a> {
     /// # Errors
     /// PETSc's.
     pub fn extend(&mut self, w: Block) -> Result<Block> {
-        let w = self.what_is_new(w);
+        let w = self.what_is_new(w)?;
         self.v.append(&w);
         let (n, p) = (self.v.n_columns(), w.n_columns());
         let mut images = self.images(&w)?;
@@ -186,7 +186,7 @@ impl<'a> Space<'a> {
 
     /// An orthonormal basis of what V lacks of some columns. Projection on V and W needs independent columns and not orthogonal ones: V is
     /// left a second time only where that took most digits the first time, so that of V itself a part of 1e-5 may stay.
-    fn what_is_new(&self, mut w: Block) -> Block {
+    fn what_is_new(&self, mut w: Block) -> Result<Block> {
         let mut is_clear = false;
         for _ in 0..2 {
             if !is_clear {
@@ -197,13 +197,13 @@ impl<'a> Space<'a> {
                     length > CLEAR * taken.iter().map(|x| x * x).sum::<f64>().sqrt()
                 });
             }
-            let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE);
+            let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE)?;
             // No space has more directions than equations; what is beyond is rounding.
             n = n.min(self.n_equations - self.v.n_columns());
             basis.truncate(n * w.n_columns());
             w = w.combined(&basis, n);
         }
-        w
+        Ok(w)
     }
 
     /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than V columns, the others

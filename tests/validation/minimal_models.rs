@@ -31,7 +31,7 @@ fn eigenvalues<const N: usize>(
     let [m, c, k, p] = [m, c, k, p].map(|a| dense(comm, a));
     let mut factor = Factor::new(FactorKind::Unsymmetric);
     factor.factorise(&p).unwrap();
-    let options = Options { n_wanted: 2 * N, n_basis: 0, tolerance: 1e-15, max_restarts: 100 };
+    let options = Options { n_wanted: 2 * N, n_basis: 0, tolerance: 1e-15, max_restarts: 100, scale: 0.0 };
     let problem = Quadratic { m: &m, c: &c, k: &k, shift, inverse: &|b, x| factor.solve(b, x) };
     let found = eigen::solve(&problem, &options, &mut |_, _| ()).unwrap();
     let mut lambdas: Vec<Complex64> = found.pairs.iter().map(|pair| pair.lambda).collect();
