@@ -9,7 +9,7 @@
 //! n(A') = n(A) + n(-D^-1 - U^T A^-1 U) - n(-D^-1)       n: number of negative eigenvalues
 //! ```
 //!
-//! and a factor of A serves for A' with one solve a column of U. The count is exact either way.
+//! and a factor of A serves for A' with one solve for each column of U that was not in the last one. The count is exact either way.
 
 use std::f64::consts::TAU;
 
@@ -22,6 +22,8 @@ use crate::petsc::{Block, Factor, FactorKind, FactorStats};
 
 /// A change of a point's tangent this much smaller than the tangent itself is none.
 const NEGLIGIBLE: f64 = 1e-12;
+/// Unit vectors whose components differ by no more are one: rounding.
+const SAME_DIRECTION: f64 = 1e-14;
 /// An eigenvalue of the small matrix this close to zero, relative to the largest, leaves its sign open.
 const OPEN: f64 = 1e-9;
 
@@ -36,6 +38,15 @@ struct Last {
     omega: f64,
     tangents: Vec<[[f64; 3]; 3]>,
     n_negative: usize,
+    /// Solved for so far.
+    responses: Vec<Response>,
+}
+
+/// What the points' gaps are where a unit force acts at one, with the factor's matrix.
+struct Response {
+    point: usize,
+    direction: [f64; 3],
+    gaps: Vec<[f64; 3]>,
 }
 
 impl Default for Inertia {
@@ -63,35 +74,43 @@ impl Inertia {
         self.factor.factorise(&shifted)?;
         let n_negative = self.factor.n_negative()?;
         let tangents = pencil.points.map(|points| points.symmetric.to_vec());
-        self.last = tangents.map(|tangents| Last { omega, tangents, n_negative });
+        self.last = tangents.map(|tangents| Last { omega, tangents, n_negative, responses: Vec::new() });
         Ok(n_negative)
     }
 
     /// The count by the last factor; none where it was made for something too different.
-    fn updated(&self, pencil: &Pencil, omega: f64) -> Result<Option<usize>> {
-        let (Some(last), Some(points)) = (&self.last, pencil.points) else { return Ok(None) };
+    fn updated(&mut self, pencil: &Pencil, omega: f64) -> Result<Option<usize>> {
+        let (Some(last), Some(points)) = (&mut self.last, pencil.points) else { return Ok(None) };
         if last.omega != omega || last.tangents.len() != points.symmetric.len() {
             return Ok(None);
         }
         let pairs = last.tangents.iter().zip(points.symmetric).enumerate();
         let changes: Vec<Change> = pairs.flat_map(|(a, (old, new))| changes(a, old, new)).collect();
-        if Factor::PRICE_AMONG_MANY * changes.len() as f64 > self.factor.solves_per_factorisation() {
+        let is_new = |change: &&Change| !last.responses.iter().any(|response| response.sign(change) != 0.0);
+        let new: Vec<&Change> = changes.iter().filter(is_new).collect();
+        if Factor::PRICE_AMONG_MANY * new.len() as f64 > self.factor.solves_per_factorisation() {
             return Ok(None);
         }
         if changes.is_empty() {
             return Ok(Some(last.n_negative));
         }
-        let mut flexibility = Vec::with_capacity(changes.len().pow(2));
-        for columns in changes.chunks(Block::AT_ONCE) {
+        for columns in new.chunks(Block::AT_ONCE) {
             let mut u = Block::zeros(pencil.k.comm(), pencil.k.n_local(), columns.len());
             for (j, change) in columns.iter().enumerate() {
                 points.contacts.spread_into(change.point, change.direction, 1.0, u.column_mut(j));
             }
-            let response = u.solved_by(&self.factor)?;
-            for j in 0..columns.len() {
-                let gaps = points.contacts.gaps(&response.vector(j)?)?;
-                flexibility.extend(changes.iter().map(|change| dot(change.direction, gaps[change.point])));
+            let solution = u.solved_by(&self.factor)?;
+            for (j, &&Change { point, direction, .. }) in columns.iter().enumerate() {
+                let gaps = points.contacts.gaps(&solution.vector(j)?)?;
+                last.responses.push(Response { point, direction, gaps });
             }
+        }
+        let mut flexibility = Vec::with_capacity(changes.len().pow(2));
+        for column in &changes {
+            let known = last.responses.iter().map(|response| (response.sign(column), response));
+            let Some((sign, response)) = known.into_iter().find(|(sign, _)| *sign != 0.0) else { return Ok(None) };
+            let entry = |row: &Change| sign * dot(row.direction, response.gaps[row.point]);
+            flexibility.extend(changes.iter().map(entry));
         }
         Ok(n_negative_after(last.n_negative, &changes, &flexibility))
     }
@@ -118,6 +137,16 @@ struct Change {
     point: usize,
     direction: [f64; 3],
     stiffness: f64,
+}
+
+impl Response {
+    /// The sign with which this is the response to a change's direction; 0 where it is to another's.
+    fn sign(&self, change: &Change) -> f64 {
+        let sign = dot(self.direction, change.direction).signum();
+        let mut pairs = self.direction.iter().zip(&change.direction);
+        let is_same = self.point == change.point && pairs.all(|(a, b)| (a - sign * b).abs() <= SAME_DIRECTION);
+        if is_same { sign } else { 0.0 }
+    }
 }
 
 /// The change of a symmetric tangent along its principal directions.
@@ -182,6 +211,16 @@ mod tests {
                 prop_assert_eq!(n, n_negative(&changed));
             }
         }
+    }
+
+    #[test]
+    fn a_response_serves_its_direction_and_the_opposite_one() {
+        let response = Response { point: 2, direction: [0.6, 0.0, 0.8], gaps: Vec::new() };
+        let sign = |point: usize, direction: [f64; 3]| response.sign(&Change { point, direction, stiffness: 1.0 });
+        assert_eq!(sign(2, [0.6, 0.0, 0.8]), 1.0);
+        assert_eq!(sign(2, [-0.6, 0.0, -0.8]), -1.0);
+        assert_eq!(sign(2, [0.6, 1e-8, 0.8]), 0.0);
+        assert_eq!(sign(1, [0.6, 0.0, 0.8]), 0.0);
     }
 
     #[test]
