@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::Result;
 use crate::assembly::{DofMap, System};
 use crate::contact::{Interface, Response, Stage, Status};
-use crate::petsc::{Gather, Matrix, Vector};
+use crate::petsc::{Block, Comm, Gather, Matrix, Vector};
 
 /// Evaluates all contact points of an interface, on every rank alike, so that the contact state is known everywhere.
 pub struct Contacts<'a> {
@@ -115,6 +115,15 @@ impl<'a> Contacts<'a> {
                 }
             }
         });
+    }
+
+    /// `B_a^T f` of several points side by side, on this rank's rows. Not collective.
+    pub fn loads(&self, comm: &Comm, forces: &[(usize, [f64; 3])]) -> Block {
+        let mut loads = Block::zeros(comm, self.dofs.owned().len(), forces.len());
+        for (j, &(a, force)) in forces.iter().enumerate() {
+            self.spread_into(a, force, 1.0, loads.column_mut(j));
+        }
+        loads
     }
 
     /// `A += sum B_a^T D_a B_a`. Collective.

@@ -176,14 +176,11 @@ impl StepFactor {
 
     /// Appends `A_0^-1 B^T left` of each dyad.
     fn append_responses(&self, w: &mut Block, dyads: &[Dyad], contacts: &Contacts) -> Result<()> {
-        for dyads in dyads.chunks(Block::AT_ONCE) {
-            let mut u = Block::zeros(w.comm(), w.n_local(), dyads.len());
-            for (j, dyad) in dyads.iter().enumerate() {
-                contacts.spread_into(dyad.point, dyad.left, 1.0, u.column_mut(j));
-            }
-            w.append(&u.solved_by(&self.factor)?);
-        }
-        Ok(())
+        let forces: Vec<(usize, [f64; 3])> = dyads.iter().map(|dyad| (dyad.point, dyad.left)).collect();
+        forces.chunks(Block::AT_ONCE).try_for_each(|forces| {
+            w.append(&contacts.loads(w.comm(), forces).solved_by(&self.factor)?);
+            Ok(())
+        })
     }
 
     /// The factor, to be made for points that do this; steps to come start from it.

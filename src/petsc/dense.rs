@@ -6,7 +6,7 @@ use squeal_sys as sys;
 use crate::{Error, Result};
 
 /// So many columns are multiplied one by one: for more, BLAS copies the matrix in an order of its own first.
-const FEW: usize = 6;
+pub(super) const FEW: usize = 6;
 
 /// `C = op(A) B` with A of `rows x inner` (or its transpose where `transposed`), B of `inner x columns`. Not collective.
 ///

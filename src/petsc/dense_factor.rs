@@ -1,8 +1,11 @@
 //! Factors of matrices that are stored densely, by LAPACK.
 
+use std::ffi::CStr;
+
 use squeal_sys as sys;
 
 use super::FactorKind;
+use super::dense::FEW;
 use crate::{Error, Result};
 
 /// `P L U` or `P L D L^T P^T` of a matrix, column-major.
@@ -45,23 +48,30 @@ impl DenseFactor {
     /// Overwrites right-hand sides, column by column, with the solutions, of the transposed matrix where that is asked for.
     pub(super) fn solve(&self, columns: &mut [f64], transposed: bool) {
         match self.kind {
-            FactorKind::Unsymmetric if columns.len() == self.n && !transposed => self.solve_one(columns),
+            FactorKind::Unsymmetric if columns.len() <= FEW * self.n => {
+                columns.chunks_mut(self.n.max(1)).for_each(|x| self.solve_one(x, transposed));
+            }
             _ => self.solve_many(columns, transposed),
         }
     }
 
     /// One right-hand side: LAPACK's own solver would copy the factor to make it ready for many.
-    fn solve_one(&self, x: &mut [f64]) {
-        for (i, &pivot) in self.pivots.iter().enumerate() {
-            x.swap(i, pivot as usize - 1);
-        }
+    fn solve_one(&self, x: &mut [f64], transposed: bool) {
         let (n, leading) = (self.n as i32, (self.n as i32).max(1));
-        // SAFETY: sizes are those of the arrays.
-        unsafe {
-            for (triangle, diagonal) in [(c"L", c"U"), (c"U", c"N")] {
-                let (uplo, diag, a) = (triangle.as_ptr(), diagonal.as_ptr(), self.values.as_ptr());
-                sys::dtrsv_(uplo, c"N".as_ptr(), diag, &n, a, &leading, x.as_mut_ptr(), &1);
-            }
+        let solve = |x: &mut [f64], triangle: &CStr, diagonal: &CStr, op: &CStr| {
+            let (uplo, diag, a) = (triangle.as_ptr(), diagonal.as_ptr(), self.values.as_ptr());
+            // SAFETY: sizes are those of the arrays.
+            unsafe { sys::dtrsv_(uplo, op.as_ptr(), diag, &n, a, &leading, x.as_mut_ptr(), &1) };
+        };
+        let swaps = self.pivots.iter().enumerate().map(|(i, &pivot)| (i, pivot as usize - 1));
+        if transposed {
+            solve(x, c"U", c"N", c"T");
+            solve(x, c"L", c"U", c"T");
+            swaps.rev().for_each(|(i, j)| x.swap(i, j));
+        } else {
+            swaps.for_each(|(i, j)| x.swap(i, j));
+            solve(x, c"L", c"U", c"N");
+            solve(x, c"U", c"N", c"N");
         }
     }
 
@@ -122,9 +132,11 @@ mod tests {
         let mut x = [3.0, 4.0, 8.0];
         lu.solve(&mut x, false);
         assert_eq!(x, [2.0, 3.0, 2.0]);
-        let mut x = [3.0, 4.0, 8.0, 0.0, 2.0, 0.0];
-        lu.solve(&mut x, false);
-        assert_eq!(x, [2.0, 3.0, 2.0, 1.0, 0.0, 0.0]);
+        for n_columns in [2, 2 * FEW] {
+            let mut x = [3.0, 4.0, 8.0, 0.0, 2.0, 0.0].repeat(n_columns / 2);
+            lu.solve(&mut x, false);
+            assert_eq!(x, [2.0, 3.0, 2.0, 1.0, 0.0, 0.0].repeat(n_columns / 2));
+        }
         let mut x = [4.0, 3.0, 8.0];
         lu.solve(&mut x, true);
         assert_eq!(x, [3.0, 2.0, 2.0]);

@@ -87,7 +87,8 @@ impl Inertia {
         let pairs = last.tangents.iter().zip(points.symmetric).enumerate();
         let changes: Vec<Change> = pairs.flat_map(|(a, (old, new))| changes(a, old, new)).collect();
         let is_new = |change: &&Change| !last.responses.iter().any(|response| response.sign(change) != 0.0);
-        let new: Vec<&Change> = changes.iter().filter(is_new).collect();
+        let unit = |change: &Change| (change.point, change.direction);
+        let new: Vec<(usize, [f64; 3])> = changes.iter().filter(is_new).map(unit).collect();
         if Factor::PRICE_AMONG_MANY * new.len() as f64 > self.factor.solves_per_factorisation() {
             return Ok(None);
         }
@@ -95,12 +96,8 @@ impl Inertia {
             return Ok(Some(last.n_negative));
         }
         for columns in new.chunks(Block::AT_ONCE) {
-            let mut u = Block::zeros(pencil.k.comm(), pencil.k.n_local(), columns.len());
-            for (j, change) in columns.iter().enumerate() {
-                points.contacts.spread_into(change.point, change.direction, 1.0, u.column_mut(j));
-            }
-            let solution = u.solved_by(&self.factor)?;
-            for (j, &&Change { point, direction, .. }) in columns.iter().enumerate() {
+            let solution = points.contacts.loads(pencil.k.comm(), columns).solved_by(&self.factor)?;
+            for (j, &(point, direction)) in columns.iter().enumerate() {
                 let gaps = points.contacts.gaps(&solution.vector(j)?)?;
                 last.responses.push(Response { point, direction, gaps });
             }

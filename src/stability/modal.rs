@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, Matrix3};
 use super::{Pencil, Points};
 use crate::Result;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::petsc::{Block, Comm, Matrix, Vector, dense};
+use crate::petsc::{Block, Matrix, Vector, dense};
 
 /// A change of a point's tangent this much smaller than the tangent itself is none.
 const NEGLIGIBLE: f64 = 1e-15;
@@ -58,7 +58,10 @@ impl Modal {
         let (comm, n) = (pencil.k.comm(), pencil.k.n_local());
         let Some(flexibilities) = dense::generalised_eigen(n, &mut modes, stiffness) else { return Ok(None) };
         let phi = Block::from_columns(comm, n, modes);
-        let traces = phi.gram(&directions(&points, comm, n));
+        let unit = |e: usize| std::array::from_fn(|i| if i == e { 1.0 } else { 0.0 });
+        let directions: Vec<(usize, [f64; 3])> =
+            (0..3 * points.symmetric.len()).map(|j| (j / 3, unit(j % 3))).collect();
+        let traces = phi.gram(&points.contacts.loads(comm, &directions));
         let (k, m) = (Matrix::diagonal(comm, &vec![1.0; n])?, Matrix::diagonal(comm, &flexibilities)?);
         Ok(Some(Modal { phi, k, m, tangents: points.symmetric.to_vec(), traces, damping: None }))
     }
@@ -142,15 +145,4 @@ impl Update {
         x.copy_from_slice(b);
         dense::subtract_product([n, rank, 1], &self.u, &coefficients, x);
     }
-}
-
-/// `B_a^T` of all points side by side.
-fn directions(points: &Points, comm: &Comm, n: usize) -> Block {
-    let mut columns = Block::zeros(comm, n, 3 * points.symmetric.len());
-    for j in 0..columns.n_columns() {
-        let mut direction = [0.0; 3];
-        direction[j % 3] = 1.0;
-        points.contacts.spread_into(j / 3, direction, 1.0, columns.column_mut(j));
-    }
-    columns
 }
