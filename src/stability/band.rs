@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::condition::condition;
 use super::inertia::Inertia;
+use super::left;
 use super::modal::Modal;
 use super::mode::backward_errors;
 use super::search;
@@ -119,13 +120,15 @@ pub struct Band {
 const TOLERANCE: f64 = 1e-12;
 /// The same in modal coordinates, with the band's end for the unit of frequency: it leaves backward errors of 1e-13 and eigenvalues to 2e-12
 /// (782 coordinates).
-const MODAL_TOLERANCE: f64 = 1e-10;
+const MODAL_TOLERANCE: f64 = 1e-11;
 /// Memory of a symmetric factor over that of an LU on the same pattern: 3.0 GB over 5.3 GB on the full demo brake, or over 2.8 GB in single
 /// precision.
 const SYMMETRIC_OVER_LU: [f64; 2] = [0.6, 1.1];
 /// Basis of TOAR over the eigenvalues wanted in modal coordinates, first: next to products its own upkeep counts there, and half of
 /// SLEPc's basis takes half the time (782 coordinates). It restarts more often, which costs digits.
 const SMALL_BASIS: f64 = 1.3;
+/// So few left vectors of a densely stored pencil are sought one by one, more by a search of their own.
+const FEW_LEFT: usize = 6;
 /// By this factor the shift moves where TOAR gave up: about another shift it does not meet the same blocks.
 const ELSEWHERE: f64 = 1.3;
 /// How often the search is widened before the band is given up.
@@ -351,9 +354,28 @@ impl Solver {
         self.gap = Some(count.below);
     }
 
-    /// The space of the last search, for left vectors of what was found; none where it was made by TOAR.
-    pub fn take_basis(&mut self) -> Option<Basis> {
-        self.basis.take()
+    /// Left vectors of the modes that the last search found, as [`left::left_vectors`] gives them. Collective.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn left_vectors(
+        &mut self,
+        problem: &Problem,
+        modes: &[Mode],
+        accuracy: impl Fn(&Mode) -> f64,
+    ) -> Result<(Block, usize)> {
+        let (basis, n_sought) = (self.basis.take(), modes.iter().filter(|mode| accuracy(mode).is_finite()).count());
+        if let Some(modal) = self.modal.as_mut().filter(|_| n_sought > FEW_LEFT)
+            && let Some(vectors) = modal.left_vectors(problem.pencil, modes)?
+        {
+            return Ok((left::normalised_left(problem.pencil.m, vectors)?, 0));
+        }
+        left::left_vectors(problem, modes, basis, accuracy)
+    }
+
+    /// Gives the memory of the last search's space back.
+    pub fn forget(&mut self) {
+        self.basis = None;
     }
 
     /// Whether there is memory for a search in blocks.

@@ -25,7 +25,7 @@ const NEIGHBOURS: [f64; 3] = [0.0, 1e-14, 1e-12];
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy.
-pub fn left_vectors(
+pub(super) fn left_vectors(
     problem: &Problem,
     modes: &[Mode],
     basis: Option<Basis>,
@@ -54,7 +54,7 @@ pub fn left_vectors(
             space.extend_by_solves(&residuals)?;
         }
         if space.v.n_columns() == before {
-            return Ok((normalised(m, conjugated(space.vectors(&vectors)))?, space.n_solves));
+            return Ok((normalised_left(m, space.vectors(&vectors))?, space.n_solves));
         }
     }
     Err(Error::NotConverged(format!(
@@ -120,6 +120,14 @@ pub fn right_vectors(m: &Matrix, modes: &[Mode]) -> Result<Block> {
         part.local(|values| block.column_mut(j).copy_from_slice(values))?;
     }
     normalised(m, block)
+}
+
+/// `y = conj(v)` with `y^H M y = 1`. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub(super) fn normalised_left(m: &Matrix, v: Block) -> Result<Block> {
+    normalised(m, conjugated(v))
 }
 
 /// Complex columns with `d^H M d = 1`.

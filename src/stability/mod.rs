@@ -2,7 +2,7 @@
 //!
 //! [`Pencil`] is the linearised problem, with friction's unsymmetric part in K. [`solve`] finds the band's modes by SLEPc's PEP
 //! (TOAR, inverted about a real shift, so that one real factor serves the whole band), gives each its backward error, and
-//! checks their number against the inertia of the symmetric problem, so that none is missed. [`left_vectors`] finds their left vectors.
+//! checks their number against the inertia of the symmetric problem, so that none is missed. [`Solver::left_vectors`] finds their left vectors.
 
 mod band;
 mod condition;
@@ -20,7 +20,7 @@ pub use band::{Band, Count, Evidence, Solver, solve};
 pub use condition::condition;
 pub use explain::{Sensitivity, Share, self_product, sensitivity, shares};
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
-pub use left::{left_vectors, right_vectors};
+pub use left::right_vectors;
 pub use linearise::{Linearised, with_friction_damping};
 pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO, growth_threshold};
 pub use space::{Basis, Problem};

@@ -14,13 +14,18 @@
 
 use nalgebra::{DMatrix, Matrix3};
 
-use super::{Pencil, Points};
+use super::space::Side;
+use super::{Mode, Pencil, Points};
 use crate::Result;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
 use crate::petsc::{Block, Matrix, Vector, dense};
 
 /// A change of a point's tangent this much smaller than the tangent itself is none.
 const NEGLIGIBLE: f64 = 1e-15;
+
+/// An eigenvalue found twice differs by no more, relatively, and no other is as near as the second.
+const SAME: f64 = 1e-9;
+const APART: f64 = 1e-6;
 
 /// The reference, and what of a pencil does not change with friction.
 pub struct Modal {
@@ -35,6 +40,8 @@ pub struct Modal {
     traces: Vec<f64>,
     /// The damping seen last, and `Phi^T C Phi`.
     damping: Option<(Vec<f64>, Matrix)>,
+    /// Of the last search.
+    options: Option<Options>,
 }
 
 /// `U (I + W^T U)^-1` and W, column by column.
@@ -63,7 +70,7 @@ impl Modal {
             (0..3 * points.symmetric.len()).map(|j| (j / 3, unit(j % 3))).collect();
         let traces = phi.gram(&points.contacts.loads(comm, &directions));
         let (k, m) = (Matrix::diagonal(comm, &vec![1.0; n])?, Matrix::diagonal(comm, &flexibilities)?);
-        Ok(Some(Modal { phi, k, m, tangents: points.symmetric.to_vec(), traces, damping: None }))
+        Ok(Some(Modal { phi, k, m, tangents: points.symmetric.to_vec(), traces, damping: None, options: None }))
     }
 
     /// Eigenpairs of a pencil with the same M, S and contact points, as [`eigen::solve_or_none`] finds them.
@@ -76,7 +83,42 @@ impl Modal {
         options: &Options,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Option<Found>> {
-        let Some(update) = pencil.points.and_then(|points| self.update(&points)) else { return Ok(None) };
+        self.options = Some(*options);
+        self.search(pencil, Side::Right, options, progress)
+    }
+
+    /// `v` with `P(lambda)^T v = 0` for modes of the last pencil solved: columns `2i` and `2i + 1` are the real and imaginary part for mode i. From a
+    /// search of its own with K transposed; none where that does not find each eigenvalue again, apart from all others.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn left_vectors(&mut self, pencil: &Pencil, modes: &[Mode]) -> Result<Option<Block>> {
+        let Some(options) = self.options else { return Ok(None) };
+        let Some(found) = self.search(pencil, Side::Left, &options, &mut |_, _| ())? else { return Ok(None) };
+        let mut vectors = Block::zeros(pencil.k.comm(), pencil.k.n_local(), 2 * modes.len());
+        for (i, mode) in modes.iter().enumerate() {
+            let near = |pair: &&Pair, share: f64| (pair.lambda - mode.lambda).norm() <= share * mode.lambda.norm();
+            let mut neighbours = found.pairs.iter().filter(|pair| near(pair, APART));
+            let (Some(pair), None) = (neighbours.next(), neighbours.next()) else { return Ok(None) };
+            if !near(&pair, SAME) {
+                return Ok(None);
+            }
+            pair.re.local(|values| vectors.column_mut(2 * i).copy_from_slice(values))?;
+            pair.im.local(|values| vectors.column_mut(2 * i + 1).copy_from_slice(values))?;
+        }
+        Ok(Some(vectors))
+    }
+
+    /// Eigenpairs of a pencil, or of the transposed one.
+    fn search(
+        &mut self,
+        pencil: &Pencil,
+        side: Side,
+        options: &Options,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Option<Found>> {
+        let Some(points) = pencil.points.filter(|_| pencil.symmetric_mc) else { return Ok(None) };
+        let Some(update) = self.update(&points, side) else { return Ok(None) };
         self.bring_damping(pencil)?;
         let Some((_, c)) = &self.damping else { return Ok(None) };
         let inverse = |b: &Vector, x: &mut Vector| b.local(|b| x.local_mut(|x| update.solve(b, x)))?;
@@ -107,8 +149,8 @@ impl Modal {
         Ok(())
     }
 
-    /// What the tangents add to `I`; none where the sum is singular.
-    fn update(&self, points: &Points) -> Option<Update> {
+    /// What the tangents, or the transposed ones, add to `I`; none where the sum is singular.
+    fn update(&self, points: &Points, side: Side) -> Option<Update> {
         let n = self.phi.n_columns();
         let (mut u, mut w) = (Vec::new(), Vec::new());
         let pairs = self.tangents.iter().zip(points.tangents).enumerate();
@@ -125,6 +167,9 @@ impl Modal {
                 along((left.column(k) * svd.singular_values[k]).into(), &mut u);
                 along(right.row(k).transpose().into(), &mut w);
             }
+        }
+        if side == Side::Left {
+            std::mem::swap(&mut u, &mut w);
         }
         let rank = u.len() / n.max(1);
         let mut small = vec![0.0; rank * rank];

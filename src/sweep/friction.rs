@@ -118,7 +118,7 @@ impl Snapshot {
     /// Collective.
     ///
     /// # Errors
-    /// See [`crate::stability::left_vectors`].
+    /// See [`crate::stability::Solver::left_vectors`].
     pub fn new(sweep: &mut Sweep, band: &Band, end: f64) -> Result<Snapshot> {
         Snapshot::with(sweep, band, end, RECOGNISES)
     }
@@ -126,7 +126,7 @@ impl Snapshot {
     /// As [`Snapshot::new`], where only unstable modes need left vectors: those of the others are not computed. Collective.
     ///
     /// # Errors
-    /// See [`crate::stability::left_vectors`].
+    /// See [`crate::stability::Solver::left_vectors`].
     pub fn of_unstable(sweep: &mut Sweep, band: &Band, end: f64) -> Result<Snapshot> {
         Snapshot::with(sweep, band, end, f64::INFINITY)
     }

@@ -137,9 +137,8 @@ impl<'a> GivenSweep<'a> {
             each(value, &modes)?;
             let found = &modes.band.modes;
             let (pencil, labels) = (self.pencil(&sums), given.labels());
-            let basis = self.solver.take_basis();
             let problem = Problem { pencil: &pencil, factor: &self.lu, labels: &labels };
-            let (left, _) = stability::left_vectors(&problem, found, basis, |_| ACCURACY)?;
+            let (left, _) = self.solver.left_vectors(&problem, found, |_| ACCURACY)?;
             let right = stability::right_vectors(&sums.m, found)?;
             Ok(Snapshot::of(&modes.band, band[1], Vectors { right, left, c: Some(sums.c), m: Some(sums.m) }))
         };

@@ -88,7 +88,7 @@ impl<'a> Sweep<'a> {
     pub fn equilibrium(&mut self, friction: f64, hear: &mut dyn FnMut(Event)) -> Result<Equilibrium> {
         let start = Instant::now();
         // Its memory is needed.
-        self.solver.take_basis();
+        self.solver.forget();
         let outcome = self.path.advance(friction, &mut |label, i, it| hear(Event::Newton(label, i, it)));
         self.seconds[0] += start.elapsed().as_secs_f64();
         outcome
@@ -132,12 +132,12 @@ impl<'a> Sweep<'a> {
     /// Left vectors of the modes of the last [`Sweep::modes`], each to the accuracy asked for. Collective.
     ///
     /// # Errors
-    /// See [`stability::left_vectors`].
+    /// See [`Solver::left_vectors`].
     pub fn left_vectors(&mut self, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<(Block, usize)> {
         let start = Instant::now();
         let pencil = self.linearised.pencil(self.system, self.path.contacts(), self.path.tangent());
         let problem = Problem { pencil: &pencil, factor: self.path.factor(), labels: &self.system.dofs.labels() };
-        let outcome = stability::left_vectors(&problem, modes, self.solver.take_basis(), accuracy);
+        let outcome = self.solver.left_vectors(&problem, modes, accuracy);
         self.seconds[2] += start.elapsed().as_secs_f64();
         outcome
     }
