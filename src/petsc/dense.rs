@@ -5,8 +5,10 @@ use squeal_sys as sys;
 
 use crate::{Error, Result};
 
-/// So many columns are multiplied one by one: for more, BLAS copies the matrix in an order of its own first.
+/// So many columns are multiplied one by one, where the matrix has so few entries that it stays in the cache: for more, BLAS copies the matrix in
+/// an order of its own first.
 pub(super) const FEW: usize = 6;
+const CACHED: usize = 1 << 20;
 
 /// `C = op(A) B` with A of `rows x inner` (or its transpose where `transposed`), B of `inner x columns`. Not collective.
 ///
@@ -50,7 +52,7 @@ fn update(
     }
     let [m, k, n] = [rows as i32, inner as i32, columns as i32];
     let (op, lda) = if transposed { (c"T", k) } else { (c"N", m) };
-    if columns <= FEW {
+    if columns == 1 || columns <= FEW && a.len() <= CACHED {
         let (rows_of_a, columns_of_a) = if transposed { (k, m) } else { (m, k) };
         for (b, c) in b.chunks(inner).zip(c.chunks_mut(rows)) {
             let (b, c) = (b.as_ptr(), c.as_mut_ptr());
