@@ -19,88 +19,46 @@ const CHUNK: usize = 128;
 /// A row of a strip.
 type Row = [f64; STRIP];
 
-/// `Y += [A_1 X, A_2 X, ...]` for some columns of X and some sparse matrices. Neighbours that share their pattern's memory are multiplied
-/// together, two at a time: their columns are looked up once.
+/// `Y += [A_1 X, A_2 X, ...]` for some columns of X and some sparse matrices.
 ///
 /// # Errors
 /// PETSc's.
 pub(super) fn add_times(matrices: &[&Matrix], x: &Block, columns: Range<usize>, y: &mut Block) -> Result<()> {
-    let groups = groups(matrices)?;
     let (mut own_rows, mut ghost_rows) = (Vec::new(), Vec::new());
     for first in columns.clone().step_by(STRIP) {
         let strip = first..(first + STRIP).min(columns.end);
         let own: Vec<&[f64]> = strip.clone().map(|j| x.column(j)).collect();
         by_rows(&own, &mut own_rows);
-        let mut to = first - columns.start;
-        for group in &groups {
-            let ghosts = group[0].ghost_columns(x, strip.clone())?;
+        for (i, a) in matrices.iter().enumerate() {
+            let ghosts = a.ghost_columns(x, strip.clone())?;
             let ghosts: Vec<&[f64]> = ghosts.iter().map(Vec::as_slice).collect();
             by_rows(&ghosts, &mut ghost_rows);
-            let x = [own_rows.as_slice(), &ghost_rows];
-            match group {
-                [a, b] => a.with_parts(|a| {
-                    b.with_parts(|b| {
-                        let values = [0, 1].map(|part| [a[part].values, b[part].values]);
-                        add_strip(&a, values, x, y, [to, to + columns.len()], own.len());
-                    })
-                })??,
-                _ => group[0].with_parts(|a| {
-                    add_strip(&a, [0, 1].map(|part| [a[part].values]), x, y, [to], own.len());
-                })?,
-            }
-            to += group.len() * columns.len();
+            a.with_parts(|parts| {
+                let to = first - columns.start + i * columns.len();
+                add_strip(&parts, [&own_rows, &ghost_rows], y, to..to + own.len());
+            })?;
         }
     }
     Ok(())
 }
 
-/// Neighbours of one pattern in pairs, all others alone.
-fn groups<'a>(matrices: &'a [&'a Matrix]) -> Result<Vec<&'a [&'a Matrix]>> {
-    let (mut groups, mut rest) = (Vec::new(), matrices);
-    while let [a, others @ ..] = rest {
-        let n = match others.first() {
-            Some(b) if a.shares_pattern_with(b)? => 2,
-            _ => 1,
-        };
-        let (group, others) = rest.split_at(n);
-        groups.push(group);
-        rest = others;
-    }
-    Ok(groups)
-}
-
-/// `Y_k += A_k X` for a strip of X by rows, own ones and others', and `width` columns of Y from the given ones on, for matrices of one pattern.
-fn add_strip<const N: usize>(
-    pattern: &[Part; 2],
-    values: [[&[f64]; N]; 2],
-    x: [&[Row]; 2],
-    y: &mut Block,
-    columns: [usize; N],
-    width: usize,
-) {
-    let mut chunk = [[[0.0; STRIP]; N]; CHUNK];
+/// `Y += A X` for a strip of X by rows, own ones and others', and as many columns of Y.
+fn add_strip(parts: &[Part; 2], x: [&[Row]; 2], y: &mut Block, columns: Range<usize>) {
+    let mut chunk = [[0.0; STRIP]; CHUNK];
     for begin in (0..y.n_local()).step_by(CHUNK) {
         let rows = begin..(begin + CHUNK).min(y.n_local());
-        chunk.fill([[0.0; STRIP]; N]);
-        for ((part, values), x) in pattern.iter().zip(values).zip(x) {
-            add_product(part, values, x, begin, &mut chunk[..rows.len()]);
+        chunk.fill([0.0; STRIP]);
+        for (part, x) in parts.iter().zip(x) {
+            add_product(part, x, begin, &mut chunk[..rows.len()]);
         }
-        for (k, first) in columns.into_iter().enumerate() {
-            for place in 0..width {
-                let column = &mut y.column_mut(first + place)[rows.clone()];
-                column.iter_mut().zip(&chunk).for_each(|(y, row)| *y += row[k][place]);
-            }
+        for (place, j) in columns.clone().enumerate() {
+            let column = &mut y.column_mut(j)[rows.clone()];
+            column.iter_mut().zip(&chunk).for_each(|(y, row)| *y += row[place]);
         }
     }
 }
 
 impl Matrix {
-    /// Whether another matrix's entries stand in the same places, by the same memory.
-    fn shares_pattern_with(&self, other: &Matrix) -> Result<bool> {
-        let is_one = |a: &Part, b: &Part| std::ptr::eq(a.offsets, b.offsets) && std::ptr::eq(a.columns, b.columns);
-        self.with_parts(|own| other.with_parts(|others| own.iter().zip(&others).all(|(a, b)| is_one(a, b))))?
-    }
-
     /// For some columns what other ranks own of each and this rank's rows need; nothing on one rank.
     fn ghost_columns(&self, x: &Block, columns: Range<usize>) -> Result<Vec<Vec<f64>>> {
         if self.comm().size() == 1 {
@@ -130,24 +88,20 @@ fn by_rows(columns: &[&[f64]], rows: &mut Vec<Row>) {
     }
 }
 
-/// `Y_k += A_k X` for the rows from `first` on that Y has, for matrices of one pattern. The sums are the same on every processor: its wider
-/// registers hold more of them, and products are not fused with sums.
+/// `Y += A X` for the rows from `first` on that Y has. The sums are the same on every processor: its wider registers hold more of them, and
+/// products are not fused with sums.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2", "aarch64+neon"))]
-fn add_product<const N: usize>(pattern: &Part, values: [&[f64]; N], x: &[Row], first: usize, y: &mut [[Row; N]]) {
-    for (bounds, y) in pattern.offsets.get(first..).unwrap_or_default().windows(2).zip(y) {
+fn add_product(a: &Part, x: &[Row], first: usize, y: &mut [Row]) {
+    for (bounds, y) in a.offsets.get(first..).unwrap_or_default().windows(2).zip(y) {
         let entries = bounds[0] as usize..bounds[1] as usize;
-        let values = values.map(|values| &values[entries.clone()]);
-        let mut sums = *y;
-        for (entry, &column) in pattern.columns[entries].iter().enumerate() {
+        let mut sum = *y;
+        for (&column, &value) in a.columns[entries.clone()].iter().zip(&a.values[entries]) {
             let x = &x[column as usize];
-            for (sum, values) in sums.iter_mut().zip(&values) {
-                let value = values[entry];
-                for k in 0..STRIP {
-                    sum[k] += value * x[k];
-                }
+            for k in 0..STRIP {
+                sum[k] += value * x[k];
             }
         }
-        *y = sums;
+        *y = sum;
     }
 }
 
@@ -158,19 +112,16 @@ mod tests {
     #[test]
     fn a_strip_is_multiplied_row_by_row() {
         // A = [1 0 2; 0 0 0; 0 3 0], columns x and 10 x
-        let values = [1.0, 2.0, 3.0];
-        let a = Part { offsets: &[0, 2, 2, 3], columns: &[0, 2, 1], values: &values };
+        let a = Part { offsets: &[0, 2, 2, 3], columns: &[0, 2, 1], values: &[1.0, 2.0, 3.0] };
         let mut x = vec![[7.0; STRIP]; 5];
         by_rows(&[&[1.0, 2.0, 3.0], &[10.0, 20.0, 30.0]], &mut x);
-        let twice = values.map(|value| 2.0 * value);
-        let mut y = vec![[[1.0; STRIP]; 2]; 3];
-        add_product(&a, [a.values, &twice], &x, 0, &mut y);
-        assert_eq!(y.iter().map(|row| row[0][0]).collect::<Vec<_>>(), [8.0, 1.0, 7.0]);
-        assert_eq!(y.iter().map(|row| row[0][1]).collect::<Vec<_>>(), [71.0, 1.0, 61.0]);
-        assert_eq!(y.iter().map(|row| row[1][0]).collect::<Vec<_>>(), [15.0, 1.0, 13.0]);
-        assert!(y.as_flattened().iter().all(|row| row[2..] == [1.0; STRIP - 2]));
-        let mut last = vec![[[0.0; STRIP]; 1]; 1];
-        add_product(&a, [a.values], &x, 2, &mut last);
-        assert_eq!(last[0][0][..2], [6.0, 60.0]);
+        let mut y = vec![[1.0; STRIP]; 3];
+        add_product(&a, &x, 0, &mut y);
+        assert_eq!(y.iter().map(|row| row[0]).collect::<Vec<_>>(), [8.0, 1.0, 7.0]);
+        assert_eq!(y.iter().map(|row| row[1]).collect::<Vec<_>>(), [71.0, 1.0, 61.0]);
+        assert!(y.iter().all(|row| row[2..] == [1.0; STRIP - 2]));
+        let mut last = vec![[0.0; STRIP]; 1];
+        add_product(&a, &x, 2, &mut last);
+        assert_eq!(last[0][..2], [6.0, 60.0]);
     }
 }
