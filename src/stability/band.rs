@@ -433,8 +433,7 @@ impl Solver {
                 return Ok(Some(search));
             }
         }
-        let problem =
-            Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, inverse: &|b, x| lu.solve(b, x) };
+        let problem = Quadratic { m: pencil.m, c: pencil.c, k: pencil.k, shift, inverse: &|b, x| lu.solve(b, x) };
         complete(pencil, eigen::solve_or_none(&problem, &options, &mut hear)?)
     }
 }

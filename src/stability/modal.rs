@@ -59,7 +59,9 @@ impl Modal {
         let Some(points) = pencil.points else { return Ok(None) };
         let mut k_0 = pencil.k_symmetric.duplicate()?;
         points.contacts.add_blocks(points.symmetric.iter().copied(), &mut k_0)?;
-        let (Some(stiffness), Some(mut modes)) = (k_0.dense_values()?, pencil.m.dense_values()?) else { return Ok(None) };
+        let (Some(stiffness), Some(mut modes)) = (k_0.dense_values()?, pencil.m.dense_values()?) else {
+            return Ok(None);
+        };
         let (comm, n) = (pencil.k.comm(), pencil.k.n_local());
         let Some(flexibilities) = dense::generalised_eigen(n, &mut modes, stiffness) else { return Ok(None) };
         let phi = Block::from_columns(comm, n, modes);
