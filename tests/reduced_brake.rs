@@ -73,6 +73,10 @@ fn two_ranks_make_and_use_the_same_super_element() {
     let said = place.run_on(2, &["stability", "two.se.h5", "--output", "two", BAND]);
     assert_eq!(said.code, 0, "{}", said.err);
     assert_same(&modes(&place, "two"), &modes(&place, "one"), 1e-8);
+    // The first rank works alone, and all end together.
+    assert!(said.out.contains(" on 1 rank:"), "{}", said.out);
+    let said = place.run_on(2, &["stability", "two.se.h5", "--contacts", "12"]);
+    assert_eq!((said.code, said.err.matches("--contacts is for models").count()), (2, 1), "{}", said.err);
 }
 
 #[test]

@@ -11,11 +11,15 @@ use crate::sweep::{Friction, Snapshot, Solutions, Source, Sweep, Vectors, tracki
 use crate::tracking::track;
 
 use super::motion;
-use super::study::{Found, Study, Visit, Walk};
+use super::study::{self, Found, Study, Visit, Walk};
 use super::subject::Drawn;
 use super::{Run, Shell};
 
 pub fn run(shell: &Shell, run: &Run, band: Option<[f64; 2]>, anew: bool, branches: bool) -> Result<()> {
+    study::shared(shell, run, |shell| solve(shell, run, band, [anew, branches]))
+}
+
+fn solve(shell: &Shell, run: &Run, band: Option<[f64; 2]>, [anew, branches]: [bool; 2]) -> Result<()> {
     let comm = shell.comm;
     let options = [(anew, " --anew"), (!branches, " --no-branches")];
     let options: String = options.iter().filter(|(given, _)| *given).map(|(_, name)| *name).collect();

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
+use crate::hdf::is_hdf5;
 use crate::petsc::{Comm, libraries};
 use crate::report::folder::Folder;
 use crate::report::json;
@@ -73,6 +74,21 @@ pub struct Outcome {
     results: Results,
     /// Why it went no further than its results.
     error: Option<Error>,
+}
+
+/// Has the work of a command done by all ranks, or, on a super-element, by the first alone: that has too few equations to be shared, and
+/// all ranks end together. Collective.
+///
+/// # Errors
+/// Those of the work.
+pub fn shared(shell: &Shell, run: &Run, work: impl FnOnce(&Shell) -> Result<()>) -> Result<()> {
+    let comm = shell.comm;
+    let is_small = comm.from_root(&[f64::from(u8::from(is_hdf5(&run.model)))])[0] > 0.0;
+    if comm.size() == 1 || !is_small {
+        return work(shell);
+    }
+    let alone = comm.alone();
+    comm.agree(if comm.is_root() { work(&Shell { comm: &alone, ..*shell }) } else { Ok(()) })
 }
 
 impl Study {
