@@ -147,10 +147,12 @@ impl Solver {
         self.gap = Some(count.below);
     }
 
-    /// Left vectors of the modes that the last search found, as [`left::left_vectors`] gives them. Collective.
+    /// Left vectors of the modes that the last search found: columns `2i` and `2i + 1` are the real and imaginary part of mode i, `y^H M y = 1`, with the
+    /// relative `accuracy` that each is to have; where it is infinite, the columns need be no left vector. Gives the number of solves, too.
+    /// Collective.
     ///
     /// # Errors
-    /// See there.
+    /// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy.
     pub fn left_vectors(
         &mut self,
         problem: &Problem,
