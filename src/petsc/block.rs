@@ -174,13 +174,13 @@ impl Block {
     /// # Errors
     /// PETSc's.
     pub fn multiplied_by_transpose(&self, a: &Matrix) -> Result<Block> {
+        if !a.is_dense()? {
+            return self.multiplied_by_sparse_transpose(a);
+        }
         let mut product = self.like(self.n_columns);
         let sizes = [self.n_local, self.n_local, self.n_columns];
-        let multiply = |a: &[f64]| dense::multiply(true, sizes, a, &self.values, &mut product.values);
-        match a.with_dense_values(multiply)? {
-            Some(()) => Ok(product),
-            None => self.multiplied_by_sparse_transpose(a),
-        }
+        a.with_dense_values(|a| dense::multiply(true, sizes, a, &self.values, &mut product.values))?;
+        Ok(product)
     }
 
     fn multiplied_by_sparse_transpose(&self, a: &Matrix) -> Result<Block> {

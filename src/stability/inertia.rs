@@ -24,6 +24,8 @@ use crate::petsc::{Block, Factor, FactorKind, FactorStats};
 const NEGLIGIBLE: f64 = 1e-12;
 /// Unit vectors whose components differ by no more are one: rounding.
 const SAME_DIRECTION: f64 = 1e-14;
+/// Changes at most: the small matrix of more takes longer than a factor.
+const MOST_CHANGES: usize = 1000;
 /// An eigenvalue of the small matrix this close to zero, relative to the largest, leaves its sign open.
 const OPEN: f64 = 1e-9;
 
@@ -89,7 +91,8 @@ impl Inertia {
         let is_new = |change: &&Change| !last.responses.iter().any(|response| response.sign(change) != 0.0);
         let unit = |change: &Change| (change.point, change.direction);
         let new: Vec<(usize, [f64; 3])> = changes.iter().filter(is_new).map(unit).collect();
-        if Factor::PRICE_AMONG_MANY * new.len() as f64 > self.factor.solves_per_factorisation() {
+        let price = Factor::PRICE_AMONG_MANY * new.len() as f64;
+        if changes.len() > MOST_CHANGES || price > self.factor.solves_per_factorisation() {
             return Ok(None);
         }
         if changes.is_empty() {
