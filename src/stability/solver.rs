@@ -189,22 +189,33 @@ impl Solver {
         beyond: Option<&f64>,
         progress: &mut dyn FnMut(usize, usize, usize),
     ) -> Result<Option<Search>> {
-        let shift = self.shift;
         let has_room = self.has_room(pencil, n_modes);
-        let in_blocks = self.labels.as_ref().filter(|_| shift == 0.0 && has_room);
-        if let Some((labels, beyond)) = in_blocks.zip(beyond) {
-            let problem = Problem { pencil, factor: lu, labels };
-            let reach = beyond * end;
-            let outcome = search::solve(&problem, TAU * reach, n_modes, progress);
-            return match outcome {
-                Ok((Found { pairs, n_solves, .. }, errors, basis)) => {
-                    self.basis = Some(basis);
-                    Ok(Some(Search { pairs, reach, n_solves, backward_errors: errors }))
-                }
-                Err(Error::NotConverged(_)) => Ok(None),
-                Err(error) => Err(error),
-            };
+        let in_blocks = self.labels.as_ref().filter(|_| self.shift == 0.0 && has_room);
+        let Some((labels, beyond)) = in_blocks.zip(beyond) else {
+            return self.by_toar(pencil, lu, n_modes, end, progress);
+        };
+        let problem = Problem { pencil, factor: lu, labels };
+        let reach = beyond * end;
+        match search::solve(&problem, TAU * reach, n_modes, progress) {
+            Ok((Found { pairs, n_solves, .. }, errors, basis)) => {
+                self.basis = Some(basis);
+                Ok(Some(Search { pairs, reach, n_solves, backward_errors: errors }))
+            }
+            Err(Error::NotConverged(_)) => Ok(None),
+            Err(error) => Err(error),
         }
+    }
+
+    /// The same by TOAR: of a densely stored pencil in modal coordinates, unless that costs too many digits.
+    fn by_toar(
+        &mut self,
+        pencil: &Pencil,
+        lu: &mut Factor,
+        n_modes: usize,
+        end: f64,
+        progress: &mut dyn FnMut(usize, usize, usize),
+    ) -> Result<Option<Search>> {
+        let shift = self.shift;
         if !lu.is_exact() {
             lu.set_precision(Precision::Double);
             factorise_shifted(pencil, lu, shift)?;
