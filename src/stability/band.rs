@@ -108,7 +108,7 @@ pub fn solve(
 /// about which is searched; where both do not fit into memory, the factor that counts and the one that solves make room for one another, and
 /// the latter leaves room for the search.
 fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<(f64, usize)> {
-    solver.basis = None;
+    solver.forget();
     let has_mb = |needed| memory::has_mb(pencil.k.comm(), needed);
     let symmetric_over_lu = SYMMETRIC_OVER_LU[usize::from(!lu.is_exact())];
     if !solver.inertia.is_made() && !has_mb(symmetric_over_lu * lu.stats().used_mb) {

@@ -43,7 +43,7 @@ pub struct Solver {
     /// For the blocked search, where it pays: a number for each of this rank's equations that does not depend on the ranks.
     pub(super) labels: Option<Vec<u64>>,
     /// The space of the last blocked search, which holds the vectors of its modes.
-    pub(super) basis: Option<Basis>,
+    basis: Option<Basis>,
     pub(super) evidence: Evidence,
     /// Coordinates in which densely stored pencils are solved.
     modal: Option<Modal>,
