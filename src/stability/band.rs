@@ -67,8 +67,11 @@ pub fn solve(
     let (mut n_solves, mut last, mut gave_up) = (0, None, false);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
-        if solver.labels.is_some() && !solver.has_room(pencil, expected + margin) {
-            solver.inertia.release();
+        if solver.labels.is_some() {
+            solver.make_room(pencil, search::needs_mb(expected + margin, n_equations(pencil)));
+            if !solver.has_room(pencil, expected + margin) {
+                solver.inertia.release();
+            }
         }
         let beyond = BEYOND.get(attempt as usize).filter(|_| !gave_up);
         let Some(search) = solver.search(pencil, lu, expected + margin, band[1], beyond, progress)? else {
@@ -92,6 +95,7 @@ pub fn solve(
                 return finish(search, band, count, n_solves);
             }
             last = Some((search, count));
+            solver.start_anew();
         }
     }
     match last {
@@ -111,8 +115,11 @@ fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> R
     solver.forget();
     let has_mb = |needed| memory::has_mb(pencil.k.comm(), needed);
     let symmetric_over_lu = SYMMETRIC_OVER_LU[usize::from(!lu.is_exact())];
-    if !solver.inertia.is_made() && !has_mb(symmetric_over_lu * lu.stats().used_mb) {
-        lu.release();
+    if !solver.inertia.is_made() {
+        solver.make_room(pencil, symmetric_over_lu * lu.stats().used_mb);
+        if !has_mb(symmetric_over_lu * lu.stats().used_mb) {
+            lu.release();
+        }
     }
     let below = solver.gap.filter(|gap| (end..BEYOND[0] * end).contains(gap)).unwrap_or(end);
     let expected = solver.estimate(pencil, below)?;

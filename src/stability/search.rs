@@ -3,7 +3,8 @@
 //! With `P(lambda) = lambda^2 M + lambda C + K` and a factor of K:
 //!
 //! 1. *Krylov blocks.* `V = [V_1 V_2 ...]`, `V_{j+1} = orth(K^-1 M V_j)` from a few random columns, until V has about twice as
-//!    many columns as modes are expected: it nearly holds the shapes of the undamped problem, friction included.
+//!    many columns as modes are expected: it nearly holds the shapes of the undamped problem, friction included. Where a neighbouring pencil was
+//!    solved before, V begins with its modes instead, those of some way beyond the radius included, and needs no solve for them.
 //! 2. *Rayleigh-Ritz.* `V^T P(lambda) V y = 0` is solved by TOAR like a full problem; `x = V y`.
 //! 3. *Correction.* The residuals `R = [P(lambda_i) x_i]` of all wanted modes are what damping and a truncated Krylov space leave. The
 //!    directions `K^-1 R` that V lacks have few that count (singular values fall by three decades in twenty), which random
@@ -20,13 +21,16 @@ use num_complex::Complex64;
 use super::mode::backward_errors;
 use super::space::{Basis, Problem, Ritz, SKETCH, Side, Space};
 use crate::petsc::eigen::{self, Found, Pair, Quadratic};
-use crate::petsc::{Factor, FactorKind, Matrix};
+use crate::petsc::{Block, Factor, FactorKind, Matrix};
 use crate::{Error, Result};
 
 /// Columns of a Krylov block.
 const KRYLOV_BLOCK: usize = 16;
 /// Columns of the Krylov space for each mode expected.
 const KRYLOV: f64 = 1.4;
+/// A neighbouring pencil's modes are of use up to this multiple of the radius: those beyond the band are what corrections by `K^-1` win slowly
+/// (medium demo brake, frictions 0.6 and 0.7: 430 and 434 solves from nothing, 292 and 312 with 1, 262 and 290 with 1.3, 266 and 280 with 1.6).
+const FAR: f64 = 1.3;
 /// Relative change of an eigenvalue from round to round at which it rests. A round wins a factor of three to five, so that the error
 /// left is below half the change.
 const REST: f64 = 1e-9;
@@ -44,10 +48,10 @@ const ROUNDS_EXPECTED: usize = 10;
 /// Rounds that the left vectors of a few unstable modes take.
 const LEFT_ROUNDS_EXPECTED: usize = 3;
 
-/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for its rounds, the vectors found, a round's
-/// right-hand sides, solutions and products, and what left vectors then add.
+/// Memory (MB) of a search for `n_modes` among `n_equations`: the basis, with room for its rounds, the vectors found, those that the next search
+/// starts from, a round's right-hand sides, solutions and products, and what left vectors then add.
 pub fn needs_mb(n_modes: usize, n_equations: usize) -> f64 {
-    let right = n_krylov(n_modes) + (ROUNDS_EXPECTED + 5) * SKETCH + 2 * n_modes;
+    let right = n_krylov(n_modes) + (ROUNDS_EXPECTED + 5) * SKETCH + 2 * n_modes + n_far(n_modes);
     let left = LEFT_ROUNDS_EXPECTED * SKETCH + 6 * n_modes;
     let n_columns = right + left;
     8.0 * (n_columns * n_equations) as f64 / (1024.0 * 1024.0)
@@ -58,8 +62,25 @@ fn n_krylov(n_modes: usize) -> usize {
     (KRYLOV * n_modes as f64) as usize + 2 * KRYLOV_BLOCK
 }
 
+/// Columns that the next search starts from.
+fn n_far(n_modes: usize) -> usize {
+    (2.0 * FAR * n_modes as f64) as usize
+}
+
+/// What a search has found.
+pub struct Outcome {
+    /// Eigenpairs with the number of solves that they took.
+    pub found: Found,
+    /// Of the pairs.
+    pub backward_errors: Vec<f64>,
+    /// The space that holds their vectors.
+    pub basis: Basis,
+    /// Orthonormal columns to start from with a neighbouring pencil.
+    pub start: Block,
+}
+
 /// All eigenpairs of the closed upper half plane with `|lambda| <= radius` (1/s), given about how many modes to expect there.
-/// With their backward errors, and the space that holds them. `progress` hears of (at rest, wanted, solves). Collective.
+/// It may `start` from what a search with a neighbouring pencil has left. `progress` hears of (at rest, wanted, solves). Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] after too many rounds.
@@ -67,9 +88,13 @@ pub fn solve(
     problem: &Problem,
     radius: f64,
     n_expected: usize,
+    start: Option<Block>,
     progress: &mut dyn FnMut(usize, usize, usize),
-) -> Result<(Found, Vec<f64>, Basis)> {
-    let mut space = krylov(problem, n_expected)?;
+) -> Result<Outcome> {
+    let mut space = match start {
+        Some(start) => started(problem, start)?,
+        None => krylov(problem, n_expected)?,
+    };
     let mut last: Vec<Complex64> = Vec::new();
     for _ in 0..MAX_ROUNDS {
         let ritz = ritz(&space, radius, n_expected)?;
@@ -78,9 +103,10 @@ pub fn solve(
         progress(n_resting, ritz.len(), space.n_solves);
         if n_resting == ritz.len()
             && last.len() == ritz.len()
-            && let Some((found, errors)) = accurate(&space, &ritz)?
+            && let Some((found, backward_errors)) = accurate(&space, &ritz)?
         {
-            return Ok((found, errors, space.into_basis()));
+            let start = far_modes(&space, radius, n_expected)?;
+            return Ok(Outcome { found, backward_errors, basis: space.into_basis(), start });
         }
         let residuals = space.sketch(&worth_correcting(&ritz, rests))?;
         space.extend_by_solves(&residuals)?;
@@ -122,6 +148,22 @@ fn krylov<'a>(problem: &Problem<'a>, n_expected: usize) -> Result<Space<'a>> {
         image = space.extend_by_solves(&image)?;
     }
     Ok(space)
+}
+
+/// A space that begins with orthonormal columns.
+fn started<'a>(problem: &Problem<'a>, start: Block) -> Result<Space<'a>> {
+    let mut space = Space::with_room(*problem, Side::Right, start.n_columns() + ROUNDS_EXPECTED * SKETCH);
+    space.append(start)?;
+    Ok(space)
+}
+
+/// An orthonormal basis of the shapes within a multiple of the radius, as well as the space has them.
+fn far_modes(space: &Space, radius: f64, n_expected: usize) -> Result<Block> {
+    let far = ritz(space, FAR * radius, n_far(n_expected) / 2)?;
+    let columns: Vec<f64> = far.iter().flat_map(|r| [&r.re, &r.im]).flatten().copied().collect();
+    let n = space.v.n_columns();
+    let q = DMatrix::from_vec(n, columns.len() / n, columns).qr().q();
+    Ok(space.v.combined(q.as_slice(), q.ncols()))
 }
 
 /// The projected problem's pairs within the radius, by modulus.

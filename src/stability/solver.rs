@@ -44,6 +44,8 @@ pub struct Solver {
     pub(super) labels: Option<Vec<u64>>,
     /// The space of the last blocked search, which holds the vectors of its modes.
     basis: Option<Basis>,
+    /// What the next search in blocks starts from.
+    start: Option<Block>,
     pub(super) evidence: Evidence,
     /// Coordinates in which densely stored pencils are solved.
     modal: Option<Modal>,
@@ -168,9 +170,21 @@ impl Solver {
         left::left_vectors(problem, modes, basis, accuracy)
     }
 
-    /// Gives the memory of the last search's space back.
+    /// Gives the memory of the last search's space back, but for what the next one starts from.
     pub fn forget(&mut self) {
         self.basis = None;
+    }
+
+    /// The next search knows nothing of the last one, which may have missed a mode.
+    pub(super) fn start_anew(&mut self) {
+        self.start = None;
+    }
+
+    /// Gives up what the next search would start from where so much memory is not free, MB. Collective.
+    pub(super) fn make_room(&mut self, pencil: &Pencil, mb: f64) {
+        if !memory::has_mb(pencil.k.comm(), mb) {
+            self.start = None;
+        }
     }
 
     /// Whether there is memory for a search in blocks.
@@ -196,10 +210,10 @@ impl Solver {
         };
         let problem = Problem { pencil, factor: lu, labels };
         let reach = beyond * end;
-        match search::solve(&problem, TAU * reach, n_modes, progress) {
-            Ok((Found { pairs, n_solves, .. }, errors, basis)) => {
-                self.basis = Some(basis);
-                Ok(Some(Search { pairs, reach, n_solves, backward_errors: errors }))
+        match search::solve(&problem, TAU * reach, n_modes, self.start.take(), progress) {
+            Ok(search::Outcome { found: Found { pairs, n_solves, .. }, backward_errors, basis, start }) => {
+                (self.basis, self.start) = (Some(basis), Some(start));
+                Ok(Some(Search { pairs, reach, n_solves, backward_errors }))
             }
             Err(Error::NotConverged(_)) => Ok(None),
             Err(error) => Err(error),

@@ -144,7 +144,14 @@ impl<'a> Space<'a> {
     /// # Errors
     /// PETSc's.
     pub fn extend(&mut self, w: Block) -> Result<Block> {
-        let w = self.what_is_new(w)?;
+        self.append(self.what_is_new(w)?)
+    }
+
+    /// Appends columns W that are orthonormal, to V as among themselves, and their projections. Gives `M W`, transposed for left vectors.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn append(&mut self, w: Block) -> Result<Block> {
         self.v.append(&w);
         let (n, p) = (self.v.n_columns(), w.n_columns());
         let mut images = self.images(&w)?;
