@@ -1,15 +1,20 @@
 //! Seconds, entries and memory of the stages on the demo brake: `cargo bench`, or `cargo bench -- meshes/brake-full.toml`.
 //!
-//! With `--factors` it ends after the factors and their solves, for comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for
+//! The matrices factorised are those of a brake in contact with friction. With `--factors` it ends after the factors and their solves, for comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for
 //! PORD, 3 for SCOTCH. The ordering used is printed.
 //!
 //! Not a timed test: it prints figures and judges nothing. Under mpirun run the executable that `cargo bench --no-run` names.
 
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use squeal::petsc::{Block, Factor, FactorKind, Precision, Session};
+use squeal::petsc::{Block, Factor, FactorKind, Matrix, Precision, Session, Vector};
+use squeal::stability::Pencil;
 use squeal::sweep::{Brake, Sweep};
+
+/// Friction of the equilibrium whose matrices are factorised.
+const FRICTION: f64 = 0.5;
 
 fn main() -> squeal::Result<()> {
     let asked = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
@@ -44,60 +49,23 @@ fn main() -> squeal::Result<()> {
         tell(format!("{name} times 32 columns            {:8.3} s", start.elapsed().as_secs_f64()));
     }
 
-    let (double, single) = (Precision::Double, Precision::Single);
-    let wanted =
-        [(FactorKind::Unsymmetric, double), (FactorKind::Unsymmetric, single), (FactorKind::Symmetric, double)];
-    for (kind, precision) in wanted {
-        let mut matrix = system.k.duplicate()?;
-        // Held by its mass where only contact would hold a part.
-        matrix.axpy(1e8, &system.m)?;
-        if kind == FactorKind::Symmetric {
-            matrix.declare_symmetric()?;
+    let mut sweep = Sweep::new(&system, &brake.interface)?;
+    let mut ignore = |_: squeal::sweep::Event| ();
+    let equilibrium = sweep.equilibrium(FRICTION, &mut ignore)?;
+    sweep.linearise(&equilibrium, |pencil| {
+        let (double, single) = (Precision::Double, Precision::Single);
+        for (kind, precision) in
+            [(FactorKind::Unsymmetric, double), (FactorKind::Unsymmetric, single), (FactorKind::Symmetric, double)]
+        {
+            factor(pencil, kind, precision, brake.model.band[1], &tell)?;
         }
-        let mut factor = Factor::new(kind);
-        factor.set_precision(precision);
-        factor.factorise(&matrix)?;
-        let cost = factor.stats();
-        tell(format!(
-            "{:<31} {:8.2} s  analysis {:.2} s, {:.1} M entries, {:.1} GFlop, {:.0} MB of {:.0} estimated{}, ordering {}",
-            format!("{kind:?}, {precision:?}"),
-            cost.factorisation_seconds,
-            cost.analysis_seconds,
-            1e-6 * cost.entries,
-            1e-9 * cost.flops,
-            cost.used_mb,
-            cost.estimated_mb,
-            if cost.out_of_core { ", out of core" } else { "" },
-            cost.ordering_name()
-        ));
-        let (b, mut x) = (system.load.duplicate()?, system.zeros()?);
-        for _ in 0..2 {
-            let start = Instant::now();
-            factor.solve(&b, &mut x)?;
-            let seconds = start.elapsed().as_secs_f64();
-            let mut residual = system.zeros()?;
-            matrix.multiply(&x, &mut residual)?;
-            residual.axpy(-1.0, &b)?;
-            let relative = residual.norm()? / b.norm()?;
-            tell(format!("  one solve                     {seconds:8.3} s  residual {relative:.1e}"));
-        }
-        for n_columns in [8, 16, 24, 32, 64, 128] {
-            let block = Block::from_columns(&comm, b.n_local(), b.to_vec()?.repeat(n_columns));
-            let start = Instant::now();
-            block.solved_by(&factor)?;
-            let seconds = start.elapsed().as_secs_f64();
-            let each = seconds / n_columns as f64;
-            tell(format!("  {n_columns:3} right-hand sides at once  {seconds:8.3} s  {each:.4} s each"));
-        }
-    }
+        Ok(())
+    })?;
     if std::env::args().any(|argument| argument == "--factors") {
         return Ok(());
     }
 
-    let mut sweep = Sweep::new(&system, &brake.interface)?;
-    let mut ignore = |_: squeal::sweep::Event| ();
-    let equilibrium = sweep.equilibrium(0.5, &mut ignore)?;
-    let next = sweep.equilibrium(0.6, &mut ignore)?;
+    let next = sweep.equilibrium(FRICTION + 0.1, &mut ignore)?;
     let band = sweep.modes(&next, brake.model.band, &mut ignore)?;
     let costs = sweep.costs();
     let iterations = |steps: &[squeal::equilibrium::Step]| steps.iter().map(|s| s.iterations.len() - 1).sum::<usize>();
@@ -115,4 +83,67 @@ fn main() -> squeal::Result<()> {
         band.n_solves
     ));
     Ok(())
+}
+
+/// What a factor costs, and solves with it: of the stiffness with the tangent of contact and friction, or of what counts the modes.
+fn factor(
+    pencil: &Pencil,
+    kind: FactorKind,
+    precision: Precision,
+    end: f64,
+    tell: &impl Fn(String),
+) -> squeal::Result<()> {
+    let matrix = match kind {
+        FactorKind::Unsymmetric => pencil.k.duplicate()?,
+        FactorKind::Symmetric => counted(pencil, TAU * end)?,
+    };
+    let mut factor = Factor::new(kind);
+    factor.set_precision(precision);
+    factor.factorise(&matrix)?;
+    let cost = factor.stats();
+    tell(format!(
+        "{:<31} {:8.2} s  analysis {:.2} s, {:.1} M entries, {:.1} GFlop, {:.0} MB of {:.0} estimated{}, ordering {}",
+        format!("{kind:?}, {precision:?}"),
+        cost.factorisation_seconds,
+        cost.analysis_seconds,
+        1e-6 * cost.entries,
+        1e-9 * cost.flops,
+        cost.used_mb,
+        cost.estimated_mb,
+        if cost.out_of_core { ", out of core" } else { "" },
+        cost.ordering_name()
+    ));
+    let n_local = pencil.k.n_local();
+    let load: Vec<f64> = (0..n_local).map(|row| 1.0 + (row % 7) as f64).collect();
+    let b = Vector::from_local(matrix.comm(), &load)?;
+    let [mut x, mut residual] = [b.duplicate()?, b.duplicate()?];
+    for _ in 0..2 {
+        let start = Instant::now();
+        factor.solve(&b, &mut x)?;
+        let seconds = start.elapsed().as_secs_f64();
+        matrix.multiply(&x, &mut residual)?;
+        residual.axpy(-1.0, &b)?;
+        let relative = residual.norm()? / b.norm()?;
+        tell(format!("  one solve                     {seconds:8.3} s  residual {relative:.1e}"));
+    }
+    for n_columns in [8, 16, 24, 32, 64, 128] {
+        let block = Block::from_columns(matrix.comm(), n_local, load.repeat(n_columns));
+        let start = Instant::now();
+        block.solved_by(&factor)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let each = seconds / n_columns as f64;
+        tell(format!("  {n_columns:3} right-hand sides at once  {seconds:8.3} s  {each:.4} s each"));
+    }
+    Ok(())
+}
+
+/// `S - omega^2 M`, S the stiffness with the tangent of contact without friction's coupling.
+fn counted(pencil: &Pencil, omega: f64) -> squeal::Result<Matrix> {
+    let mut matrix = pencil.k_symmetric.duplicate()?;
+    if let Some(points) = pencil.points {
+        points.contacts.add_blocks(points.symmetric.iter().copied(), &mut matrix)?;
+    }
+    matrix.axpy(-omega * omega, pencil.m)?;
+    matrix.declare_symmetric()?;
+    Ok(matrix)
 }
