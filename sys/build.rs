@@ -12,7 +12,7 @@ const REAL: &str = "/usr/lib/slepcdir/slepc-real/lib/pkgconfig:/usr/lib/petscdir
 const FUNCTIONS: &[&str] = &[
     "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Alltoall|Alltoallv|Bcast|Send|Recv|Barrier|Abort)",
     "Petsc(InitializeNoArguments|OptionsSetValue|OptionsClearValue|OptionsGetInt|OptionsGetReal|PushErrorHandler|PopErrorHandler|Error|GetVersion)",
-    "PetscObject(TypeCompare|SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
+    "PetscObject(TypeCompare|GetId|StateGet|SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
     "Slepc(Initialize|InitializeNoArguments|Finalize|GetVersion)",
     "Vec(Create|CreateMPI|CreateSeq|CreateMPIWithArray|CreateSeqWithArray|Destroy|Duplicate|Copy|Set|Scale|AXPY|AYPX|WAXPY|Dot|Norm|MDot|PointwiseMult)",
     "Vec(GetArray|RestoreArray|GetArrayRead|RestoreArrayRead|GetLocalSize|GetSize|GetOwnershipRange|SetValues|AssemblyBegin|AssemblyEnd)",

@@ -10,6 +10,8 @@ MPI_Datatype squeal_type_double(void);
 MPI_Datatype squeal_type_int(void);
 MPI_Datatype squeal_type_byte(void);
 PetscErrorCode squeal_raise(const char *function, const char *message);
+/* PETSc's own, which it declares in a private header. */
+PetscErrorCode PetscObjectStateGet(PetscObject object, PetscObjectState *state);
 /* Has the C library give freed memory back to the system. */
 void squeal_give_memory_back(void);
 /* BLAS and LAPACK that PETSc's headers leave out. */

@@ -404,6 +404,20 @@ impl Matrix {
         check(unsafe { sys::MatMult(self.raw, x.raw(), y.raw()) })
     }
 
+    /// Two numbers that no other values have: another matrix, or this one after a change, has others. Not collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn version(&self) -> Result<[i64; 2]> {
+        let (mut id, mut state) = (0, 0);
+        // SAFETY: the handle is alive.
+        unsafe {
+            check(sys::PetscObjectGetId(self.raw.cast(), &mut id))?;
+            check(sys::PetscObjectStateGet(self.raw.cast(), &mut state))?;
+        }
+        Ok([id, state])
+    }
+
     /// Largest absolute row sum.
     ///
     /// # Errors

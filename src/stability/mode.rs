@@ -53,19 +53,34 @@ impl Pencil<'_> {
             difference.axpy(-1.0, &x.multiplied_by(self.k)?);
             return Ok(difference);
         };
-        let mut product = Block::zeros(x.comm(), x.n_local(), x.n_columns());
-        let skew = |d: &[[f64; 3]; 3]| -> [[f64; 3]; 3] { from_fn(|i| from_fn(|j| d[i][j] - d[j][i])) };
-        let skew = tangents.iter().map(skew).enumerate().filter(|(_, difference)| *difference != [[0.0; 3]; 3]);
-        let skew: Vec<(usize, [[f64; 3]; 3])> = skew.collect();
-        for j in 0..x.n_columns() {
-            let gaps = contacts.gaps(&x.vector(j)?)?;
-            for &(a, difference) in &skew {
-                let force = difference.map(|row| dot(row, gaps[a]));
-                contacts.spread_into(a, force, -1.0, product.column_mut(j));
-            }
-        }
-        Ok(product)
+        let skew = |d: &[[f64; 3]; 3]| -> [[f64; 3]; 3] { from_fn(|i| from_fn(|j| d[j][i] - d[i][j])) };
+        spread(contacts, &tangents.iter().map(skew).collect::<Vec<_>>(), x)
     }
+}
+
+impl Points<'_> {
+    /// What the points add to the stiffness beyond what they did with other tangents, times X: `B^T (D - D_before) B X`. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub(super) fn change_times(&self, before: &[[[f64; 3]; 3]], x: &Block) -> Result<Block> {
+        let change = |(now, before): (&[[f64; 3]; 3], &[[f64; 3]; 3])| -> [[f64; 3]; 3] {
+            from_fn(|i| from_fn(|j| now[i][j] - before[i][j]))
+        };
+        spread(self.contacts, &self.tangents.iter().zip(before).map(change).collect::<Vec<_>>(), x)
+    }
+}
+
+/// `B^T E B X`, E having a block for each point.
+fn spread(contacts: &Contacts, blocks: &[[[f64; 3]; 3]], x: &Block) -> Result<Block> {
+    let mut product = Block::zeros(x.comm(), x.n_local(), x.n_columns());
+    for j in 0..x.n_columns() {
+        let gaps = contacts.gaps(&x.vector(j)?)?;
+        for (a, block) in blocks.iter().enumerate().filter(|(_, block)| **block != [[0.0; 3]; 3]) {
+            contacts.spread_into(a, block.map(|row| dot(row, gaps[a])), 1.0, product.column_mut(j));
+        }
+    }
+    Ok(product)
 }
 
 /// An eigenvalue with non-negative frequency, its vector, and how well the two solve the problem.

@@ -19,9 +19,9 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::mode::backward_errors;
-use super::space::{Basis, Problem, Ritz, SKETCH, Side, Space};
+use super::space::{Basis, Problem, Ritz, SKETCH, Side, Space, Start};
 use crate::petsc::eigen::{self, Found, Pair, Quadratic};
-use crate::petsc::{Block, Factor, FactorKind, Matrix};
+use crate::petsc::{Factor, FactorKind, Matrix};
 use crate::{Error, Result};
 
 /// Columns of a Krylov block.
@@ -75,8 +75,8 @@ pub struct Outcome {
     pub backward_errors: Vec<f64>,
     /// The space that holds their vectors.
     pub basis: Basis,
-    /// Orthonormal columns to start from with a neighbouring pencil.
-    pub start: Block,
+    /// What to start from with a neighbouring pencil.
+    pub start: Start,
 }
 
 /// All eigenpairs of the closed upper half plane with `|lambda| <= radius` (1/s), given about how many modes to expect there.
@@ -88,11 +88,11 @@ pub fn solve(
     problem: &Problem,
     radius: f64,
     n_expected: usize,
-    start: Option<Block>,
+    start: Option<Start>,
     progress: &mut dyn FnMut(usize, usize, usize),
 ) -> Result<Outcome> {
     let mut space = match start {
-        Some(start) => started(problem, start)?,
+        Some(start) => Space::started(*problem, start, ROUNDS_EXPECTED * SKETCH)?,
         None => krylov(problem, n_expected)?,
     };
     let mut last: Vec<Complex64> = Vec::new();
@@ -101,12 +101,11 @@ pub fn solve(
         let rests = |r: &Ritz| last.iter().any(|z| (z - r.lambda).norm() <= REST * z.norm());
         let n_resting = ritz.iter().filter(|r| rests(r)).count();
         progress(n_resting, ritz.len(), space.n_solves);
-        if n_resting == ritz.len()
-            && last.len() == ritz.len()
-            && let Some((found, backward_errors)) = accurate(&space, &ritz)?
-        {
-            let start = far_modes(&space, radius, n_expected)?;
-            return Ok(Outcome { found, backward_errors, basis: space.into_basis(), start });
+        if n_resting == ritz.len() && last.len() == ritz.len() {
+            let start = space.start(&with_far_ones(&space, &ritz, radius, n_expected)?)?;
+            if let Some((found, backward_errors)) = accurate(&space, &start, &ritz)? {
+                return Ok(Outcome { found, backward_errors, basis: space.into_basis(), start });
+            }
         }
         let residuals = space.sketch(&worth_correcting(&ritz, rests))?;
         space.extend_by_solves(&residuals)?;
@@ -115,12 +114,12 @@ pub fn solve(
     Err(Error::NotConverged(format!("the eigensolver's corrections did not converge in {MAX_ROUNDS} rounds")))
 }
 
-/// The pairs with their backward errors; none where one of these is too large.
-fn accurate(space: &Space, ritz: &[Ritz]) -> Result<Option<(Found, Vec<f64>)>> {
+/// The pairs, whose vectors a start spans, with their backward errors; none where one of these is too large.
+fn accurate(space: &Space, start: &Start, ritz: &[Ritz]) -> Result<Option<(Found, Vec<f64>)>> {
     let (mut pairs, mut errors) = (Vec::new(), Vec::new());
     for ritz in ritz.chunks(PAIRS_AT_ONCE) {
         let lambdas: Vec<Complex64> = ritz.iter().map(|r| r.lambda).collect();
-        let x = space.vectors(ritz);
+        let x = space.vectors_within(start, ritz);
         errors.extend(backward_errors(space.pencil(), &lambdas, &x)?);
         if errors.iter().any(|&error| error > BACKWARD_ERROR) {
             return Ok(None);
@@ -150,20 +149,10 @@ fn krylov<'a>(problem: &Problem<'a>, n_expected: usize) -> Result<Space<'a>> {
     Ok(space)
 }
 
-/// A space that begins with orthonormal columns.
-fn started<'a>(problem: &Problem<'a>, start: Block) -> Result<Space<'a>> {
-    let mut space = Space::with_room(*problem, Side::Right, start.n_columns() + ROUNDS_EXPECTED * SKETCH);
-    space.append(start)?;
-    Ok(space)
-}
-
-/// An orthonormal basis of the shapes within a multiple of the radius, as well as the space has them.
-fn far_modes(space: &Space, radius: f64, n_expected: usize) -> Result<Block> {
+/// The pairs within the radius, and those within a multiple of it as well as the space has them.
+fn with_far_ones(space: &Space, within: &[Ritz], radius: f64, n_expected: usize) -> Result<Vec<Ritz>> {
     let far = ritz(space, FAR * radius, n_far(n_expected) / 2)?;
-    let columns: Vec<f64> = far.iter().flat_map(|r| [&r.re, &r.im]).flatten().copied().collect();
-    let n = space.v.n_columns();
-    let q = DMatrix::from_vec(n, columns.len() / n, columns).qr().q();
-    Ok(space.v.combined(q.as_slice(), q.ncols()))
+    Ok(within.iter().cloned().chain(far.into_iter().filter(|r| r.lambda.norm() > radius)).collect())
 }
 
 /// The projected problem's pairs within the radius, by modulus.

@@ -11,7 +11,7 @@ use super::left;
 use super::modal::Modal;
 use super::mode::backward_errors;
 use super::search;
-use super::space::{Basis, Problem};
+use super::space::{Basis, Problem, Start};
 use super::{Mode, Pencil};
 use crate::assembly::System;
 use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
@@ -45,7 +45,7 @@ pub struct Solver {
     /// The space of the last blocked search, which holds the vectors of its modes.
     basis: Option<Basis>,
     /// What the next search in blocks starts from.
-    start: Option<Block>,
+    start: Option<Start>,
     pub(super) evidence: Evidence,
     /// Coordinates in which densely stored pencils are solved.
     modal: Option<Modal>,

@@ -44,6 +44,19 @@ pub struct Basis {
     k: DMatrix<f64>,
 }
 
+/// What a search leaves for the next: orthonormal columns V with the projections of the pencil that they were found with.
+pub(super) struct Start {
+    v: Block,
+    /// What combined the space's columns to V, which are orthonormal, too.
+    q: DMatrix<f64>,
+    m: DMatrix<f64>,
+    c: DMatrix<f64>,
+    k: DMatrix<f64>,
+    /// The tangents of its contact points, and what M, C and the stiffness without contact were.
+    tangents: Vec<[[f64; 3]; 3]>,
+    versions: [[i64; 2]; 3],
+}
+
 /// Orthonormal columns V with the projections of M, C and A; A is K, or all are transposed for left vectors.
 pub(super) struct Space<'a> {
     problem: Problem<'a>,
@@ -60,6 +73,7 @@ pub(super) struct Space<'a> {
 }
 
 /// An eigenvalue with the coefficients of its vector in V.
+#[derive(Clone)]
 pub(super) struct Ritz {
     pub lambda: Complex64,
     pub re: Vec<f64>,
@@ -74,6 +88,11 @@ fn joined(old: &DMatrix<f64>, columns: &DMatrix<f64>, rows: &DMatrix<f64>) -> DM
     new.view_mut((n, 0), (p, n)).copy_from(&rows.rows(0, n).transpose());
     new.view_mut((0, n), (n + p, p)).copy_from(columns);
     new
+}
+
+/// Of M, C and the stiffness without contact.
+fn versions(pencil: &Pencil) -> Result<[[i64; 2]; 3]> {
+    Ok([pencil.m.version()?, pencil.c.version()?, pencil.k_symmetric.version()?])
 }
 
 impl<'a> Space<'a> {
@@ -102,6 +121,42 @@ impl<'a> Space<'a> {
         let mut space = Space::new(problem, Side::Left);
         space.extend(columns)?;
         Ok(space)
+    }
+
+    /// Begins with what another search for right vectors has left, with room for some columns more. Where the pencil differs from that search's in
+    /// contact alone, so do the projections. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn started(problem: Problem<'a>, start: Start, n_columns: usize) -> Result<Space<'a>> {
+        let mut space = Space::with_room(problem, Side::Right, start.v.n_columns() + n_columns);
+        let points = problem.pencil.points.filter(|points| points.tangents.len() == start.tangents.len());
+        match points {
+            Some(points) if versions(problem.pencil)? == start.versions => {
+                let change = start.v.gram_of_few_rows(&points.change_times(&start.tangents, &start.v)?);
+                let n = start.v.n_columns();
+                (space.m, space.c, space.a) = (start.m, start.c, start.k + DMatrix::from_vec(n, n, change));
+                space.v.append(&start.v);
+            }
+            _ => {
+                space.append(start.v)?;
+            }
+        }
+        Ok(space)
+    }
+
+    /// What the next search may start from: combinations of V's columns that span some vectors.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn start(&self, ritz: &[Ritz]) -> Result<Start> {
+        let q = self.coefficients(ritz).qr().q();
+        let projected = |a: &DMatrix<f64>| q.tr_mul(&(a * &q));
+        let [m, c, k] = [&self.m, &self.c, &self.a].map(projected);
+        let pencil = self.problem.pencil;
+        let tangents = pencil.points.map_or(Vec::new(), |points| points.tangents.to_vec());
+        let v = self.v.combined(q.as_slice(), q.ncols());
+        Ok(Start { v, q, m, c, k, tangents, versions: versions(pencil)? })
     }
 
     /// What is left of a space of right vectors.
@@ -216,10 +271,21 @@ impl<'a> Space<'a> {
     /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than V columns, the others
     /// are zero.
     pub fn vectors(&self, ritz: &[Ritz]) -> Block {
-        let n = self.v.n_columns();
-        let padded = |part: &[f64]| part.iter().copied().chain(std::iter::repeat(0.0)).take(n).collect::<Vec<f64>>();
-        let y: Vec<f64> = ritz.iter().flat_map(|r| [&r.re, &r.im]).flat_map(|part| padded(part)).collect();
-        self.v.combined(&y, 2 * ritz.len())
+        self.v.combined(self.coefficients(ritz).as_slice(), 2 * ritz.len())
+    }
+
+    /// Vectors `x = V y` that a start spans, in the same form.
+    pub fn vectors_within(&self, start: &Start, ritz: &[Ritz]) -> Block {
+        start.v.combined(start.q.tr_mul(&self.coefficients(ritz)).as_slice(), 2 * ritz.len())
+    }
+
+    /// Real and imaginary parts of y as columns.
+    fn coefficients(&self, ritz: &[Ritz]) -> DMatrix<f64> {
+        let entry = |row: usize, column: usize| {
+            let part = if column.is_multiple_of(2) { &ritz[column / 2].re } else { &ritz[column / 2].im };
+            part.get(row).copied().unwrap_or_default()
+        };
+        DMatrix::from_fn(self.v.n_columns(), 2 * ritz.len(), entry)
     }
 
     /// Real and imaginary parts of the residuals where they are few, else random combinations of them,
