@@ -74,22 +74,29 @@ fn wilkinson(h: &DMatrix<Complex64>, last: usize) -> Complex64 {
     if (near - d).norm() < (far - d).norm() { near } else { far }
 }
 
-/// `H - s I = Q R`, `H <- R Q + s I` on the rows and columns `first..=last`.
+/// `H - s I = Q R`, `H <- R Q + s I` on the rows and columns `first..=last`. A column takes all rotations of those before it in one pass.
 fn step(h: &mut DMatrix<Complex64>, q: &mut DMatrix<Complex64>, first: usize, last: usize, shift: Complex64) {
     let n = h.nrows();
     (first..=last).for_each(|i| h[(i, i)] -= shift);
-    let mut rotations = Vec::with_capacity(last - first);
-    for k in first..last {
-        let (x, y) = (h[(k, k)], h[(k + 1, k)]);
-        let length = x.norm().hypot(y.norm());
-        // G = [c* s*; -s c] turns (x, y) into (length, 0)
-        let (c, s) = if length > 0.0 { (x / length, y / length) } else { (Complex64::from(1.0), Complex64::default()) };
-        for j in k..n {
-            let (a, b) = (h[(k, j)], h[(k + 1, j)]);
-            h[(k, j)] = c.conj() * a + s.conj() * b;
-            h[(k + 1, j)] = c * b - s * a;
+    let mut rotations: Vec<(Complex64, Complex64)> = Vec::with_capacity(last - first);
+    for (j, mut column) in h.column_iter_mut().enumerate().skip(first) {
+        // G = [c* s*; -s c]
+        let turned =
+            |(c, s): (Complex64, Complex64), x: Complex64, y: Complex64| [c.conj() * x + s.conj() * y, c * y - s * x];
+        let mut x = column[first];
+        for (k, &rotation) in (first..).zip(&rotations) {
+            [column[k], x] = turned(rotation, x, column[k + 1]);
         }
-        rotations.push((c, s));
+        column[first + rotations.len()] = x;
+        if j < last {
+            let y = column[j + 1];
+            let length = x.norm().hypot(y.norm());
+            // It turns (x, y) into (length, 0).
+            let (c, s) =
+                if length > 0.0 { (x / length, y / length) } else { (Complex64::from(1.0), Complex64::default()) };
+            [column[j], column[j + 1]] = turned((c, s), x, y);
+            rotations.push((c, s));
+        }
     }
     for (k, (c, s)) in (first..last).zip(rotations) {
         turn_columns(h, k, k + 2, c, s);
@@ -100,10 +107,9 @@ fn step(h: &mut DMatrix<Complex64>, q: &mut DMatrix<Complex64>, first: usize, la
 
 /// Columns k and k + 1 times `G^H`, in the first rows.
 fn turn_columns(a: &mut DMatrix<Complex64>, k: usize, n_rows: usize, c: Complex64, s: Complex64) {
-    for i in 0..n_rows {
-        let (x, y) = (a[(i, k)], a[(i, k + 1)]);
-        a[(i, k)] = x * c + y * s;
-        a[(i, k + 1)] = y * c.conj() - x * s.conj();
+    let (mut left, mut right) = a.columns_range_pair_mut(k, k + 1);
+    for (x, y) in left.iter_mut().zip(right.iter_mut()).take(n_rows) {
+        (*x, *y) = (*x * c + *y * s, *y * c.conj() - *x * s.conj());
     }
 }
 
