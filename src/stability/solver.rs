@@ -210,7 +210,13 @@ impl Solver {
         };
         let problem = Problem { pencil, factor: lu, labels };
         let reach = beyond * end;
-        match search::solve(&problem, TAU * reach, n_modes, self.start.take(), progress) {
+        let start = self.start.take();
+        let was_started = start.is_some();
+        let mut outcome = search::solve(&problem, TAU * reach, n_modes, start, progress);
+        if was_started && matches!(outcome, Err(Error::NotConverged(_))) {
+            outcome = search::solve(&problem, TAU * reach, n_modes, None, progress);
+        }
+        match outcome {
             Ok(search::Outcome { found: Found { pairs, n_solves, .. }, backward_errors, basis, start }) => {
                 (self.basis, self.start) = (Some(basis), Some(start));
                 Ok(Some(Search { pairs, reach, n_solves, backward_errors }))

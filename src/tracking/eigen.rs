@@ -90,7 +90,7 @@ fn step(h: &mut DMatrix<Complex64>, q: &mut DMatrix<Complex64>, first: usize, la
         column[first + rotations.len()] = x;
         if j < last {
             let y = column[j + 1];
-            let length = x.norm().hypot(y.norm());
+            let length = (x.norm_sqr() + y.norm_sqr()).sqrt();
             // It turns (x, y) into (length, 0).
             let (c, s) =
                 if length > 0.0 { (x / length, y / length) } else { (Complex64::from(1.0), Complex64::default()) };
