@@ -67,12 +67,7 @@ pub fn solve(
     let (mut n_solves, mut last, mut gave_up) = (0, None, false);
     for attempt in 0..TRIES {
         let margin = (4 + expected / 20) * 3_usize.pow(attempt);
-        if solver.labels.is_some() {
-            solver.make_room(pencil, search::needs_mb(expected + margin, n_equations(pencil)));
-            if !solver.has_room(pencil, expected + margin) {
-                solver.inertia.release();
-            }
-        }
+        solver.make_room_for_search(pencil, expected + margin);
         let beyond = BEYOND.get(attempt as usize).filter(|_| !gave_up);
         let Some(search) = solver.search(pencil, lu, expected + margin, band[1], beyond, progress)? else {
             gave_up = true;

@@ -187,6 +187,16 @@ impl Solver {
         }
     }
 
+    /// Where a search in blocks does not fit into memory, gives up its start, then what counts the modes. Collective.
+    pub(super) fn make_room_for_search(&mut self, pencil: &Pencil, n_modes: usize) {
+        if self.labels.is_some() && !self.has_room(pencil, n_modes) {
+            self.start = None;
+            if !self.has_room(pencil, n_modes) {
+                self.inertia.release();
+            }
+        }
+    }
+
     /// Whether there is memory for a search in blocks.
     pub(super) fn has_room(&self, pencil: &Pencil, n_modes: usize) -> bool {
         memory::has_mb(pencil.k.comm(), search::needs_mb(n_modes, n_equations(pencil)))
