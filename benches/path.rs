@@ -1,7 +1,7 @@
 //! Seconds, entries and memory of the stages on the demo brake: `cargo bench`, or `cargo bench -- meshes/brake-full.toml`.
 //!
-//! The matrices factorised are those of a brake in contact with friction. With `--factors` it ends after the factors and their solves, for comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for
-//! PORD, 3 for SCOTCH. The ordering used is printed.
+//! The matrices factorised are those of a brake in contact with friction. With `--factors` it ends after the factors and their solves, for
+//! comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for PORD, 3 for SCOTCH. The ordering used is printed.
 //!
 //! Not a timed test: it prints figures and judges nothing. Under mpirun run the executable that `cargo bench --no-run` names.
 
@@ -139,10 +139,7 @@ fn factor(
 
 /// `S - omega^2 M`, S the stiffness with the tangent of contact without friction's coupling.
 fn counted(pencil: &Pencil, omega: f64) -> squeal::Result<Matrix> {
-    let mut matrix = pencil.k_symmetric.duplicate()?;
-    if let Some(points) = pencil.points {
-        points.contacts.add_blocks(points.symmetric.iter().copied(), &mut matrix)?;
-    }
+    let mut matrix = pencil.symmetric_stiffness()?;
     matrix.axpy(-omega * omega, pencil.m)?;
     matrix.declare_symmetric()?;
     Ok(matrix)

@@ -67,10 +67,7 @@ impl Inertia {
         if let Some(n) = self.updated(pencil, omega)? {
             return Ok(n);
         }
-        let mut shifted = pencil.k_symmetric.duplicate()?;
-        if let Some(points) = pencil.points {
-            points.contacts.add_blocks(points.symmetric.iter().copied(), &mut shifted)?;
-        }
+        let mut shifted = pencil.symmetric_stiffness()?;
         shifted.axpy(-omega * omega, pencil.m)?;
         shifted.declare_symmetric()?;
         self.factor.factorise(&shifted)?;

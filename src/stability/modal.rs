@@ -57,8 +57,7 @@ impl Modal {
     /// PETSc's.
     pub fn new(pencil: &Pencil) -> Result<Option<Modal>> {
         let Some(points) = pencil.points else { return Ok(None) };
-        let mut k_0 = pencil.k_symmetric.duplicate()?;
-        points.contacts.add_blocks(points.symmetric.iter().copied(), &mut k_0)?;
+        let k_0 = pencil.symmetric_stiffness()?;
         let (Some(stiffness), Some(mut modes)) = (k_0.dense_values()?, pencil.m.dense_values()?) else {
             return Ok(None);
         };

@@ -43,6 +43,18 @@ pub struct Points<'a> {
 }
 
 impl Pencil<'_> {
+    /// The stiffness with the points' tangents without friction's coupling: `S`, symmetric. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn symmetric_stiffness(&self) -> Result<Matrix> {
+        let mut stiffness = self.k_symmetric.duplicate()?;
+        if let Some(points) = self.points {
+            points.contacts.add_blocks(points.symmetric.iter().copied(), &mut stiffness)?;
+        }
+        Ok(stiffness)
+    }
+
     /// `K^T X - K X`: with contact points `-B^T (D - D^T) B X`, which takes their entries alone. Collective.
     ///
     /// # Errors
