@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use squeal::assembly::{Connectivity, ElementMatrices, Elements};
 use squeal::equilibrium::Contacts;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::sweep::Brake;
 use squeal::{Result, mesh, model};
 

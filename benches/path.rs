@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use squeal::petsc::{Block, Factor, FactorKind, Matrix, Precision, Session, Vector};
+use squeal::native::{Block, Factor, FactorKind, Matrix, Precision, Session, Vector};
 use squeal::stability::Pencil;
 use squeal::sweep::{Brake, Sweep};
 

@@ -40,7 +40,7 @@
 //! | [`report`] | tables, CSV, JSON, VTU | |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
 //! | [`matrices`] | given M, C, K from files and into files | [`matrices::Given::read`] |
-//! | [`petsc`] | the only `unsafe`: PETSc, SLEPc, MUMPS, METIS | |
+//! | [`native`] | the only `unsafe`: MPI, LAPACK, PETSc, SLEPc, MUMPS, METIS | |
 //!
 //! Imports run one way, from the bottom of this table to its top (`tests/architecture.rs` holds the exact order). To change a
 //! friction law, change `contact/law/`; nothing else knows it.
@@ -94,7 +94,7 @@ mod hdf;
 pub mod matrices;
 pub mod mesh;
 pub mod model;
-pub mod petsc;
+pub mod native;
 pub mod reduction;
 pub mod report;
 pub mod results;

@@ -16,14 +16,14 @@ const ROOMS: [(&str, &[&str]); 19] = [
     ("mesh", &["error", "algebra", "model"]),
     ("element", &["algebra", "mesh"]),
     ("contact", &["error", "algebra", "model", "mesh", "element"]),
-    ("petsc", &["error"]),
-    ("matrices", &["error", "petsc"]),
-    ("assembly", &["error", "algebra", "model", "mesh", "element", "contact", "petsc"]),
-    ("equilibrium", &["error", "algebra", "model", "mesh", "contact", "petsc", "assembly"]),
-    ("stability", &["error", "algebra", "contact", "petsc", "assembly", "equilibrium"]),
+    ("native", &["error"]),
+    ("matrices", &["error", "native"]),
+    ("assembly", &["error", "algebra", "model", "mesh", "element", "contact", "native"]),
+    ("equilibrium", &["error", "algebra", "model", "mesh", "contact", "native", "assembly"]),
+    ("stability", &["error", "algebra", "contact", "native", "assembly", "equilibrium"]),
     (
         "reduction",
-        &["error", "hdf", "algebra", "model", "mesh", "element", "contact", "petsc", "assembly", "equilibrium"],
+        &["error", "hdf", "algebra", "model", "mesh", "element", "contact", "native", "assembly", "equilibrium"],
     ),
     (
         "sweep",
@@ -34,7 +34,7 @@ const ROOMS: [(&str, &[&str]); 19] = [
             "mesh",
             "element",
             "contact",
-            "petsc",
+            "native",
             "matrices",
             "assembly",
             "equilibrium",
@@ -72,7 +72,7 @@ const ROOMS: [(&str, &[&str]); 19] = [
             "mesh",
             "element",
             "contact",
-            "petsc",
+            "native",
             "matrices",
             "assembly",
             "equilibrium",
@@ -90,7 +90,7 @@ const ROOMS: [(&str, &[&str]); 19] = [
 const ROOT: [&str; 2] = ["lib", "main"];
 
 /// The only room that may be unsafe, and know the bindings.
-const UNSAFE: &str = "petsc";
+const UNSAFE: &str = "native";
 
 #[test]
 fn rooms_import_only_rooms_above_them() {
@@ -121,16 +121,16 @@ fn what_is_forbidden_is_found() {
     let in_a_list = said("model/read.rs", "use crate::{\n    Error,\n    mesh::{Mesh, Surface},\n    cli,\n};\n");
     assert!(in_a_list.contains(":3: `model` may not import `mesh`"), "{in_a_list}");
     assert!(in_a_list.contains(":4: `model` may not import `cli`"), "{in_a_list}");
-    assert!(said("contact/law/mod.rs", "fn f() { crate::petsc::init() }").contains("may not import `petsc`"));
+    assert!(said("contact/law/mod.rs", "fn f() { crate::native::init() }").contains("may not import `native`"));
     assert!(
-        said("contact/law/mod.rs", "use super::super::petsc::Comm;")
+        said("contact/law/mod.rs", "use super::super::native::Comm;")
             .contains("src/contact/law/mod.rs:1: a room is left")
     );
     assert!(said("kitchen.rs", "").contains("`kitchen` is not in the table"));
     assert!(said("sweep/mod.rs", "fn f() {\n    unsafe {}\n}").contains("src/sweep/mod.rs:2: `unsafe`"));
     assert!(said("lib.rs", "unsafe {}").contains("src/lib.rs:1: `unsafe`"));
     assert!(said("assembly/mod.rs", "use squeal_sys as sys;").contains("src/assembly/mod.rs:1: `squeal_sys`"));
-    assert_eq!(said("petsc/vector.rs", "use squeal_sys as sys;\nunsafe {}"), "");
+    assert_eq!(said("native/petsc/vector.rs", "use squeal_sys as sys;\nunsafe {}"), "");
 }
 
 /// All Rust files below a folder.

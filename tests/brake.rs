@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use squeal::equilibrium::Balance;
-use squeal::petsc::Session;
+use squeal::native::Session;
 use squeal::sweep::{Brake, Sweep};
 
 /// Hydraulic force, N.

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use common::data;
 use program::{Place, Said};
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::sweep::{Brake, Friction, Snapshot, Sweep, tracking_options, wider};
 use squeal::tracking::{Diagram, track};
 

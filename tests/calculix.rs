@@ -30,7 +30,7 @@ use squeal::contact::{Response, Status};
 use squeal::element::quadrature::TETRAHEDRON_4;
 use squeal::element::tet10;
 use squeal::mesh::Mesh;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
 use squeal::sweep::{Brake, Sweep};
 

@@ -13,7 +13,7 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::data;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::stability::{Band, Mode};
 use squeal::sweep::{Brake, Sweep};
 

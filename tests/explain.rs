@@ -13,7 +13,7 @@ use squeal::assembly::System;
 use squeal::contact::Tangential;
 use squeal::equilibrium::Equilibrium;
 use squeal::model::Rayleigh;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::stability::{Band, Complex, Mode};
 use squeal::sweep::{Brake, Kind, Snapshot, Source, Sweep};
 

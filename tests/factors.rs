@@ -3,7 +3,7 @@
 mod program;
 
 use program::{Place, mpirun};
-use squeal::petsc::{Block, Comm, Factor, FactorKind, Matrix, Precision, Session};
+use squeal::native::{Block, Comm, Factor, FactorKind, Matrix, Precision, Session};
 use squeal::sweep::{Brake, Sweep};
 
 /// Columns to solve for.

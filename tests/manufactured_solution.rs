@@ -19,7 +19,7 @@ use common::{Block, brake};
 use squeal::element::quadrature::TETRAHEDRON_14;
 use squeal::element::tet10;
 use squeal::mesh::Mesh;
-use squeal::petsc::{Comm, Factor, FactorKind, Session};
+use squeal::native::{Comm, Factor, FactorKind, Session};
 
 const YOUNG: f64 = 210e9;
 const POISSON: f64 = 0.3;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use program::{Place, Said, mpirun};
-use squeal::petsc::Session;
+use squeal::native::Session;
 
 /// Rows of a CSV file as numbers; texts are left out.
 fn numbers(table: &str) -> Vec<Vec<f64>> {

@@ -21,7 +21,7 @@ use squeal::contact::{Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
 use squeal::mesh::Mesh;
 use squeal::model::NormalLaw;
-use squeal::petsc::{Block as Columns, Comm, Factor, FactorKind, Session};
+use squeal::native::{Block as Columns, Comm, Factor, FactorKind, Session};
 use squeal::reduction::craig_bampton::{self, Structure};
 use squeal::reduction::super_element::{Origin, SuperElement};
 use squeal::reduction::{contacts, craig_bampton::Reduced};

@@ -2,7 +2,7 @@
 
 use super::scatter::Places;
 use super::{DofMap, Pattern};
-use crate::petsc::Rows;
+use crate::native::Rows;
 
 /// The sum of such matrices over elements.
 pub struct AxisSum<'a> {

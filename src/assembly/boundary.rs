@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::{DofMap, System};
 use crate::Result;
 use crate::mesh::{Mesh, Numbering};
-use crate::petsc::{Comm, Gather, Vector};
+use crate::native::{Comm, Gather, Vector};
 
 /// The outer surface of all parts of a mesh of which each rank has a piece, in triangles between the corners of the facets. Nodes and
 /// triangles are in an order that does not depend on the number of ranks. Every rank knows it.

@@ -10,7 +10,7 @@
 //! ([`Places::find`]) for all its matrices.
 
 use super::{DofMap, Pattern};
-use crate::petsc::Rows;
+use crate::native::Rows;
 
 /// Where the entries of each pair of nodes stand in the rows of a matrix.
 pub struct Scatter<'a> {

@@ -9,7 +9,7 @@ use super::{DofMap, Pattern};
 use crate::Result;
 use crate::contact::Trace;
 use crate::mesh::Numbering;
-use crate::petsc::{Comm, Gather, Matrix, Vector};
+use crate::native::{Comm, Gather, Matrix, Vector};
 
 /// Anything that couples lists of nodes.
 pub trait Connectivity {
@@ -200,7 +200,7 @@ impl Connectivity for Trace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::petsc::Session;
+    use crate::native::Session;
 
     /// Springs between neighbours of a chain of nodes, with one number for the mass or with a full matrix.
     struct Chain {

@@ -10,7 +10,7 @@ use serde_json::{Value as Json, json};
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
 use crate::model::LoadKind;
-use crate::petsc::{Comm, Factor, FactorKind};
+use crate::native::{Comm, Factor, FactorKind};
 use crate::report::contact_cells::ContactCells;
 use crate::sweep::Brake;
 use crate::{Error, Result};

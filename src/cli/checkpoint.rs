@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use crate::hdf::{self, Format, array, list, table, values};
-use crate::petsc::{Block, Comm, Vector};
+use crate::native::{Block, Comm, Vector};
 use crate::report::folder::{self, Folder, RESUME};
 use crate::results::{Value, file};
 use crate::sweep::{Snapshot, Spectrum, Sweep};

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::assembly::System;
 use crate::matrices::write::Whole;
-use crate::petsc::Matrix;
+use crate::native::Matrix;
 use crate::report::folder::Folder;
 use crate::sweep::{Brake, Sweep};
 use crate::{Error, Result};

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use crate::assembly::System;
 use crate::contact::{Interface, Response};
 use crate::equilibrium::Equilibrium;
-use crate::petsc::{Comm, Vector};
+use crate::native::{Comm, Vector};
 use crate::report::contact_surface::{ContactSurface, Fields};
 use crate::report::folder::Folder;
 use crate::results::{About, ContactFaces, Part};

@@ -7,7 +7,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::exit;
 
-use crate::petsc::Comm;
+use crate::native::Comm;
 use crate::{Error, Result};
 
 /// Hears of signals that ask a run to end.

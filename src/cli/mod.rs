@@ -34,7 +34,7 @@ use serde_json::{Value as Json, json};
 
 use crate::hdf;
 use crate::model::NormalLaw;
-use crate::petsc::{Comm, Session};
+use crate::native::{Comm, Session};
 use crate::{Error, Result};
 use friction::Frictions;
 

@@ -10,7 +10,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::comparison::{Model, Sizes, Study, n_contacts};
-use crate::petsc::Comm;
+use crate::native::Comm;
 use crate::reduction;
 use crate::report::folder::write_file;
 use crate::report::{study as tables, study_plot};

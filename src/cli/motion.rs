@@ -4,7 +4,7 @@ use ndarray::{Array2, ArrayView2};
 
 use crate::Result;
 use crate::assembly::{Boundary, Displacements, System};
-use crate::petsc::{Comm, Vector};
+use crate::native::{Comm, Vector};
 use crate::reduction::recovery::OuterSurface;
 use crate::results::{ModeData, Shape, Surface, largest, spread};
 use crate::stability::Mode;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::petsc::Comm;
+use crate::native::Comm;
 
 /// A line that tells stage, detail and elapsed time, with a bar over the values of a sweep.
 pub struct Progress {

@@ -1,6 +1,6 @@
 //! Order statistics of numbers that are spread over ranks.
 
-use crate::petsc::Comm;
+use crate::native::Comm;
 
 /// Numbers between -1 and 1, each on one rank.
 pub struct Ranked<'a> {
@@ -37,7 +37,7 @@ impl Ranked<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::petsc::Session;
+    use crate::native::Session;
 
     #[test]
     fn the_nth_is_that_of_the_sorted_list() {

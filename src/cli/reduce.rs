@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde_json::{Value as Json, json};
 
-use crate::petsc::{Comm, FactorStats};
+use crate::native::{Comm, FactorStats};
 use crate::reduction::craig_bampton::{Costs, Event};
 use crate::reduction::file;
 use crate::reduction::super_element::SuperElement;

@@ -8,7 +8,7 @@ use crate::assembly::System;
 use crate::contact::{Interface, Response};
 use crate::equilibrium::{Equilibrium, PairForces};
 use crate::model::NormalLaw;
-use crate::petsc::{Comm, Vector};
+use crate::native::{Comm, Vector};
 use crate::reduction::file;
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Member, SuperElement};

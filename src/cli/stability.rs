@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use crate::Result;
-use crate::petsc::{Comm, Vector};
+use crate::native::{Comm, Vector};
 use crate::report::summary;
 use crate::stability::{Band, Complex, Mode};
 use crate::sweep::{Friction, Snapshot, Solutions, Source, Sweep, Vectors, tracking_options, wider};

@@ -2,7 +2,7 @@
 
 use crate::Result;
 use crate::equilibrium::{Balance, Equilibrium};
-use crate::petsc::{Comm, Vector};
+use crate::native::{Comm, Vector};
 use crate::report::contact_surface::{ContactSurface, Fields};
 use crate::report::folder::Folder;
 use crate::report::vtu::{Cells, Grid, Values};

@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
 use crate::hdf::is_hdf5;
-use crate::petsc::{Comm, libraries};
+use crate::native::{Comm, libraries};
 use crate::report::folder::Folder;
 use crate::report::json;
 use crate::results::{About, Failure, ModeData, Results, Value};

@@ -9,7 +9,7 @@ use crate::contact::{Interface, Response};
 use crate::equilibrium::{Equilibrium, PairForces};
 use crate::hdf::is_hdf5;
 use crate::model::NormalLaw;
-use crate::petsc::{Comm, Vector};
+use crate::native::{Comm, Vector};
 use crate::report::folder::Folder;
 use crate::results::{About, ContactFaces, Pair, Shape};
 use crate::stability::{Complex, Mode};

@@ -5,7 +5,7 @@ use std::os::unix::ffi::OsStringExt;
 use std::path::PathBuf;
 
 use crate::Result;
-use crate::petsc::Comm;
+use crate::native::Comm;
 use crate::report::folder::{self, Folder};
 use crate::report::vtu::{Array, Cells, Grid};
 use crate::sweep::Brake;

@@ -8,7 +8,7 @@ use crate::algebra::{cross, dot, norm, sub};
 use crate::assembly::{DofMap, ElementMatrices, Elements, System};
 use crate::contact::interface::{Interface, Pair};
 use crate::contact::law::{Response, Status};
-use crate::petsc::Comm;
+use crate::native::Comm;
 
 use super::Counts;
 

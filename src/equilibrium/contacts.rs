@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::Result;
 use crate::assembly::{DofMap, System};
 use crate::contact::{Interface, Response, Stage, Status};
-use crate::petsc::{Block, Comm, Gather, Matrix, Vector};
+use crate::native::{Block, Comm, Gather, Matrix, Vector};
 
 /// Evaluates all contact points of an interface, on every rank alike, so that the contact state is known everywhere.
 pub struct Contacts<'a> {

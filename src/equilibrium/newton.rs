@@ -6,8 +6,8 @@ use super::contacts::{Contacts, Counts};
 use crate::Result;
 use crate::assembly::System;
 use crate::contact::{Response, Stage};
-use crate::petsc::nonlinear::{self, Problem, Verdict};
-use crate::petsc::{Matrix, Vector};
+use crate::native::petsc::nonlinear::{self, Problem, Verdict};
+use crate::native::{Matrix, Vector};
 
 use super::step_factor::StepFactor;
 

@@ -5,7 +5,7 @@ use super::newton::{self, Iteration, Step, Workspace};
 use crate::assembly::System;
 use crate::contact::interface::{Interface, Pair};
 use crate::contact::{Response, Stage};
-use crate::petsc::{Factor, Matrix, Precision, Vector};
+use crate::native::{Factor, Matrix, Precision, Vector};
 
 use super::step_factor::StepFactor;
 use crate::{Error, Result};

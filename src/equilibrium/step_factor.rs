@@ -19,7 +19,8 @@ use nalgebra::{DMatrix, DVector, Dyn, LU, Matrix3};
 use super::contacts::Contacts;
 use crate::Result;
 use crate::contact::Response;
-use crate::petsc::{Block, Factor, FactorKind, Matrix, Precision, Vector, linear, memory};
+use crate::native::petsc::linear;
+use crate::native::{Block, Factor, FactorKind, Matrix, Precision, Vector, machine};
 
 /// Right-hand sides that updates may keep: more are not worth it, and each takes n doubles.
 const MAX_UPDATES: usize = 200;
@@ -212,7 +213,7 @@ impl StepFactor {
 /// How many columns an update may have. Collective.
 fn room(like: &Vector) -> usize {
     let column_mb = 8.0 * like.comm().sum(like.n_local() as f64) / (1024.0 * 1024.0);
-    let room = SHARE_OF_MEMORY * memory::available_mb(like.comm()) / column_mb;
+    let room = SHARE_OF_MEMORY * machine::available_mb(like.comm()) / column_mb;
     MAX_UPDATES.min(room as usize)
 }
 

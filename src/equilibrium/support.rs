@@ -12,7 +12,7 @@ use crate::assembly::Link;
 use crate::contact::interface::Interface;
 use crate::contact::law::Tangential;
 use crate::mesh::{Mesh, Numbering};
-use crate::petsc::Comm;
+use crate::native::Comm;
 
 /// A motion that nothing resists.
 #[derive(Debug, Clone, PartialEq)]

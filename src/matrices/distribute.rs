@@ -6,7 +6,7 @@ use super::problem::{Problem, Term};
 use super::sparse::{Pattern, symmetric_part};
 use super::{Dof, Role};
 use crate::Result;
-use crate::petsc::{Comm, Matrix, Rows};
+use crate::native::{Comm, Matrix, Rows};
 
 /// Which of the matrices are symmetric, whatever the parameter: all their terms are.
 #[derive(Debug, Clone, Copy, PartialEq)]

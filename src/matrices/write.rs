@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::Result;
-use crate::petsc::Matrix;
+use crate::native::Matrix;
 
 use super::petsc_binary::MATRIX;
 

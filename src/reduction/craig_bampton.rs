@@ -36,7 +36,7 @@ use nalgebra::DMatrix;
 use crate::assembly::System;
 use crate::contact::{Interface, Trace};
 use crate::equilibrium::Equilibrium;
-use crate::petsc::{Block, Factor, FactorKind, FactorStats, Matrix, Noise, Vector, dense};
+use crate::native::{Block, Factor, FactorKind, FactorStats, Matrix, Noise, Vector, lapack};
 use crate::{Error, Result};
 
 use super::functionals::{Functionals, retained};
@@ -271,7 +271,7 @@ fn motions(
     let l = m.cholesky().ok_or_else(|| Error::Library("the reduced mass is not positive definite".into()))?.unpack();
     let half = l.solve_lower_triangular(&k).expect("the diagonal of L is positive");
     let mut y = l.solve_lower_triangular(&half.transpose()).expect("the diagonal of L is positive");
-    let squares = dense::symmetric_eigen(live.len(), y.as_mut_slice())?;
+    let squares = lapack::symmetric_eigen(live.len(), y.as_mut_slice())?;
     let n_below = squares.iter().filter(|&&square| square < (TAU * limit).powi(2)).count();
     let x = l.tr_solve_lower_triangular(&y.columns(0, n_below)).expect("the diagonal of L is positive");
     let mut motions = DMatrix::zeros(n, n_below);

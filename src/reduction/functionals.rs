@@ -2,7 +2,7 @@
 
 use crate::assembly::{DofMap, System};
 use crate::contact::{Interface, Trace};
-use crate::petsc::{Block, Comm};
+use crate::native::{Block, Comm};
 
 /// The rows of B as far as this rank's equations go.
 pub struct Functionals {

@@ -7,7 +7,7 @@
 use crate::Result;
 use crate::contact::{Interface, Response, Status, Trace};
 use crate::equilibrium::Contacts;
-use crate::petsc::{Matrix, Vector};
+use crate::native::{Matrix, Vector};
 
 use super::craig_bampton::Structure;
 

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::DMatrix;
 
-use crate::petsc::{Block, Matrix, dense};
+use crate::native::{Block, Matrix, lapack};
 use crate::{Error, Result};
 
 /// Vectors of a block.
@@ -157,7 +157,7 @@ impl Basis {
     fn ritz(&self, n: usize) -> Result<(Vec<f64>, DMatrix<f64>)> {
         let t = self.projected.view((0, 0), (n, n));
         let mut vectors = 0.5 * (t + t.transpose());
-        let values = dense::symmetric_eigen(n, vectors.as_mut_slice())?;
+        let values = lapack::symmetric_eigen(n, vectors.as_mut_slice())?;
         Ok((values, vectors))
     }
 
@@ -218,7 +218,7 @@ fn squares(w: &Block, mass: &Matrix) -> Result<DMatrix<f64>> {
 fn normalise(w: &mut Block, mass: &Matrix, shortest: f64, room: usize) -> Result<DMatrix<f64>> {
     let n = w.n_columns();
     let mut q = squares(w, mass)?;
-    let lengths: Vec<f64> = dense::symmetric_eigen(n, q.as_mut_slice())?.iter().map(|l| l.max(0.0).sqrt()).collect();
+    let lengths: Vec<f64> = lapack::symmetric_eigen(n, q.as_mut_slice())?.iter().map(|l| l.max(0.0).sqrt()).collect();
     let kept: Vec<usize> = (0..n).rev().filter(|&i| lengths[i] > shortest).take(room).collect();
     // w q has orthogonal columns of these lengths, q is orthogonal: w = (w q / l) (l q^T)
     let scaled: Vec<f64> =

@@ -4,7 +4,7 @@ use multiversion::multiversion;
 
 use crate::Result;
 use crate::assembly::{Boundary, System};
-use crate::petsc::Block;
+use crate::native::Block;
 
 /// Displacements summed up at a time, and terms that are summed in single precision.
 const STRIP: usize = 16384;

@@ -15,7 +15,7 @@ use crate::contact::interface::Pair;
 use crate::contact::{ContactPoint, Interface, Trace};
 use crate::mesh::Numbering;
 use crate::model::NormalLaw;
-use crate::petsc::{Comm, Matrix};
+use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
 use super::craig_bampton::{Reduced, Structure};

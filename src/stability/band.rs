@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::search;
 use super::solver::{Evidence, Search, Solver, factorise_shifted, n_equations};
 use super::{Mode, Pencil};
-use crate::petsc::eigen::Pair;
-use crate::petsc::{Factor, memory};
+use crate::native::petsc::eigen::Pair;
+use crate::native::{Factor, machine};
 use crate::{Error, Result};
 
 /// Memory of a symmetric factor over that of an LU on the same pattern: 3.0 GB over 5.3 GB on the full demo brake, or over 2.8 GB in single
@@ -108,7 +108,7 @@ pub fn solve(
 /// the latter leaves room for the search.
 fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<(f64, usize)> {
     solver.forget();
-    let has_mb = |needed| memory::has_mb(pencil.k.comm(), needed);
+    let has_mb = |needed| machine::has_mb(pencil.k.comm(), needed);
     let symmetric_over_lu = SYMMETRIC_OVER_LU[usize::from(!lu.is_exact())];
     if !solver.inertia.is_made() {
         solver.make_room(pencil, symmetric_over_lu * lu.stats().used_mb);

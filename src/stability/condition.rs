@@ -1,7 +1,7 @@
 //! How ill-conditioned a factorised matrix is.
 
 use crate::Result;
-use crate::petsc::{Block, Factor, Matrix};
+use crate::native::{Block, Factor, Matrix};
 
 /// Rounds at most: the estimate rarely grows after the third.
 const ROUNDS: usize = 5;
@@ -53,7 +53,7 @@ pub fn condition(a: &Matrix, factor: &Factor) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::petsc::{FactorKind, Session};
+    use crate::native::{FactorKind, Session};
 
     /// Hilbert's matrix of six rows has the condition number 2.907e7 in the maximum norm.
     #[test]

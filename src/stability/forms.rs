@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use crate::Result;
 use crate::assembly::{ElementMatrices, Elements, System};
 use crate::equilibrium::{Contacts, Equilibrium};
-use crate::petsc::Vector;
+use crate::native::Vector;
 
 /// The share of one source in the three forms of two vectors.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

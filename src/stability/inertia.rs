@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 use super::Pencil;
 use crate::Result;
 use crate::algebra::dot;
-use crate::petsc::{Block, Factor, FactorKind, FactorStats};
+use crate::native::{Block, Factor, FactorKind, FactorStats};
 
 /// A change of a point's tangent this much smaller than the tangent itself is none.
 const NEGLIGIBLE: f64 = 1e-12;

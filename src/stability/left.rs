@@ -11,7 +11,7 @@ use num_complex::Complex64;
 
 use super::Mode;
 use super::space::{Basis, Problem, Ritz, Space};
-use crate::petsc::{Block, Matrix, dense};
+use crate::native::{Block, Matrix, lapack};
 use crate::{Error, Result};
 
 /// Rounds of corrections at most. A round wins a factor of about five.
@@ -99,7 +99,7 @@ fn inverse_iterate(space: &Space, lambda: Complex64, start: &[Complex64]) -> Opt
         matrix.zip_apply(projected, |z, x| *z += power * x);
     }
     let mut x = start.to_vec();
-    let is_solved = dense::solve_complex(n, matrix.as_mut_slice(), &mut x);
+    let is_solved = lapack::solve_complex(n, matrix.as_mut_slice(), &mut x);
     (is_solved && x.iter().all(|z| z.is_finite())).then_some(x)
 }
 

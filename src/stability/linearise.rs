@@ -4,7 +4,7 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::{Response, Status, Tangential};
 use crate::equilibrium::{Contacts, Equilibrium};
-use crate::petsc::Matrix;
+use crate::native::Matrix;
 
 use super::{Pencil, Points};
 

@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, Matrix3};
 use super::space::Side;
 use super::{Mode, Pencil, Points};
 use crate::Result;
-use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::petsc::{Block, Matrix, Vector, dense};
+use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
+use crate::native::{Block, Matrix, Vector, lapack};
 
 /// A change of a point's tangent this much smaller than the tangent itself is none.
 const NEGLIGIBLE: f64 = 1e-15;
@@ -62,7 +62,7 @@ impl Modal {
             return Ok(None);
         };
         let (comm, n) = (pencil.k.comm(), pencil.k.n_local());
-        let Some(flexibilities) = dense::generalised_eigen(n, &mut modes, stiffness) else { return Ok(None) };
+        let Some(flexibilities) = lapack::generalised_eigen(n, &mut modes, stiffness) else { return Ok(None) };
         let phi = Block::from_columns(comm, n, modes);
         let unit = |e: usize| std::array::from_fn(|i| if i == e { 1.0 } else { 0.0 });
         let directions: Vec<(usize, [f64; 3])> =
@@ -172,10 +172,10 @@ impl Modal {
         }
         let rank = u.len() / n.max(1);
         let mut small = vec![0.0; rank * rank];
-        dense::multiply(true, [rank, n, rank], &w, &u, &mut small);
+        lapack::multiply(true, [rank, n, rank], &w, &u, &mut small);
         let inverse = (DMatrix::identity(rank, rank) + DMatrix::from_vec(rank, rank, small)).try_inverse()?;
         let mut scaled = vec![0.0; u.len()];
-        dense::multiply(false, [n, rank, rank], &u, inverse.as_slice(), &mut scaled);
+        lapack::multiply(false, [n, rank, rank], &u, inverse.as_slice(), &mut scaled);
         Some(Update { u: scaled, w })
     }
 }
@@ -185,8 +185,8 @@ impl Update {
     fn solve(&self, b: &[f64], x: &mut [f64]) {
         let (n, rank) = (b.len(), self.w.len() / b.len().max(1));
         let mut coefficients = vec![0.0; rank];
-        dense::multiply(true, [rank, n, 1], &self.w, b, &mut coefficients);
+        lapack::multiply(true, [rank, n, 1], &self.w, b, &mut coefficients);
         x.copy_from_slice(b);
-        dense::subtract_product([n, rank, 1], &self.u, &coefficients, x);
+        lapack::subtract_product([n, rank, 1], &self.u, &coefficients, x);
     }
 }

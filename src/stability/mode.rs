@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use crate::Result;
 use crate::algebra::dot;
 use crate::equilibrium::Contacts;
-use crate::petsc::{Block, Matrix, Vector};
+use crate::native::{Block, Matrix, Vector};
 
 /// A mode is called unstable where its growth rate exceeds this fraction of its angular frequency: below is noise.
 pub const UNSTABLE_RATIO: f64 = 1e-6;

@@ -20,8 +20,8 @@ use num_complex::Complex64;
 
 use super::mode::backward_errors;
 use super::space::{Basis, Problem, Ritz, SKETCH, Side, Space, Start};
-use crate::petsc::eigen::{self, Found, Pair, Quadratic};
-use crate::petsc::{Factor, FactorKind, Matrix};
+use crate::native::petsc::eigen::{self, Found, Pair, Quadratic};
+use crate::native::{Factor, FactorKind, Matrix};
 use crate::{Error, Result};
 
 /// Columns of a Krylov block.

@@ -14,8 +14,8 @@ use super::search;
 use super::space::{Basis, Problem, Start};
 use super::{Mode, Pencil};
 use crate::assembly::System;
-use crate::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::petsc::{Block, Factor, Matrix, Precision, memory};
+use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
+use crate::native::{Block, Factor, Matrix, Precision, machine};
 use crate::{Error, Result};
 
 /// Equations from which the blocked search pays: below, a single solve costs too little.
@@ -182,7 +182,7 @@ impl Solver {
 
     /// Gives up what the next search would start from where so much memory is not free, MB. Collective.
     pub(super) fn make_room(&mut self, pencil: &Pencil, mb: f64) {
-        if !memory::has_mb(pencil.k.comm(), mb) {
+        if !machine::has_mb(pencil.k.comm(), mb) {
             self.start = None;
         }
     }
@@ -199,7 +199,7 @@ impl Solver {
 
     /// Whether there is memory for a search in blocks.
     pub(super) fn has_room(&self, pencil: &Pencil, n_modes: usize) -> bool {
-        memory::has_mb(pencil.k.comm(), search::needs_mb(n_modes, n_equations(pencil)))
+        machine::has_mb(pencil.k.comm(), search::needs_mb(n_modes, n_equations(pencil)))
     }
 
     /// The eigenpairs up to `end` (Hz) and some beyond, about `n_modes`; none where the search gave up. In blocks if it is told how far

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use super::Pencil;
 use crate::Result;
-use crate::petsc::{Block, Factor, Noise};
+use crate::native::{Block, Factor, Noise};
 
 /// Random combinations of the residuals that join the space in a round.
 pub(super) const SKETCH: usize = 32;

@@ -10,7 +10,7 @@ use crate::element::tet10::{MassProperties, mass_properties};
 use crate::equilibrium::free_motions;
 use crate::mesh::{self, Mesh, Numbering, Piece};
 use crate::model::{self, Model, located};
-use crate::petsc::Comm;
+use crate::native::Comm;
 use crate::reduction;
 use crate::{Error, Result};
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::Result;
 use crate::contact::search::Team;
 use crate::mesh::{Mesh, Piece, order};
-use crate::petsc::{Comm, partition};
+use crate::native::{Comm, partition};
 
 /// Gives every rank its piece of a mesh that the root alone has read: METIS shares out the nodes, which are numbered rank by rank,
 /// and near each other within a rank. Collective.

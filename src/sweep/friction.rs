@@ -9,7 +9,7 @@ use num_complex::Complex64;
 
 use super::Sweep;
 use crate::Result;
-use crate::petsc::{Block, Matrix, Vector};
+use crate::native::{Block, Matrix, Vector};
 use crate::stability::{Band, growth_threshold};
 use crate::tracking::{Family, Options};
 

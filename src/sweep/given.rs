@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use super::friction::{Friction, Snapshot, Vectors, wider};
 use crate::matrices::{Given, Sums};
-use crate::petsc::{Factor, FactorKind};
+use crate::native::{Factor, FactorKind};
 use crate::stability::{self, Band, Evidence, Pencil, Problem, Solver, condition};
 use crate::tracking::{Diagram, Options, track};
 use crate::{Error, Result};

@@ -25,7 +25,7 @@ use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, Iteration, Path};
-use crate::petsc::{Block, FactorStats, Matrix, Precision, Vector};
+use crate::native::{Block, FactorStats, Matrix, Precision, Vector};
 use crate::stability::{self, Band, Count, Linearised, Mode, Pencil, Problem, Solver};
 
 /// A structure under analysis at one friction after the other.

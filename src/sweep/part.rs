@@ -9,7 +9,7 @@ use super::brake::read_mesh;
 use super::distribution::distribute;
 use crate::assembly::System;
 use crate::model;
-use crate::petsc::{Block, Comm};
+use crate::native::{Block, Comm};
 use crate::stability::Mode;
 use crate::{Error, Result};
 

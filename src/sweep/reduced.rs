@@ -3,7 +3,7 @@
 use crate::Result;
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
-use crate::petsc::Comm;
+use crate::native::Comm;
 use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Origin, SuperElement};

@@ -23,7 +23,7 @@ use super::common::{Block, assert_close, brake, graded};
 use super::table::{Case, Row};
 use squeal::contact::Status;
 use squeal::mesh::Mesh;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::sweep::Sweep;
 
 const RADIUS: f64 = 0.05;

@@ -37,7 +37,7 @@
 use super::common::{Block, assert_close, brake};
 use super::table::{Case, Row};
 use squeal::mesh::Mesh;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::sweep::Sweep;
 
 const MODEL: &str = r#"

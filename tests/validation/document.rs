@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 
 use super::table::{Case, document};
 use super::{annulus, cattaneo_mindlin, contact_patch, hertz, konter, minimal_models, nafems_fv52, pads_on_disc, td1};

@@ -25,7 +25,7 @@ use std::f64::consts::PI;
 use super::common::{Block, assert_close, brake, graded};
 use super::table::{Case, Row};
 use squeal::mesh::Mesh;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::sweep::{Brake, Sweep};
 
 const RADIUS: f64 = 0.05;

@@ -24,7 +24,7 @@
 
 use squeal::contact::Status;
 use squeal::mesh::Mesh;
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::sweep::Sweep;
 
 use super::common::{Block, assert_close, brake, graded, nodes_where};

@@ -5,8 +5,8 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
-use squeal::petsc::eigen::{self, Options, Quadratic};
-use squeal::petsc::{Comm, Factor, FactorKind, Matrix, Session};
+use squeal::native::petsc::eigen::{self, Options, Quadratic};
+use squeal::native::{Comm, Factor, FactorKind, Matrix, Session};
 
 use super::table::{Case, Row};
 

@@ -24,7 +24,7 @@ use super::common::{Block, brake, nodes_where};
 use super::table::{Case, Row};
 use squeal::assembly::System;
 use squeal::mesh::Mesh;
-use squeal::petsc::{Comm, Factor, FactorKind, Session};
+use squeal::native::{Comm, Factor, FactorKind, Session};
 use squeal::stability::{self, Mode, Pencil, Solver};
 
 const MODEL: &str = r#"

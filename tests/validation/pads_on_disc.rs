@@ -25,7 +25,7 @@ use serde_json::Value;
 use squeal::assembly::System;
 use squeal::element::tet10;
 use squeal::equilibrium::{Balance, Equilibrium};
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::stability::{Band, Mode};
 use squeal::sweep::{Brake, Families, Sweep};
 

@@ -24,7 +24,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
-use squeal::petsc::{Comm, Session};
+use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
 use squeal::sweep::{Brake, Friction, Snapshot, Sweep, tracking_options, wider};
 use squeal::tracking::{Diagram, track};

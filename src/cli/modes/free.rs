@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use serde_json::json;
 
 use crate::assembly::System;
-use crate::petsc::{Comm, Factor, FactorKind};
+use crate::native::{Comm, Factor, FactorKind};
 use crate::report::folder::Folder;
 use crate::report::vtu::Values;
 use crate::stability::{self, Count, Mode, Pencil, Solver};

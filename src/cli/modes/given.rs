@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use crate::matrices::family::Family;
 use crate::matrices::{Dof, Given};
-use crate::petsc::Vector;
+use crate::native::Vector;
 use crate::report::branches;
 use crate::report::eigenvalues::{self, Row};
 use crate::report::folder::Folder;

@@ -10,7 +10,7 @@ use clap::Args;
 
 use crate::matrices::family::{self, Coefficient, Family};
 use crate::matrices::{Role, Term};
-use crate::petsc::Comm;
+use crate::native::Comm;
 use crate::report::folder::Folder;
 use crate::{Error, Result};
 

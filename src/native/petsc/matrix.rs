@@ -6,8 +6,9 @@ use std::ptr;
 use squeal_sys as sys;
 
 use super::error::check;
-use super::{Comm, Gather, Rows, Vector};
+use super::{Gather, Rows, Vector};
 use crate::Result;
+use crate::native::Comm;
 
 /// A distributed sparse matrix of doubles; each rank holds whole rows.
 pub struct Matrix {
@@ -20,7 +21,7 @@ pub struct Matrix {
 
 /// Some columns of this rank's rows, compressed by rows.
 #[derive(Clone, Copy)]
-pub(super) struct Part<'a> {
+pub(in crate::native) struct Part<'a> {
     /// Where each row starts, and the end of the last.
     pub offsets: &'a [i32],
     /// Columns, counted within the part.
@@ -141,7 +142,7 @@ impl Matrix {
     ///
     /// # Errors
     /// PETSc's.
-    pub(super) fn with_parts<T>(&self, look: impl FnOnce([Part; 2]) -> T) -> Result<T> {
+    pub(in crate::native) fn with_parts<T>(&self, look: impl FnOnce([Part; 2]) -> T) -> Result<T> {
         let (own, other, _) = self.sequential()?;
         with_part(own, |own| match other.is_null() {
             true => Ok(look([own, NOTHING])),
@@ -153,7 +154,7 @@ impl Matrix {
     ///
     /// # Errors
     /// PETSc's.
-    pub(super) fn ghosts(&self, from: &Vector) -> Result<&Gather> {
+    pub(in crate::native) fn ghosts(&self, from: &Vector) -> Result<&Gather> {
         if self.ghosts.get().is_none() {
             let gather = Gather::new(from, self.other_columns()?)?;
             return Ok(self.ghosts.get_or_init(|| gather));
@@ -179,7 +180,7 @@ impl Matrix {
     ///
     /// # Errors
     /// PETSc's.
-    pub(super) fn first_row(&self) -> Result<usize> {
+    pub(in crate::native) fn first_row(&self) -> Result<usize> {
         let (mut first, mut end) = (0, 0);
         // SAFETY: the handle is alive.
         check(unsafe { sys::MatGetOwnershipRange(self.raw, &mut first, &mut end) })?;
@@ -190,7 +191,7 @@ impl Matrix {
     ///
     /// # Errors
     /// PETSc's.
-    pub(super) fn visit_entries(&self, mut visit: impl FnMut(usize, usize, f64)) -> Result<()> {
+    pub(in crate::native) fn visit_entries(&self, mut visit: impl FnMut(usize, usize, f64)) -> Result<()> {
         let (first, others) = (self.first_row()?, self.other_columns()?);
         self.with_parts(|[own, other]| {
             own.visit(|row, column, value| visit(first + row, first + column, value));
@@ -265,7 +266,7 @@ impl Matrix {
     }
 
     /// Lends the entries by columns where they are stored densely. Not collective.
-    pub(super) fn with_dense_values<T>(&self, look: impl FnOnce(&[f64]) -> T) -> Result<Option<T>> {
+    pub(in crate::native) fn with_dense_values<T>(&self, look: impl FnOnce(&[f64]) -> T) -> Result<Option<T>> {
         if !self.is_dense()? {
             return Ok(None);
         }
@@ -293,7 +294,7 @@ impl Matrix {
         self.set_option(sys::MatOption::MAT_SYMMETRIC, true)
     }
 
-    pub(super) fn raw(&self) -> sys::Mat {
+    pub(in crate::native) fn raw(&self) -> sys::Mat {
         self.raw
     }
 

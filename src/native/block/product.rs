@@ -7,9 +7,10 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::matrix::Part;
-use super::{Block, Matrix};
+use super::Block;
 use crate::Result;
+use crate::native::Matrix;
+use crate::native::petsc::Part;
 
 /// Columns at a time: as many sums as registers hold.
 const STRIP: usize = 16;
@@ -23,7 +24,12 @@ type Row = [f64; STRIP];
 ///
 /// # Errors
 /// PETSc's.
-pub(super) fn add_times(matrices: &[&Matrix], x: &Block, columns: Range<usize>, y: &mut Block) -> Result<()> {
+pub(in crate::native) fn add_times(
+    matrices: &[&Matrix],
+    x: &Block,
+    columns: Range<usize>,
+    y: &mut Block,
+) -> Result<()> {
     let (mut own_rows, mut ghost_rows) = (Vec::new(), Vec::new());
     for first in columns.clone().step_by(STRIP) {
         let strip = first..(first + STRIP).min(columns.end);

@@ -6,9 +6,9 @@ use std::ptr;
 
 use squeal_sys as sys;
 
-use super::Comm;
 use super::error::check;
 use crate::Result;
+use crate::native::Comm;
 
 /// A distributed vector of doubles.
 pub struct Vector {
@@ -25,7 +25,7 @@ impl Drop for Vector {
 }
 
 /// A vector that PETSc owns, for the length of a callback.
-pub(super) struct Borrowed(ManuallyDrop<Vector>);
+pub(in crate::native) struct Borrowed(ManuallyDrop<Vector>);
 
 impl Deref for Borrowed {
     type Target = Vector;
@@ -35,13 +35,13 @@ impl Deref for Borrowed {
 }
 
 impl Borrowed {
-    pub(super) fn new(raw: sys::Vec, comm: &Comm) -> Borrowed {
+    pub(in crate::native) fn new(raw: sys::Vec, comm: &Comm) -> Borrowed {
         let mut n_local = 0;
         // SAFETY: `raw` comes from PETSc in a callback.
         unsafe { sys::VecGetLocalSize(raw, &mut n_local) };
         Borrowed(ManuallyDrop::new(Vector { raw, comm: comm.clone(), n_local: n_local as usize }))
     }
-    pub(super) fn get_mut(&mut self) -> &mut Vector {
+    pub(in crate::native) fn get_mut(&mut self) -> &mut Vector {
         &mut self.0
     }
 }
@@ -75,7 +75,7 @@ impl Vector {
         Ok(vector)
     }
 
-    pub(super) fn raw(&self) -> sys::Vec {
+    pub(in crate::native) fn raw(&self) -> sys::Vec {
         self.raw
     }
 

@@ -7,8 +7,9 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Comm, Matrix, Vector};
+use super::{Matrix, Vector};
 use crate::Result;
+use crate::native::Comm;
 
 /// What SNES asks of a problem `F(u) = 0`.
 pub trait Problem {

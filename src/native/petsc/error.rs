@@ -14,7 +14,7 @@ thread_local! {
 }
 
 /// Collects one frame of PETSc's error stack; the innermost comes first and carries the message.
-pub(super) unsafe extern "C" fn collect(
+pub(in crate::native) unsafe extern "C" fn collect(
     _comm: sys::MPI_Comm,
     line: c_int,
     function: *const c_char,
@@ -43,7 +43,7 @@ pub(super) unsafe extern "C" fn collect(
 }
 
 /// The one door: a code of 0 passes, any other becomes an error with the frames collected on the way.
-pub(super) fn check(code: sys::PetscErrorCode) -> Result<()> {
+pub(in crate::native) fn check(code: sys::PetscErrorCode) -> Result<()> {
     if code == 0 {
         return Ok(());
     }
@@ -53,14 +53,14 @@ pub(super) fn check(code: sys::PetscErrorCode) -> Result<()> {
 
 /// Carries an error or a panic across PETSc's C frames.
 #[derive(Default)]
-pub(super) struct Trap {
+pub(in crate::native) struct Trap {
     error: Option<Error>,
     panic: Option<Box<dyn Any + Send>>,
 }
 
 impl Trap {
     /// Runs a callback's body; what goes wrong is kept here and PETSc is told to unwind.
-    pub(super) fn guard(&mut self, name: &CStr, body: impl FnOnce() -> Result<()>) -> sys::PetscErrorCode {
+    pub(in crate::native) fn guard(&mut self, name: &CStr, body: impl FnOnce() -> Result<()>) -> sys::PetscErrorCode {
         let message = match catch_unwind(AssertUnwindSafe(body)) {
             Ok(Ok(())) => return 0,
             Ok(Err(error)) => {
@@ -77,7 +77,7 @@ impl Trap {
     }
 
     /// What the solve comes to: the callback's own panic or error first, PETSc's second.
-    pub(super) fn release(&mut self, code: sys::PetscErrorCode) -> Result<()> {
+    pub(in crate::native) fn release(&mut self, code: sys::PetscErrorCode) -> Result<()> {
         let outcome = check(code);
         if let Some(panic) = self.panic.take() {
             resume_unwind(panic);

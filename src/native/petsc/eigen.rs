@@ -8,7 +8,8 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Comm, Matrix, Vector};
+use super::{Matrix, Vector};
+use crate::native::Comm;
 use crate::{Error, Result};
 
 /// `x = P(sigma)^-1 b`.

@@ -48,7 +48,7 @@ pub fn partition(tets: &[[u32; 10]], n_nodes: usize, n_parts: usize) -> Result<V
 }
 
 /// Who is whose neighbour, compressed.
-pub(super) struct Graph {
+pub(in crate::native) struct Graph {
     /// Where each vertex's list starts, and the end of the last.
     offsets: Vec<i32>,
     neighbours: Vec<i32>,
@@ -56,7 +56,7 @@ pub(super) struct Graph {
 
 impl Graph {
     /// Two vertices are neighbours where one of them lists the other; lists rise and do not name their owner.
-    pub(super) fn undirected(lists: &[Vec<u32>]) -> Graph {
+    pub(in crate::native) fn undirected(lists: &[Vec<u32>]) -> Graph {
         let mut listed_by = vec![Vec::new(); lists.len()];
         for (vertex, list) in lists.iter().enumerate() {
             list.iter().for_each(|&other| listed_by[other as usize].push(vertex as u32));
@@ -79,7 +79,7 @@ impl Graph {
 ///
 /// # Errors
 /// METIS's, with its code.
-pub(super) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Result<Vec<i32>> {
+pub(in crate::native) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Result<Vec<i32>> {
     let mut n = weights.len() as i32;
     let (mut order, mut places) = (vec![0_i32; weights.len()], vec![0_i32; weights.len()]);
     // SAFETY: METIS reads the graph and the weights, and writes the two permutations; null means "default" for the options.

@@ -5,8 +5,9 @@
 
 use squeal_sys as sys;
 
-use super::error::check;
-use super::{Comm, FactorKind, Matrix, ordering};
+use super::{FactorKind, ordering};
+use crate::native::petsc::error::check;
+use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
 /// In which numbers a factor is made and solves.
@@ -97,7 +98,7 @@ const N_ICNTL: i32 = 60;
 const N_CNTL: i32 = 15;
 
 /// One matrix's factors, from the analysis on.
-pub(super) struct Mumps {
+pub(in crate::native) struct Mumps {
     data: Data,
     kind: FactorKind,
     /// Keeps MPI alive as long as the factors.

@@ -4,12 +4,12 @@ use std::ffi::CStr;
 
 use squeal_sys as sys;
 
-use super::FactorKind;
-use super::dense::FEW;
+use super::FEW;
+use crate::native::FactorKind;
 use crate::{Error, Result};
 
 /// `P L U` or `P L D L^T P^T` of a matrix, column-major.
-pub(super) struct DenseFactor {
+pub(in crate::native) struct DenseFactor {
     kind: FactorKind,
     n: usize,
     values: Vec<f64>,
@@ -18,7 +18,7 @@ pub(super) struct DenseFactor {
 
 impl DenseFactor {
     /// Factorises an `n x n` matrix.
-    pub(super) fn new(kind: FactorKind, n: usize, mut values: Vec<f64>) -> Result<DenseFactor> {
+    pub(in crate::native) fn new(kind: FactorKind, n: usize, mut values: Vec<f64>) -> Result<DenseFactor> {
         assert_eq!(values.len(), n * n);
         let (size, mut pivots, mut info) = (n as i32, vec![0; n], 0);
         let leading = size.max(1);
@@ -46,7 +46,7 @@ impl DenseFactor {
     }
 
     /// Overwrites right-hand sides, column by column, with the solutions, of the transposed matrix where that is asked for.
-    pub(super) fn solve(&self, columns: &mut [f64], transposed: bool) {
+    pub(in crate::native) fn solve(&self, columns: &mut [f64], transposed: bool) {
         match self.kind {
             FactorKind::Unsymmetric if columns.len() <= FEW * self.n => {
                 columns.chunks_mut(self.n.max(1)).for_each(|x| self.solve_one(x, transposed));
@@ -95,7 +95,7 @@ impl DenseFactor {
     }
 
     /// Number of negative eigenvalues, by Sylvester's law of inertia: of D, whose 2 x 2 blocks have one each.
-    pub(super) fn n_negative(&self) -> usize {
+    pub(in crate::native) fn n_negative(&self) -> usize {
         let (mut i, mut count) = (0, 0);
         while i < self.n {
             let is_pair = self.pivots[i] < 0;
@@ -106,13 +106,13 @@ impl DenseFactor {
     }
 
     /// Operations of the factorisation.
-    pub(super) fn flops(&self) -> f64 {
+    pub(in crate::native) fn flops(&self) -> f64 {
         let cube = (self.n as f64).powi(3);
         cube / if self.kind == FactorKind::Symmetric { 3.0 } else { 1.5 }
     }
 
     /// Entries that are kept.
-    pub(super) fn n_entries(&self) -> usize {
+    pub(in crate::native) fn n_entries(&self) -> usize {
         self.values.len()
     }
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use squeal_sys as sys;
 
-use super::Comm;
+use crate::native::Comm;
 use crate::{Error, Result};
 
 const MB: f64 = 1024.0 * 1024.0;
@@ -33,7 +33,7 @@ pub fn available_mb(comm: &Comm) -> f64 {
 }
 
 /// Whether the ranks together may reserve so much address space, MB, and use so much of it. Collective.
-pub(super) fn has_room(comm: &Comm, used_mb: f64, reserved_mb: f64) -> bool {
+pub(in crate::native) fn has_room(comm: &Comm, used_mb: f64, reserved_mb: f64) -> bool {
     let each = -comm.max(-address_space_mb().unwrap_or(f64::INFINITY));
     has_mb(comm, used_mb) && reserved_mb <= each * comm.size() as f64
 }
@@ -48,7 +48,7 @@ fn limits(comm: &Comm) -> (f64, &'static str) {
 }
 
 /// Refuses a factor that the ranks together cannot hold. Collective.
-pub(super) fn require(comm: &Comm, needed_mb: f64) -> Result<()> {
+pub(in crate::native) fn require(comm: &Comm, needed_mb: f64) -> Result<()> {
     if has_mb(comm, needed_mb) {
         return Ok(());
     }

@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use squeal_sys as sys;
 
-use super::error::{check, collect};
+use crate::native::petsc::error::{check, collect};
 use crate::{Error, Result};
 
 /// The one initialisation of MPI, PETSc and SLEPc that a process may have. Ends when the last handle is dropped.
@@ -119,7 +119,7 @@ impl Comm {
         self.rank == 0
     }
 
-    pub(super) fn raw(&self) -> sys::MPI_Comm {
+    pub(in crate::native) fn raw(&self) -> sys::MPI_Comm {
         self.raw
     }
 

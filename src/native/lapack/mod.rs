@@ -1,5 +1,9 @@
 //! Small dense algebra by BLAS and LAPACK, column-major.
 
+mod factor;
+
+pub(in crate::native) use factor::DenseFactor;
+
 use num_complex::Complex64;
 use squeal_sys as sys;
 
@@ -7,7 +11,7 @@ use crate::{Error, Result};
 
 /// So many columns are multiplied one by one, where the matrix has so few entries that it stays in the cache: for more, BLAS copies the matrix in
 /// an order of its own first.
-pub(super) const FEW: usize = 6;
+pub(in crate::native) const FEW: usize = 6;
 const CACHED: usize = 1 << 20;
 
 /// `C = op(A) B` with A of `rows x inner` (or its transpose where `transposed`), B of `inner x columns`. Not collective.

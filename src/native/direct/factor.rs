@@ -4,9 +4,9 @@
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
 
-use super::dense_factor::DenseFactor;
 use super::mumps::{Mumps, Precision};
-use super::{Matrix, Vector, memory};
+use crate::native::lapack::DenseFactor;
+use crate::native::{Matrix, Vector, machine};
 use crate::{Error, Result};
 
 /// Which factors are made.
@@ -125,13 +125,13 @@ impl Factor {
         self.stats.n_analyses += 1;
         self.stats.analysis_seconds += start.elapsed().as_secs_f64();
         let [touched, reserved] = [TOUCHED, 1.0].map(|share| share * self.stats.estimated_mb + self.left_mb);
-        if !memory::has_room(a.comm(), touched, reserved) {
+        if !machine::has_room(a.comm(), touched, reserved) {
             mumps.set_icntl(22, 1);
             self.stats.out_of_core = true;
             self.stats.estimated_mb = mumps.infog(27);
         }
         self.sparse = Some(RefCell::new(mumps));
-        memory::require(a.comm(), self.stats.estimated_mb)
+        machine::require(a.comm(), self.stats.estimated_mb)
     }
 
     /// From now on an analysis chooses to keep the factor out of core unless so much memory is left beside it, MB. Not collective.
@@ -201,7 +201,7 @@ impl Factor {
     }
 
     /// The factor of a densely stored matrix.
-    pub(super) fn dense(&self) -> Option<&DenseFactor> {
+    pub(in crate::native) fn dense(&self) -> Option<&DenseFactor> {
         self.dense.as_ref()
     }
 
@@ -230,7 +230,13 @@ impl Factor {
     }
 
     /// This rank's rows of right-hand sides and solutions, column after column, with A or its transpose.
-    pub(super) fn solve_columns(&self, b: &[f64], x: &mut [f64], n_columns: usize, transposed: bool) -> Result<()> {
+    pub(in crate::native) fn solve_columns(
+        &self,
+        b: &[f64],
+        x: &mut [f64],
+        n_columns: usize,
+        transposed: bool,
+    ) -> Result<()> {
         let start = Instant::now();
         self.sparse.as_ref().expect("factorised before").borrow_mut().solve(b, x, n_columns, transposed)?;
         self.count(n_columns, start);

@@ -1,15 +1,21 @@
 //! Blocks of vectors: one pass over a matrix or a factor for many right-hand sides.
 
+mod noise;
+mod product;
+
+pub use noise::Noise;
+
 use std::ops::Range;
 use std::ptr;
 
 use nalgebra::DMatrix;
 use squeal_sys as sys;
 
-use super::error::check;
-use super::{Comm, Factor, Matrix, Vector};
-use super::{dense, product};
 use crate::Result;
+use crate::native::lapack;
+use crate::native::petsc::error::check;
+use crate::native::petsc::{DEFAULT, DETERMINE};
+use crate::native::{Comm, Factor, Matrix, Vector};
 
 /// Columns distributed over the ranks by rows, column-major on each.
 #[derive(Clone)]
@@ -42,8 +48,8 @@ impl View {
             check(sys::MatCreateDense(
                 block.comm.raw(),
                 rows,
-                super::DETERMINE,
-                super::DETERMINE,
+                DETERMINE,
+                DETERMINE,
                 n_columns,
                 values.add(columns.start * block.n_local),
                 &mut raw,
@@ -164,7 +170,7 @@ impl Block {
         let (x, sizes) = (&x.values[columns.start * n..columns.end * n], [n, n, columns.len()]);
         for (i, a) in matrices.iter().enumerate() {
             let to = &mut self.values[i * x.len()..][..x.len()];
-            a.with_dense_values(|a| dense::add_product(false, sizes, a, x, to))?;
+            a.with_dense_values(|a| lapack::add_product(false, sizes, a, x, to))?;
         }
         Ok(())
     }
@@ -179,7 +185,7 @@ impl Block {
         }
         let mut product = self.like(self.n_columns);
         let sizes = [self.n_local, self.n_local, self.n_columns];
-        a.with_dense_values(|a| dense::multiply(true, sizes, a, &self.values, &mut product.values))?;
+        a.with_dense_values(|a| lapack::multiply(true, sizes, a, &self.values, &mut product.values))?;
         Ok(product)
     }
 
@@ -192,7 +198,7 @@ impl Block {
         // SAFETY: the multiplication reads `view` only and creates `product`, which is read and destroyed here.
         unsafe {
             let reuse = sys::MatReuse::MAT_INITIAL_MATRIX;
-            check(sys::MatTransposeMatMult(a.raw(), view.raw, reuse, f64::from(super::DEFAULT), &mut product))?;
+            check(sys::MatTransposeMatMult(a.raw(), view.raw, reuse, f64::from(DEFAULT), &mut product))?;
             let product = View { raw: product };
             let mut pointer = ptr::null_mut();
             check(sys::MatDenseGetArray(product.raw, &mut pointer))?;
@@ -285,7 +291,7 @@ impl Block {
         let gram = DMatrix::from_vec(n, n, self.gram(self));
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / gram[(j, j)].sqrt().max(f64::MIN_POSITIVE)).collect();
         let mut vectors = DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]);
-        let values = dense::symmetric_eigen(n, vectors.as_mut_slice())?;
+        let values = lapack::symmetric_eigen(n, vectors.as_mut_slice())?;
         let largest = values.last().copied().unwrap_or_default();
         let kept = (0..n).rev().take_while(|&j| values[j] > negligible.powi(2) * largest);
         let column = |j: usize| (0..n).map(move |i| (i, j));
@@ -313,7 +319,7 @@ impl Block {
     pub fn leading_gram(&self, n: usize, other: &Block) -> Vec<f64> {
         let mut product = vec![0.0; n * other.n_columns];
         let sizes = [n, self.n_local, other.n_columns];
-        dense::multiply(true, sizes, &self.values[..n * self.n_local], &other.values, &mut product);
+        lapack::multiply(true, sizes, &self.values[..n * self.n_local], &other.values, &mut product);
         self.comm.sum_all(&mut product);
         product
     }
@@ -325,7 +331,7 @@ impl Block {
     pub fn leading_combined(&self, n: usize, coefficients: &[f64], n_columns: usize) -> Block {
         let mut product = self.like(n_columns);
         let sizes = [self.n_local, n, n_columns];
-        dense::multiply(false, sizes, &self.values[..n * self.n_local], coefficients, &mut product.values);
+        lapack::multiply(false, sizes, &self.values[..n * self.n_local], coefficients, &mut product.values);
         product
     }
 
@@ -343,7 +349,7 @@ impl Block {
             strip.clear();
             (0..columns).for_each(|j| strip.extend_from_slice(&self.values[j * n..][rows.clone()]));
             product.resize(strip.len(), 0.0);
-            dense::multiply(false, [rows.len(), columns, columns], &strip, coefficients, &mut product);
+            lapack::multiply(false, [rows.len(), columns, columns], &strip, coefficients, &mut product);
             for j in 0..columns {
                 self.values[j * n..][rows.clone()].copy_from_slice(&product[j * rows.len()..][..rows.len()]);
             }
@@ -361,7 +367,7 @@ impl Block {
     /// Where the coefficients do not have as many rows as `other` has columns.
     pub fn subtract(&mut self, other: &Block, coefficients: &[f64]) {
         let sizes = [self.n_local, other.n_columns, self.n_columns];
-        dense::subtract_product(sizes, &other.values, coefficients, &mut self.values);
+        lapack::subtract_product(sizes, &other.values, coefficients, &mut self.values);
     }
 
     /// `self += a other`. Not collective.

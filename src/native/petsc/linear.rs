@@ -7,8 +7,9 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Comm, Matrix, Vector};
+use super::{Matrix, Vector};
 use crate::Result;
+use crate::native::Comm;
 
 /// `x = M^-1 b` for a neighbour M of the matrix.
 pub type Inverse<'a> = &'a mut dyn FnMut(&Vector, &mut Vector) -> Result<()>;

@@ -5,14 +5,14 @@
 //! its own orderings.
 
 use super::metis::{self, Graph};
-use super::{Comm, Matrix};
 use crate::Result;
+use crate::native::{Comm, Matrix};
 
 /// For each equation of all ranks its place in the order, from 1, on the first rank; nothing on the others. Collective.
 ///
 /// # Errors
 /// PETSc's and METIS's.
-pub(super) fn nested_dissection(a: &Matrix) -> Result<Vec<i32>> {
+pub(in crate::native) fn nested_dissection(a: &Matrix) -> Result<Vec<i32>> {
     let comm = a.comm();
     let rows = columns_of_rows(a)?;
     let firsts: Vec<usize> = (0..rows.len()).filter(|&i| i == 0 || rows[i] != rows[i - 1]).collect();

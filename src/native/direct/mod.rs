@@ -1,0 +1,10 @@
+//! Direct factors of sparse matrices by MUMPS, with orderings by METIS, and of densely stored ones by LAPACK.
+
+mod factor;
+mod metis;
+mod mumps;
+mod ordering;
+
+pub use factor::{Factor, FactorKind, FactorStats};
+pub use metis::partition;
+pub use mumps::Precision;

@@ -1,0 +1,22 @@
+//! PETSc and SLEPc: vectors, matrices, and what KSP, SNES and PEP solve on the caller's trait objects.
+//!
+//! [`Vector`] and [`Matrix`] own one PETSc object each. [`linear`], [`nonlinear`] and [`eigen`] register callbacks inside `solve`, which are
+//! forgotten when it returns.
+
+pub mod eigen;
+pub mod error;
+pub mod linear;
+mod matrix;
+pub mod nonlinear;
+mod pattern;
+mod vector;
+
+pub use matrix::Matrix;
+pub(in crate::native) use matrix::Part;
+pub use pattern::{Csr, Rows};
+pub use vector::{Gather, Vector};
+
+/// PETSc's "work it out": a macro in its headers.
+pub(in crate::native) const DETERMINE: i32 = -1;
+/// PETSc's "choose for me".
+pub(in crate::native) const DEFAULT: i32 = -2;
