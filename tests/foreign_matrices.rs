@@ -10,6 +10,7 @@ mod program;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
+use program::blocks::Pair;
 use program::{Place, Said};
 
 /// `omega` of the chain, k = 1e6 N/m, m = 1 kg.
@@ -183,10 +184,11 @@ fn exported_matrices_have_the_same_modes() {
     }
 }
 
-/// A free part has six rigid motions and, through export, the same elastic modes; measured shapes find their modes.
+/// A free part has six rigid motions and, through export, the same elastic modes; the sweep of the model concerns contacts, of which it has none.
 #[test]
 fn a_free_part_and_its_export() {
-    let place = Place::blocks();
+    let sweep = "[sweep]\nfriction = { from = 0.1, to = 0.5, step = 0.1 }\n";
+    let place = Place::with_blocks(|text| text + sweep, &Pair::default());
     let said = place.run(&["modes", "brake.toml", "--part", "disc", "--band", "0:60000", "-o", "free"]);
     assert_eq!(said.code, 0, "{}", said.err);
     assert!(said.out.contains("6 rigid motions") && said.out.contains("none is missing"), "{}", said.out);

@@ -45,7 +45,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model of one part alone, which nothing holds, touches or loads.
+    /// The model of one part alone, which nothing constrains, touches or loads, so that there is nothing to sweep either.
     ///
     /// # Errors
     /// [`Error::Input`] where there is no such part.
@@ -62,6 +62,8 @@ impl Model {
         self.connectors.clear();
         self.loads.clear();
         self.swept.clear();
+        self.frictions.clear();
+        self.sweep_line = 0;
         self.reduction = None;
         Ok(self)
     }

@@ -115,6 +115,16 @@ fn values_come_in_si_units_and_parts_in_the_order_of_the_file() {
 }
 
 #[test]
+fn a_part_alone_has_nothing_to_sweep() {
+    let model = parsed(GOOD).unwrap();
+    assert!(!model.frictions.is_empty() && model.sweep_line > 0);
+    let part = model.only("disc").unwrap();
+    assert_eq!((part.parts.len(), part.contacts.len(), part.loads.len()), (1, 0, 0));
+    assert!(part.swept.is_empty() && part.frictions.is_empty());
+    assert_eq!(part.sweep_line, 0);
+}
+
+#[test]
 fn a_missing_file_is_the_users_mistake() {
     let error = read(Path::new("no/such.toml")).unwrap_err();
     assert_eq!(error.exit_code(), 2);
