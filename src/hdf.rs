@@ -113,6 +113,12 @@ pub fn open(path: &Path, format: &Format) -> Result<File> {
     )))
 }
 
+/// Whether a file is of a kind, of whatever version. Not collective.
+pub fn is_of(path: &Path, format: &Format) -> bool {
+    let name = || File::open(path).and_then(|file| file.attr("format")?.read_scalar::<VarLenUnicode>());
+    is_hdf5(path) && name().is_ok_and(|name| name.as_str() == format.name)
+}
+
 /// What is told of a file that HDF5 cannot read to its end, or that does not fit together.
 pub fn damaged(path: &Path, format: &Format, reason: impl std::fmt::Display) -> Error {
     Error::input(format!("{} is incomplete or damaged: {reason}. {}", path.display(), format.advice))

@@ -327,6 +327,34 @@ fn an_output_folder_that_is_taken() {
     refused(&place, &["static", "brake.toml", "-o", "blocks.msh/run"], &says);
 }
 
+/// A file is replaced only by `--force`, and then only by its like: a wrong name after -o does not cost the model or the mesh.
+#[test]
+fn an_output_file_that_is_taken() {
+    let place = Place::blocks();
+    let check = |file: &str, force: &[&'static str]| -> Vec<String> {
+        ["check", "brake.toml", "--contacts", "4", "-o", file]
+            .iter()
+            .chain(force)
+            .map(|&word| word.to_owned())
+            .collect()
+    };
+    let run = |arguments: Vec<String>| place.run(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    for (file, force) in [("blocks.msh", &[][..]), ("brake.toml", &[]), ("blocks.msh", &["--force"])] {
+        let before = place.read(file);
+        is_refusal(&run(check(file, force)), &[file, "exists and is not a VTU file of squeal: it is not replaced"]);
+        assert_eq!(place.read(file), before);
+    }
+    assert_eq!(run(check("cells.vtu", &[])).code, 0);
+    is_refusal(&run(check("cells.vtu", &[])), &["cells.vtu exists. Use --force to replace it"]);
+    assert_eq!(run(check("cells.vtu", &["--force"])).code, 0);
+    assert_eq!(place.list(""), ["blocks.msh", "brake.toml", "cells.vtu"], "no draft is left");
+    let reduce = ["reduce", "brake.toml", "--contacts", "4", "--force", "-o", "blocks.msh"];
+    refused(&place, &reduce, &["blocks.msh exists and is not a super-element of squeal: it is not replaced"]);
+    assert_eq!(place.run(&["stability", "brake.toml", "-o", "run"]).code, 0);
+    let report = ["report", "run", "--force", "-o", "brake.toml"];
+    refused(&place, &report, &["brake.toml exists and is not a report of squeal: it is not replaced"]);
+}
+
 #[test]
 fn options_that_are_none() {
     let place = Place::blocks();

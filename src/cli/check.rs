@@ -1,25 +1,30 @@
 //! `squeal check`: what a model is, before anything is computed.
 
 use std::fmt::Write;
-use std::fs::File;
-use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
 use serde_json::{Value as Json, json};
 
+use crate::Result;
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
 use crate::model::LoadKind;
 use crate::native::{Comm, Factor, FactorKind};
 use crate::report::contact_cells::ContactCells;
+use crate::report::files::write_whole;
+use crate::report::overwrite::may_write_file;
+use crate::report::vtu;
 use crate::sweep::Brake;
-use crate::{Error, Result};
 
-use super::Shell;
 use super::ranked::Ranked;
+use super::{Check, Shell};
 
-pub fn run(shell: &Shell, path: &Path, n_contacts: Option<usize>, picture: Option<&Path>) -> Result<()> {
+pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     let comm = shell.comm;
+    let Check { model: path, contacts: n_contacts, output, force } = arguments;
+    let (picture, n_contacts) = (output.as_deref(), *n_contacts);
+    let may_draw = || picture.map_or(Ok(()), |file| may_write_file(file, &vtu::KIND, *force));
+    comm.agree(if comm.is_root() { may_draw() } else { Ok(()) })?;
     let brake = Brake::read_reduced(comm, path, n_contacts)?;
     let mut told = Told { text: format!("{}\n\n", brake.model.title), json: json!({"title": brake.model.title}) };
     parts(&mut told, comm, &brake);
@@ -175,9 +180,8 @@ fn layouts(told: &mut Told, brake: &Brake) {
 
 /// Writes the cells of the reference nodes.
 fn draw(file: &Path, brake: &Brake) -> Result<()> {
-    let mut out = File::create(file).map(BufWriter::new).map_err(Error::io(file))?;
     let picture = ContactCells::new(&brake.mesh, &brake.interface);
-    picture.grid().write(&mut out).and_then(|()| out.flush()).map_err(Error::io(file))
+    write_whole(file, |mut out| picture.grid().write(&mut out))
 }
 
 fn supports(told: &mut Told, brake: &Brake) {

@@ -23,6 +23,7 @@ use num_complex::Complex64;
 
 use crate::hdf::{self, Format, array, list, table, values};
 use crate::native::{Block, Comm, Vector};
+use crate::report::files::write_file;
 use crate::report::folder::{self, Folder, RESUME};
 use crate::results::{Value, file};
 use crate::sweep::{Snapshot, Spectrum, Sweep};
@@ -234,7 +235,7 @@ fn prepare(folder: &Folder, place: &Path, target: &Path, identity: &[(&str, Stri
     }
     folder.clear()?;
     let lines: String = identity.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
-    folder::write_file(&place.join(STUDY), |out| out.write_all(lines.as_bytes()))?;
+    write_file(&place.join(STUDY), |out| out.write_all(lines.as_bytes()))?;
     Ok(0)
 }
 

@@ -88,14 +88,8 @@ impl Shell<'_> {
 enum Command {
     /// Tell what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
     Check {
-        /// The model file
-        model: PathBuf,
-        /// Show how so many reference pairs would be spread over the sliding contacts
-        #[arg(long, value_name = "N")]
-        contacts: Option<usize>,
-        /// A VTU file that shows the cells of the reference nodes (with --contacts)
-        #[arg(short, long, value_name = "FILE", requires = "contacts")]
-        output: Option<PathBuf>,
+        #[command(flatten)]
+        check: Check,
     },
     /// Find the static equilibrium under load, contact and friction
     Static {
@@ -162,6 +156,22 @@ enum Command {
         #[arg(long)]
         force: bool,
     },
+}
+
+/// What `check` takes.
+#[derive(Args)]
+struct Check {
+    /// The model file
+    model: PathBuf,
+    /// Show how so many reference pairs would be spread over the sliding contacts
+    #[arg(long, value_name = "N")]
+    contacts: Option<usize>,
+    /// A VTU file that shows the cells of the reference nodes (with --contacts)
+    #[arg(short, long, value_name = "FILE", requires = "contacts")]
+    output: Option<PathBuf>,
+    /// Replace an earlier VTU file
+    #[arg(long, requires = "output")]
+    force: bool,
 }
 
 /// What `reduce` takes.
@@ -311,7 +321,7 @@ fn tell_usage(usage: &clap::Error) -> i32 {
 
 fn run(command: &Command, shell: &Shell) -> Result<()> {
     match command {
-        Command::Check { model, contacts, output } => check::run(shell, model, *contacts, output.as_deref()),
+        Command::Check { check } => check::run(shell, check),
         Command::Static { run } => statics::run(shell, run),
         Command::Export { run, format, part } => export::run(shell, run, *format, part.as_deref()),
         Command::Modes { modes } => modes::run(shell, modes),

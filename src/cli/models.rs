@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::comparison::{Model, Sizes, Study, n_contacts};
 use crate::native::Comm;
 use crate::reduction;
-use crate::report::folder::write_file;
+use crate::report::files::{write_file, write_whole};
 use crate::report::{study as tables, study_plot};
 use crate::results::{Results, file};
 use crate::sweep::Brake;
@@ -291,9 +291,7 @@ impl Record {
 
     /// Appears whole or not at all.
     fn write(&self, place: &Path) -> Result<()> {
-        let (file, draft) = (place.join(PARTS), place.join(format!(".{PARTS}")));
         let text = toml::to_string(self).expect("texts and numbers");
-        write_file(&draft, |out| out.write_all(text.as_bytes()))?;
-        std::fs::rename(&draft, &file).map_err(Error::io(&file))
+        write_whole(&place.join(PARTS), |out| out.write_all(text.as_bytes()))
     }
 }

@@ -9,11 +9,15 @@ use crate::native::{Comm, FactorStats};
 use crate::reduction::craig_bampton::{Costs, Event};
 use crate::reduction::file;
 use crate::reduction::super_element::SuperElement;
+use crate::report::overwrite::{FileKind, may_write_file};
 use crate::sweep::{Brake, Sweep};
 use crate::{Error, Result};
 
 use super::progress::Progress;
 use super::{Reduce, Shell};
+
+/// What `reduce` writes.
+const SUPER_ELEMENT: FileKind = FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
 
 pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let (comm, start) = (shell.comm, Instant::now());
@@ -25,7 +29,7 @@ pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
     };
     let limit = arguments.limit.unwrap_or_else(|| brake.reduction_limit());
     let place = arguments.file();
-    comm.agree(may_write(&place, arguments.force))?;
+    comm.agree(if comm.is_root() { may_write_file(&place, &SUPER_ELEMENT, arguments.force) } else { Ok(()) })?;
     let progress = Progress::new(comm, 1, false);
     progress.say("assembling");
     let system = brake.assemble(comm, &brake.families()?)?;
@@ -35,7 +39,12 @@ pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let (_, seconds) = (drop(sweep), start.elapsed().as_secs_f64());
     let (element, surface, costs) =
         brake.reduce(comm, &system, &equilibrium, limit, &mut |event| say(&progress, event))?;
-    comm.agree(if comm.is_root() { file::write(&place, &element, &surface) } else { Ok(()) })?;
+    let write = || {
+        // Something may have come to that place since.
+        may_write_file(&place, &SUPER_ELEMENT, arguments.force)?;
+        file::write(&place, &element, &surface)
+    };
+    comm.agree(if comm.is_root() { write() } else { Ok(()) })?;
     progress.finish();
     let in_all = start.elapsed().as_secs_f64();
     shell.tell(&text(&element, &costs, seconds, in_all, &place), || document(&element, &costs, in_all, &place))
@@ -53,14 +62,6 @@ fn read(comm: &Comm, arguments: &Reduce) -> Result<Brake> {
     })?;
     brake.reduce_contacts(n)?;
     Ok(brake)
-}
-
-fn may_write(place: &Path, force: bool) -> Result<()> {
-    if place.exists() && !force {
-        let what = format!("{} exists. Use --force to replace it, or --output for another file", place.display());
-        return Err(Error::input(what));
-    }
-    Ok(())
 }
 
 impl Reduce {

@@ -1,6 +1,5 @@
 //! `squeal report`: the page that people look at, its figures as files, and instabilities in motion for ParaView.
 
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -9,10 +8,12 @@ use serde_json::json;
 
 use super::Shell;
 use super::output::RESULTS;
+use crate::report::files::write_whole;
 use crate::report::findings::Findings;
-use crate::report::folder::{adopt, write_file};
-use crate::report::raster::Painter;
-use crate::report::{page, paraview, plots, words};
+use crate::report::folder::adopt;
+use crate::report::overwrite::{FileKind, SIGNATURE, is_free, may_write_file};
+use crate::report::raster::{self, Painter};
+use crate::report::{page, paraview, plots, vtu, words};
 use crate::results::file;
 use crate::{Error, Result};
 
@@ -50,8 +51,8 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     let source = if report.results.is_dir() { report.results.join(RESULTS) } else { report.results.clone() };
     let home = source.parent().unwrap_or(Path::new(""));
     let html = report.output.clone().unwrap_or_else(|| home.join("report.html"));
-    let targets = [Some(&html), report.plots.as_ref(), report.paraview.as_ref()];
-    targets.into_iter().flatten().try_for_each(|target| may_write(target, report.force))?;
+    may_write_file(&html, &page::KIND, report.force)?;
+    [&report.plots, &report.paraview].into_iter().flatten().try_for_each(|folder| may_fill(folder, report.force))?;
     let results = file::read(&source)?;
     if results.about.band[1] <= 0.0 {
         return Err(Error::input(format!(
@@ -61,62 +62,69 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     }
     let findings = Findings::new(&results);
     let page = page::page(&results)?;
-    let mut written = vec![html.clone()];
-    put(&html, |out| out.write_all(page.as_bytes()))?;
-    report.plots.as_ref().map_or(Ok(()), |folder| write_plots(folder, &findings, &mut written))?;
-    let cycles = report.paraview.as_ref().map(|folder| write_cycles(folder, &findings, &mut written)).transpose()?;
-    adopt(home, &written)?;
+    let mut writer = Writer { force: report.force, written: Vec::new() };
+    writer.put(html.clone(), &page::KIND, |out| out.write_all(page.as_bytes()))?;
+    report.plots.as_ref().map_or(Ok(()), |folder| writer.plots(folder, &findings))?;
+    let cycles = report.paraview.as_ref().map(|folder| writer.cycles(folder, &findings)).transpose()?;
+    adopt(home, &writer.written)?;
     // A person opens the page, the folder of figures and the collections.
     let shown = [html].into_iter().chain(report.plots.clone()).chain(cycles.into_iter().flatten());
     Ok((words::headline(&findings), shown.collect()))
 }
 
-fn may_write(target: &Path, force: bool) -> Result<()> {
-    let is_free = fs::read_dir(target).map_or(!target.exists(), |mut entries| entries.next().is_none());
-    match is_free || force {
-        true => Ok(()),
-        false => {
-            Err(Error::input(format!("{} exists. Use --force to replace it, or choose another", target.display())))
+/// Whether files may be added to a folder; whether each of them may be replaced, its kind decides.
+fn may_fill(folder: &Path, force: bool) -> Result<()> {
+    let place = folder.display();
+    match (folder.is_file(), is_free(folder) || force) {
+        (true, _) => Err(Error::input(format!("{place} is a file. Give the name of a folder"))),
+        (_, true) => Ok(()),
+        (_, false) => {
+            Err(Error::input(format!("{place} exists. Use --force to replace files in it, or choose another")))
         }
     }
 }
 
-/// A file that appears when it is complete.
-fn put(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    let name = path.file_name().ok_or_else(|| Error::input(format!("{} is no name of a file", path.display())))?;
-    let draft = path.with_file_name(format!(".{}.partial-{}", name.to_string_lossy(), std::process::id()));
-    write_file(&draft, body).and_then(|()| fs::rename(&draft, path).map_err(Error::io(path))).inspect_err(|_| {
-        // Best effort: half a file is of no use to anyone.
-        let _ = fs::remove_file(&draft);
-    })
+/// Writes files, each in place of its like at most.
+struct Writer {
+    force: bool,
+    written: Vec<PathBuf>,
 }
 
-fn write_plots(folder: &Path, findings: &Findings, written: &mut Vec<PathBuf>) -> Result<()> {
-    let painter = Painter::new()?;
-    for figure in plots::figures(findings) {
-        let files = [("svg", figure.svg.clone().into_bytes()), ("png", painter.png(&figure.svg)?)];
-        for (kind, bytes) in files {
-            let path = folder.join(format!("{}.{kind}", figure.name));
-            put(&path, |out| out.write_all(&bytes))?;
-            written.push(path);
-        }
+impl Writer {
+    fn put(
+        &mut self,
+        path: PathBuf,
+        kind: &FileKind,
+        body: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+    ) -> Result<()> {
+        may_write_file(&path, kind, self.force)?;
+        write_whole(&path, body)?;
+        self.written.push(path);
+        Ok(())
     }
-    Ok(())
-}
 
-/// Writes the cycles, and gives their collections.
-fn write_cycles(folder: &Path, findings: &Findings, written: &mut Vec<PathBuf>) -> Result<Vec<PathBuf>> {
-    let mut collections = Vec::new();
-    for cycle in paraview::cycles(findings) {
-        for moment in 0..paraview::MOMENTS {
-            let path = folder.join(cycle.file(moment));
-            put(&path, |out| cycle.write_moment(moment, out))?;
-            written.push(path);
+    fn plots(&mut self, folder: &Path, findings: &Findings) -> Result<()> {
+        let painter = Painter::new()?;
+        for figure in plots::figures(findings) {
+            let [svg, png] = ["svg", "png"].map(|ending| folder.join(format!("{}.{ending}", figure.name)));
+            self.put(svg, &plots::KIND, |out| write!(out, "{SIGNATURE}\n{}", figure.svg))?;
+            let pixels = painter.png(&figure.svg)?;
+            self.put(png, &raster::KIND, |out| out.write_all(&pixels))?;
         }
-        let path = folder.join(format!("{}.pvd", cycle.name));
-        put(&path, |out| cycle.write_collection(out))?;
-        collections.push(path);
+        Ok(())
     }
-    written.extend(collections.iter().cloned());
-    Ok(collections)
+
+    /// Writes the cycles, and gives their collections.
+    fn cycles(&mut self, folder: &Path, findings: &Findings) -> Result<Vec<PathBuf>> {
+        let mut collections = Vec::new();
+        for cycle in paraview::cycles(findings) {
+            for moment in 0..paraview::MOMENTS {
+                self.put(folder.join(cycle.file(moment)), &vtu::KIND, |out| cycle.write_moment(moment, out))?;
+            }
+            let path = folder.join(format!("{}.pvd", cycle.name));
+            self.put(path.clone(), &paraview::KIND, |out| cycle.write_collection(out))?;
+            collections.push(path);
+        }
+        Ok(collections)
+    }
 }

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use crate::Result;
 use crate::native::Comm;
-use crate::report::folder::{self, Folder};
+use crate::report::files::write_file;
+use crate::report::folder::Folder;
 use crate::report::vtu::{Array, Cells, Grid};
 use crate::sweep::Brake;
 
@@ -72,7 +73,7 @@ impl Drawing {
             return Ok(());
         }
         let piece = |rank: usize| format!("pieces/{name}.{rank}.vtu");
-        comm.agree(folder::write_file(&draft.join(piece(comm.rank())), |mut out| grid.write(&mut out)))?;
+        comm.agree(write_file(&draft.join(piece(comm.rank())), |mut out| grid.write(&mut out)))?;
         let pieces: Vec<String> = (0..comm.size()).map(piece).collect();
         let list = folder.map_or(Ok(()), |folder| {
             folder.write(&format!("{name}.pvtu"), |mut out| grid.write_list(&pieces, &mut out))

@@ -57,6 +57,11 @@ struct PairText {
     n_contacts: usize,
 }
 
+/// Whether a file is a super-element, of whatever version. Not collective.
+pub fn is_super_element(path: &Path) -> bool {
+    hdf::is_of(path, &FORMAT)
+}
+
 /// Writes a super-element with its surface. Not collective.
 ///
 /// # Errors

@@ -1,19 +1,27 @@
-//! The folder of a run: it appears as a whole or not at all, and is replaced only where all in it is ours.
+//! The folder of a run: it appears as a whole or not at all, and replaces only what an earlier run wrote.
 //!
 //! Until then its files are in a hidden neighbour, `.NAME.unfinished`, which a run that is killed leaves behind and the next run to the
-//! same place finds. What a run needs to go on is in that neighbour's folder [`RESUME`].
+//! same place finds. What a run needs in order to resume is in that neighbour's folder [`RESUME`].
 
 use std::cell::Cell;
 use std::fs::{self, File, TryLockError};
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::files::{PARTIAL, behind_link, write_file, write_whole};
+pub use super::overwrite::RESUME;
+use super::overwrite::{MARK, entries, foreign_entry, is_free, listed, may_write_folder, remove_results};
 use crate::{Error, Result};
 
 /// A results folder under construction, whose hidden neighbour takes its name at the end.
 pub struct Folder {
+    /// The folder as the user names it.
+    place: PathBuf,
+    /// The same, or what the symbolic link at `place` points to.
     target: PathBuf,
     draft: PathBuf,
+    /// Whether an earlier run's results may be replaced.
+    force: bool,
     /// Whether the neighbour stays where the run ends early.
     keeps: Cell<bool>,
     done: bool,
@@ -21,22 +29,18 @@ pub struct Folder {
     _lock: File,
 }
 
-/// Marks a folder as one of ours and lists what is in it, a line each: `--force` removes nothing else.
-const MARK: &str = ".squeal";
-/// What a run needs to go on, in an unfinished folder.
-pub const RESUME: &str = ".resume";
 /// Is locked by the run that writes.
 const LOCK: &str = "lock";
 
 impl Folder {
-    /// Starts a folder, or finds what an earlier run has left of it; nothing is created at `target` yet.
+    /// Starts a folder, or finds what an earlier run has left of it; nothing is created at `place` yet.
     ///
     /// # Errors
-    /// [`Error::Input`] where `target` holds something already, unless it is an earlier run's, holds nothing else,
+    /// [`Error::Input`] where something is at `place` already, unless it is an earlier run's, nothing else is in it,
     /// and `force` is set; where another run is writing it.
-    pub fn open(target: &Path, force: bool) -> Result<Folder> {
-        Self::may_write(target, force)?;
-        let draft = unfinished(target)?;
+    pub fn open(place: &Path, force: bool) -> Result<Folder> {
+        may_write_folder(place, force)?;
+        let draft = unfinished(place)?;
         let resume = draft.join(RESUME);
         if !resume.exists() && names(&draft).is_ok_and(|names| !names.is_empty()) {
             let what = format!("{} holds something that is not of squeal", draft.display());
@@ -45,42 +49,12 @@ impl Folder {
         fs::create_dir_all(&resume).map_err(|reason| {
             Error::input(format!(
                 "cannot create the output folder {}: {reason}. Choose another with --output",
-                target.display()
+                place.display()
             ))
         })?;
-        let lock = lock(&resume.join(LOCK), target)?;
-        Ok(Folder { target: target.to_owned(), draft, keeps: Cell::new(false), done: false, _lock: lock })
-    }
-
-    /// Whether a run may write to `target`; asked before a long computation.
-    ///
-    /// # Errors
-    /// See [`Folder::open`].
-    pub fn may_write(target: &Path, force: bool) -> Result<()> {
-        let occupied = fs::read_dir(target).map_or(target.exists(), |mut entries| entries.next().is_some());
-        if !occupied {
-            return Ok(());
-        }
-        let place = target.display();
-        if !target.is_dir() {
-            return Err(Error::input(format!("{place} is a file. Choose another output folder with --output")));
-        }
-        let Ok(ours) = fs::read_to_string(target.join(MARK)) else {
-            let what = format!("{place} exists and is not a results folder of squeal");
-            return Err(Error::input(format!("{what}. Choose another with --output")));
-        };
-        if !force {
-            return Err(Error::input(format!(
-                "{place} holds the results of another run. Use --force to replace them, or --output for another folder"
-            )));
-        }
-        match stranger(target, &ours).map_err(Error::io(target))? {
-            None => Ok(()),
-            Some(name) => Err(Error::input(format!(
-                "{place} holds {name}, which is not of the run before and would be lost. Move it, or choose another folder \
-                 with --output"
-            ))),
-        }
+        let lock = lock(&resume.join(LOCK), place)?;
+        let target = behind_link(place);
+        Ok(Folder { place: place.to_owned(), target, draft, force, keeps: Cell::new(false), done: false, _lock: lock })
     }
 
     /// Where files are until the folder has its name.
@@ -117,47 +91,83 @@ impl Folder {
         write_file(&self.draft.join(name), body)
     }
 
-    /// Gives the folder its name, in place of an earlier run's.
+    /// Gives the folder its name, in place of an earlier run's. What has come to that place since the run began is not lost: the
+    /// results stay in the neighbour.
     ///
     /// # Errors
-    /// The system's, with the folder's path.
+    /// [`Error::Input`] where the place is no longer free, with where the results are; the system's, with the folder's path.
     pub fn finish(mut self) -> Result<()> {
-        let mark = self.draft.join(MARK);
-        let files = names(&self.draft).map_err(Error::io(&self.draft))?;
-        // What a run had half written when it was killed.
-        let (half, kept): (Vec<_>, Vec<_>) = files.iter().partition(|name| name.contains(".partial-"));
-        half.iter().try_for_each(|name| remove(&self.draft.join(name))).map_err(Error::io(&self.draft))?;
-        let kept = kept.iter().filter(|name| **name != RESUME);
-        fs::write(&mark, kept.map(|name| format!("{name}\n")).collect::<String>()).map_err(Error::io(&mark))?;
-        if self.target.exists() {
-            fs::remove_dir_all(&self.target).map_err(Error::io(&self.target))?;
+        self.list()?;
+        self.keep();
+        let aside = self.move_aside().map_err(|error| self.elsewhere(&error))?;
+        // A folder that is not empty is never replaced by a rename.
+        if let Err(reason) = fs::rename(&self.draft, &self.target) {
+            aside.iter().for_each(|aside| drop(fs::rename(aside, &self.target)));
+            return Err(self.elsewhere(&Error::io(&self.place)(reason)));
         }
-        fs::rename(&self.draft, &self.target).map_err(Error::io(&self.target))?;
         self.done = true;
         let resume = self.target.join(RESUME);
-        fs::remove_dir_all(&resume).map_err(Error::io(&resume))
+        fs::remove_dir_all(&resume).map_err(Error::io(&resume))?;
+        aside.map_or(Ok(()), |aside| remove_results(&aside))
+    }
+
+    /// Writes the mark, and removes what a run had half written when it was killed.
+    fn list(&self) -> Result<()> {
+        let is_partial = |name: &String| name.contains(PARTIAL);
+        let (half, whole): (Vec<_>, Vec<_>) = entries(&self.draft)?.into_iter().partition(is_partial);
+        half.iter().try_for_each(|name| remove(&self.draft.join(name))).map_err(Error::io(&self.draft))?;
+        let lines = whole.iter().filter(|name| *name != MARK).map(|name| format!("{name}\n"));
+        write_file(&self.draft.join(MARK), |out| out.write_all(lines.collect::<String>().as_bytes()))
+    }
+
+    /// Moves an earlier run's results away, and gives where they are.
+    fn move_aside(&self) -> Result<Option<PathBuf>> {
+        may_write_folder(&self.target, self.force)?;
+        if is_free(&self.target) {
+            return Ok(None);
+        }
+        let aside = neighbour(&self.target, "replaced")?;
+        fs::rename(&self.target, &aside).map_err(Error::io(&self.place))?;
+        // From here on nobody writes to it under its name.
+        match foreign_entry(&aside)? {
+            None => Ok(Some(aside)),
+            Some(name) => {
+                fs::rename(&aside, &self.target).map_err(Error::io(&aside))?;
+                Err(Error::input(format!("{} holds {name}, which would be lost", self.place.display())))
+            }
+        }
+    }
+
+    /// An error after which the results are in the neighbour.
+    fn elsewhere(&self, error: &Error) -> Error {
+        let draft = self.draft.display();
+        Error::input(format!("{error}\nThe results are complete in {draft}: rename that folder"))
     }
 }
 
-/// The hidden neighbour in which a folder is made.
+/// The hidden neighbour in which a folder is made: of what a symbolic link points to.
 ///
 /// # Errors
 /// [`Error::Input`] where the folder has no name.
-pub fn unfinished(target: &Path) -> Result<PathBuf> {
+pub fn unfinished(place: &Path) -> Result<PathBuf> {
+    neighbour(&behind_link(place), "unfinished")
+}
+
+fn neighbour(target: &Path, state: &str) -> Result<PathBuf> {
     let name = target
         .file_name()
         .and_then(|name| name.to_str())
         .ok_or_else(|| Error::input(format!("{} cannot be an output folder: give it a name", target.display())))?;
-    Ok(target.with_file_name(format!(".{name}.unfinished")))
+    Ok(target.with_file_name(format!(".{name}.{state}")))
 }
 
 /// Takes the lock of an unfinished folder.
-fn lock(path: &Path, target: &Path) -> Result<File> {
+fn lock(path: &Path, place: &Path) -> Result<File> {
     let file = File::options().create(true).append(true).open(path).map_err(Error::io(path))?;
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(Error::input(format!(
             "another run is writing {}. Wait for its end, or choose another folder with --output",
-            target.display()
+            place.display()
         ))),
         // Not every file system has locks.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
@@ -177,49 +187,20 @@ fn remove(path: &Path) -> std::io::Result<()> {
     if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
-/// Counts files that lie in a results folder as the folder's own, so that `--force` may replace them with it; also a folder in it that holds
-/// nothing else. Other folders and files are left as they are.
+/// Counts files that lie in a results folder as the folder's own, so that `--force` may replace them with it.
 ///
 /// # Errors
 /// The system's, with the path.
 pub fn adopt(folder: &Path, files: &[PathBuf]) -> Result<()> {
     let mark = folder.join(MARK);
-    let Ok(mut ours) = fs::read_to_string(&mark) else { return Ok(()) };
-    let first = |file: &PathBuf| file.strip_prefix(folder).ok()?.iter().next()?.to_str().map(String::from);
-    for name in files.iter().filter_map(first) {
-        if !ours.lines().any(|known| known == name) && holds_only(&folder.join(&name), files) {
-            ours += &format!("{name}\n");
-        }
+    if !mark.exists() {
+        return Ok(());
     }
-    fs::write(&mark, ours).map_err(Error::io(&mark))
-}
-
-/// Whether a path is one of these files, or a folder that holds nothing else.
-fn holds_only(path: &Path, files: &[PathBuf]) -> bool {
-    match fs::read_dir(path) {
-        Ok(entries) => entries.flatten().all(|entry| holds_only(&entry.path(), files)),
-        Err(_) => files.iter().any(|file| file == path),
-    }
-}
-
-/// Writes a file, and the folders to it where they are missing.
-///
-/// # Errors
-/// The system's, with the file's path.
-pub fn write_file(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    if let Some(parent) = path.parent() {
-        fs::create_dir_all(parent).map_err(Error::io(parent))?;
-    }
-    let mut out = BufWriter::new(File::create(path).map_err(Error::io(path))?);
-    body(&mut out).and_then(|()| out.flush()).map_err(Error::io(path))
-}
-
-/// The first entry of a folder that its list of our files does not have.
-fn stranger(folder: &Path, ours: &str) -> std::io::Result<Option<String>> {
-    let is_ours = |name: &String| {
-        name == MARK || name == RESUME || ours.lines().any(|file| file.split('/').next() == Some(name.as_str()))
-    };
-    Ok(names(folder)?.into_iter().find(|name| !is_ours(name)))
+    let mut ours = listed(folder);
+    ours.extend(files.iter().filter_map(|file| Some(file.strip_prefix(folder).ok()?.to_string_lossy().into_owned())));
+    ours.sort();
+    ours.dedup();
+    write_whole(&mark, |out| ours.iter().try_for_each(|name| writeln!(out, "{name}")))
 }
 
 impl Drop for Folder {
@@ -261,14 +242,14 @@ mod tests {
         Folder::open(&target, false).unwrap().finish().unwrap();
         let files = ["plots/a.svg", "moving/a/1.vtu", "report.html"].map(|name| target.join(name));
         files.iter().for_each(|file| write_file(file, |_| Ok(())).unwrap());
-        assert!(Folder::may_write(&target, true).is_err());
+        assert!(may_write_folder(&target, true).is_err());
         adopt(&target, &files).unwrap();
         adopt(&target, &files).unwrap();
-        Folder::may_write(&target, true).unwrap();
-        assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "plots\nmoving\nreport.html\n");
+        may_write_folder(&target, true).unwrap();
+        assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "moving/a/1.vtu\nplots/a.svg\nreport.html\n");
         write_file(&target.join("mine/notes.txt"), |_| Ok(())).unwrap();
         adopt(&target, &[target.join("mine/a.svg")]).unwrap();
-        assert!(Folder::may_write(&target, true).is_err());
+        assert!(may_write_folder(&target, true).is_err());
         adopt(place.path(), &files).unwrap();
         assert!(!place.path().join(MARK).exists());
     }
@@ -317,6 +298,59 @@ mod tests {
         assert!(message.contains("another run is writing"), "{message}");
         drop(folder);
         Folder::open(&target, false).unwrap();
+    }
+
+    /// A run during which the folder `run` changes; gives the error of its end, and what is in that folder then.
+    fn disturbed(force: bool, disturb: impl FnOnce(&Path)) -> (String, Vec<String>) {
+        let place = tempfile::tempdir().unwrap();
+        let target = place.path().join("run");
+        if force {
+            let earlier = Folder::open(&target, false).unwrap();
+            earlier.write("details.txt", |out| writeln!(out, "old")).unwrap();
+            earlier.finish().unwrap();
+        }
+        let folder = Folder::open(&target, force).unwrap();
+        folder.write(FILE, |out| writeln!(out, "new")).unwrap();
+        disturb(&target);
+        let draft = folder.draft().to_owned();
+        let message = folder.finish().unwrap_err().to_string();
+        assert_eq!(fs::read_to_string(draft.join(FILE)).unwrap(), "new\n", "results are kept");
+        assert!(message.contains(&format!("complete in {}", draft.display())), "{message}");
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2);
+        (message, entries(&target).unwrap())
+    }
+
+    #[test]
+    fn what_appears_during_a_run_is_not_lost() {
+        let (message, left) = disturbed(false, |target| write_file(&target.join("thesis.txt"), |_| Ok(())).unwrap());
+        assert!(message.contains("holds thesis.txt"), "{message}");
+        assert_eq!(left, ["thesis.txt"]);
+        let (message, left) = disturbed(true, |target| write_file(&target.join("notes.txt"), |_| Ok(())).unwrap());
+        assert!(message.contains("holds notes.txt"), "{message}");
+        assert_eq!(left, [MARK, "details.txt", "notes.txt"]);
+        let (message, left) = disturbed(true, |target| {
+            fs::remove_file(target.join("details.txt")).unwrap();
+            write_file(&target.join("details.txt/mine"), |_| Ok(())).unwrap();
+        });
+        assert!(message.contains("holds details.txt/mine"), "{message}");
+        assert_eq!(left, [MARK, "details.txt/mine"]);
+    }
+
+    #[test]
+    fn a_link_to_a_folder_stays() {
+        let place = tempfile::tempdir().unwrap();
+        let (scratch, link) = (place.path().join("scratch"), place.path().join("run"));
+        fs::create_dir(&scratch).unwrap();
+        std::os::unix::fs::symlink(&scratch, &link).unwrap();
+        for force in [false, true] {
+            let folder = Folder::open(&link, force).unwrap();
+            folder.write(FILE, |out| writeln!(out, "{force}")).unwrap();
+            folder.finish().unwrap();
+            assert!(link.is_symlink());
+            assert_eq!(fs::read_to_string(scratch.join(FILE)).unwrap(), format!("{force}\n"));
+        }
+        fs::remove_dir_all(&scratch).unwrap();
+        assert!(Folder::open(&link, true).err().unwrap().to_string().contains("link to nothing"));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::data::Data;
 use super::findings::{Findings, Instability};
+use super::overwrite::{FileKind, head_contains};
 use super::plots::{self, Figure};
 use super::svg::{PALETTE, escaped};
 use super::words::{self, Answer};
@@ -27,6 +28,12 @@ const SCRIPT: [&str; 9] = [
     include_str!("assets/shape.js"),
     include_str!("assets/main.js"),
 ];
+
+/// A page that [`page`] has written.
+pub const KIND: FileKind = FileKind {
+    name: "a report of squeal",
+    is_one: |path| head_contains(path, "<meta name=\"generator\" content=\"squeal\">"),
+};
 
 /// The page. The figures are those of [`plots::figures`].
 ///

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use std::io::Write;
 
 use super::findings::{Findings, Place};
+use super::overwrite::{FileKind, SIGNATURE, head_contains};
 use super::vtu::{Cells, Grid, Values};
 use crate::algebra::{norm, sub};
 use crate::results::{Results, Shape};
@@ -15,6 +16,10 @@ use crate::results::{Results, Shape};
 pub const MOMENTS: usize = 24;
 /// The largest displacement drawn, of the model's size.
 const AMPLITUDE: f64 = 0.04;
+
+/// A file that [`Cycle::write_collection`] has written.
+pub const KIND: FileKind =
+    FileKind { name: "a ParaView collection of squeal", is_one: |path| head_contains(path, SIGNATURE) };
 
 /// A mode to be written.
 pub struct Cycle<'a> {
@@ -53,7 +58,7 @@ impl Cycle<'_> {
     pub fn write_collection(&self, out: &mut dyn Write) -> std::io::Result<()> {
         writeln!(
             out,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>"
+            "<?xml version=\"1.0\"?>\n{SIGNATURE}\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>"
         )?;
         for moment in 0..MOMENTS {
             let (time, file) = (moment as f64 / MOMENTS as f64, self.file(moment));

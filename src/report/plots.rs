@@ -3,9 +3,13 @@
 use std::f64::consts::TAU;
 
 use super::findings::{Findings, Instability, Place};
+use super::overwrite::{FileKind, SIGNATURE, head_contains};
 use super::svg::{Anchor, INK, PALE, Panel, Scale, Sheet, colour};
 use super::words;
 use crate::tracking::{Branch, Hopf};
+
+/// A figure of ours in a file.
+pub const KIND: FileKind = FileKind { name: "a figure of squeal", is_one: |path| head_contains(path, SIGNATURE) };
 
 /// A figure.
 pub struct Figure {

@@ -1,15 +1,30 @@
 //! Figures as PNG.
 
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 use std::sync::Arc;
 
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
+use super::overwrite::FileKind;
 use crate::{Error, Result};
 
 /// Draws SVG figures with the fonts of this computer.
 pub struct Painter {
     options: Options<'static>,
+}
+
+/// First bytes of every PNG file.
+const MAGIC: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
+
+/// A figure as PNG, which has no mark of ours.
+pub const KIND: FileKind = FileKind { name: "a PNG file", is_one: is_png };
+
+fn is_png(path: &Path) -> bool {
+    let mut head = [0; MAGIC.len()];
+    File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == MAGIC
 }
 
 /// Pixels for each of the figure's.

@@ -8,6 +8,8 @@ use std::io::{self, Write};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
+use super::overwrite::{FileKind, SIGNATURE, head_contains};
+
 /// Cells of one kind; VTK's node orders are those of [`crate::mesh::Mesh`].
 pub enum Cells<'a> {
     /// 10-node tetrahedra.
@@ -43,6 +45,9 @@ pub struct Grid<'a> {
     pub cell_data: Vec<Array<'a>>,
 }
 
+/// A file that [`Grid::write`] has written.
+pub const KIND: FileKind = FileKind { name: "a VTU file of squeal", is_one: |path| head_contains(path, SIGNATURE) };
+
 /// VTK's numbers of the cell types.
 const TRIANGLE: u8 = 5;
 const QUADRATIC_TRIANGLE: u8 = 22;
@@ -73,7 +78,7 @@ impl Grid<'_> {
     /// The writer's.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let (n_cells, width, kind) = self.cells.shape();
-        writeln!(out, r#"<?xml version="1.0"?>"#)?;
+        writeln!(out, "<?xml version=\"1.0\"?>\n{SIGNATURE}")?;
         let attributes = r#"type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64""#;
         writeln!(out, "<VTKFile {attributes}>\n<UnstructuredGrid>")?;
         writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{n_cells}">"#, self.points.len())?;
@@ -99,7 +104,7 @@ impl Grid<'_> {
     /// # Errors
     /// The writer's.
     pub fn write_list(&self, pieces: &[String], out: &mut impl Write) -> io::Result<()> {
-        writeln!(out, r#"<?xml version="1.0"?>"#)?;
+        writeln!(out, "<?xml version=\"1.0\"?>\n{SIGNATURE}")?;
         let attributes = r#"type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64""#;
         writeln!(out, "<VTKFile {attributes}>\n<PUnstructuredGrid GhostLevel=\"0\">")?;
         let mut list = |group: &str, arrays: &[Array]| {

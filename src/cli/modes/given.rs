@@ -12,6 +12,7 @@ use crate::native::Vector;
 use crate::report::branches;
 use crate::report::eigenvalues::{self, Row};
 use crate::report::folder::Folder;
+use crate::report::overwrite::may_write_folder;
 use crate::stability::{Count, Evidence, Mode};
 use crate::sweep::{GivenModes, GivenSweep};
 use crate::tracking::Diagram;
@@ -29,7 +30,7 @@ pub fn run(shell: &Shell, arguments: &Modes, family: &Family) -> Result<()> {
     let start = Instant::now();
     let band = arguments.band.ok_or_else(|| Error::input("which band? Give --band FROM:TO in Hz"))?;
     let place = arguments.folder(&arguments.name());
-    comm.agree(if comm.is_root() { Folder::may_write(&place, arguments.force) } else { Ok(()) })?;
+    comm.agree(if comm.is_root() { may_write_folder(&place, arguments.force) } else { Ok(()) })?;
     let mut values = arguments.parameter.as_ref().map_or_else(|| vec![0.0], |values| values.0.clone());
     let progress = Progress::new(comm, values.len(), arguments.verbose);
     progress.say("reading");
