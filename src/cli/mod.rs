@@ -160,6 +160,7 @@ enum Command {
 
 /// What `check` takes.
 #[derive(Args)]
+#[group(skip)]
 struct Check {
     /// The model file
     model: PathBuf,
@@ -176,6 +177,7 @@ struct Check {
 
 /// What `reduce` takes.
 #[derive(Args)]
+#[group(skip)]
 struct Reduce {
     /// The model file
     model: PathBuf,

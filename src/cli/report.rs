@@ -19,6 +19,7 @@ use crate::{Error, Result};
 
 /// What `report` takes.
 #[derive(Args)]
+#[group(skip)]
 pub struct Report {
     /// The folder of a run, or its results.h5
     results: PathBuf,

@@ -19,6 +19,7 @@ use super::friction::{self, Values};
 
 /// What `modes` takes.
 #[derive(Args)]
+#[group(skip)]
 pub struct Modes {
     /// A family of matrices along a parameter (TOML), or with --part a model file
     #[arg(required_unless_present = "mass", conflicts_with_all = ["mass", "stiffness", "damping"])]
