@@ -139,7 +139,7 @@ fn a_reduction_that_cannot_be_made_writes_nothing() {
     assert_refused(&place.run(&["reduce", "brake.toml"]), &["how many contacts?", "--contacts"]);
     assert!(!place.list(".").iter().any(|name| name.contains("h5")), "{:?}", place.list("."));
     place.write("x.se.h5", "mine");
-    assert_refused(&reduce("4"), &["x.se.h5 exists", "--force"]);
+    assert_refused(&reduce("4"), &["x.se.h5 exists and is not a super-element of squeal"]);
     assert_eq!(place.read("x.se.h5"), "mine");
 }
 
