@@ -18,7 +18,7 @@
 //!                           |
 //!             sweep over friction <--> tracking: branches, Hopf points
 //!                           |
-//!                     cli --> results --> report: tables, CSV, VTU
+//!                     cli --> results --> output: tables, CSV, JSON, VTU --> report
 //! ```
 //!
 //! Every stage is one room with one main function from typed input to typed output:
@@ -37,7 +37,8 @@
 //! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
 //! | [`results`] | what a study found, as plain data, and its file | [`results::Results`], [`results::file`] |
 //! | [`comparison`] | which modes of two results are the same, and by how much they differ | [`comparison::compare`] |
-//! | [`report`] | tables, CSV, JSON, VTU | |
+//! | [`output`] | a run's folder, tables, CSV, JSON, VTU | [`output::results_folder::write`] |
+//! | [`report`] | findings, wording, figures, the HTML page | [`report::page`] |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
 //! | [`matrices`] | given M, C, K from files and into files | [`matrices::Given::read`] |
 //! | [`native`] | the only `unsafe`: MPI, LAPACK, PETSc, SLEPc, MUMPS, METIS | |
@@ -95,6 +96,7 @@ pub mod matrices;
 pub mod mesh;
 pub mod model;
 pub mod native;
+pub mod output;
 pub mod reduction;
 pub mod report;
 pub mod results;

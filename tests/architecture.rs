@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each room with what it may import. `element` takes from `mesh` a test for good shapes, in its own tests.
-const ROOMS: [(&str, &[&str]); 19] = [
+const ROOMS: [(&str, &[&str]); 20] = [
     ("error", &[]),
     ("hdf", &["error"]),
     ("algebra", &[]),
@@ -44,22 +44,10 @@ const ROOMS: [(&str, &[&str]); 19] = [
     ),
     ("results", &["error", "hdf", "tracking", "equilibrium", "stability", "sweep"]),
     ("comparison", &["error", "algebra", "tracking", "results"]),
+    ("output", &["error", "tracking", "mesh", "element", "contact", "stability", "sweep", "results", "comparison"]),
     (
         "report",
-        &[
-            "error",
-            "algebra",
-            "tracking",
-            "model",
-            "mesh",
-            "element",
-            "contact",
-            "equilibrium",
-            "stability",
-            "sweep",
-            "results",
-            "comparison",
-        ],
+        &["error", "algebra", "tracking", "equilibrium", "stability", "sweep", "results", "comparison", "output"],
     ),
     (
         "cli",
@@ -81,6 +69,7 @@ const ROOMS: [(&str, &[&str]); 19] = [
             "sweep",
             "results",
             "comparison",
+            "output",
             "report",
         ],
     ),

@@ -10,10 +10,10 @@ use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
 use crate::model::LoadKind;
 use crate::native::{Comm, Factor, FactorKind};
-use crate::report::contact_cells::ContactCells;
-use crate::report::files::write_whole;
-use crate::report::overwrite::may_write_file;
-use crate::report::vtu;
+use crate::output::contact_cells::ContactCells;
+use crate::output::files::write_whole;
+use crate::output::overwrite::may_write_file;
+use crate::output::vtu;
 use crate::sweep::Brake;
 
 use super::ranked::Ranked;

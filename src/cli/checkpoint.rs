@@ -23,8 +23,8 @@ use num_complex::Complex64;
 
 use crate::hdf::{self, Format, array, list, table, values};
 use crate::native::{Block, Comm, Vector};
-use crate::report::files::write_file;
-use crate::report::folder::{self, Folder, RESUME};
+use crate::output::files::write_file;
+use crate::output::folder::{self, Folder, RESUME};
 use crate::results::{Value, file};
 use crate::sweep::{Snapshot, Spectrum, Sweep};
 use crate::{Error, Result};

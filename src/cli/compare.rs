@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use crate::comparison;
-use crate::report::folder::Folder;
-use crate::report::{comparison as tables, comparison_plot};
+use crate::output::comparison as tables;
+use crate::output::folder::Folder;
+use crate::report::comparison_plot;
 use crate::results::{Results, file};
 use crate::{Error, Result};
 
 use super::Shell;
-use super::output::RESULTS;
+use crate::output::results_folder::RESULTS;
 
 /// Compares the results in two folders; the first rank does it all.
 pub fn run(shell: &Shell, places: [&Path; 2], output: Option<&Path>, force: bool) -> Result<()> {

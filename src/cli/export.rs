@@ -8,7 +8,7 @@ use serde_json::json;
 use crate::assembly::System;
 use crate::matrices::write::Whole;
 use crate::native::Matrix;
-use crate::report::folder::Folder;
+use crate::output::folder::Folder;
 use crate::sweep::{Brake, Sweep};
 use crate::{Error, Result};
 

@@ -10,7 +10,6 @@ mod interrupt;
 mod models;
 mod modes;
 mod motion;
-mod output;
 mod progress;
 mod ranked;
 mod reduce;

@@ -11,17 +11,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::comparison::{Model, Sizes, Study, n_contacts};
 use crate::native::Comm;
+use crate::output::files::{write_file, write_whole};
+use crate::output::study as tables;
 use crate::reduction;
-use crate::report::files::{write_file, write_whole};
-use crate::report::{study as tables, study_plot};
+use crate::report::study_plot;
 use crate::results::{Results, file};
 use crate::sweep::Brake;
 use crate::{Error, Result};
 
 use super::friction::Frictions;
-use super::output::RESULTS;
 use super::subject::Subject;
 use super::{Models, Reduce, Run, Shell, reduce, stability};
+use crate::output::results_folder::RESULTS;
 
 /// Makes what is missing, then compares all models with full contact. Collective.
 pub fn run(shell: &Shell, arguments: &Models) -> Result<()> {

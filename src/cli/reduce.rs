@@ -6,10 +6,10 @@ use std::time::Instant;
 use serde_json::{Value as Json, json};
 
 use crate::native::{Comm, FactorStats};
+use crate::output::overwrite::{FileKind, may_write_file};
 use crate::reduction::craig_bampton::{Costs, Event};
 use crate::reduction::file;
 use crate::reduction::super_element::SuperElement;
-use crate::report::overwrite::{FileKind, may_write_file};
 use crate::sweep::{Brake, Sweep};
 use crate::{Error, Result};
 

@@ -7,13 +7,14 @@ use clap::Args;
 use serde_json::json;
 
 use super::Shell;
-use super::output::RESULTS;
-use crate::report::files::write_whole;
+use crate::output::files::write_whole;
+use crate::output::folder::adopt;
+use crate::output::overwrite::{FileKind, SIGNATURE, is_free, may_write_file};
+use crate::output::results_folder::RESULTS;
+use crate::output::vtu;
 use crate::report::findings::Findings;
-use crate::report::folder::adopt;
-use crate::report::overwrite::{FileKind, SIGNATURE, is_free, may_write_file};
 use crate::report::raster::{self, Painter};
-use crate::report::{page, paraview, plots, vtu, words};
+use crate::report::{page, paraview, plots, words};
 use crate::results::file;
 use crate::{Error, Result};
 

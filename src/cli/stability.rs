@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use crate::Result;
 use crate::native::{Comm, Vector};
-use crate::report::summary;
+use crate::output::summary;
 use crate::stability::{Band, Complex, Mode};
 use crate::sweep::{Friction, Snapshot, Solutions, Source, Sweep, Vectors, tracking_options, wider};
 use crate::tracking::track;

@@ -3,9 +3,9 @@
 use crate::Result;
 use crate::equilibrium::{Balance, Equilibrium};
 use crate::native::{Comm, Vector};
-use crate::report::contact_surface::{ContactSurface, Fields};
-use crate::report::folder::Folder;
-use crate::report::vtu::{Cells, Grid, Values};
+use crate::output::contact_surface::{ContactSurface, Fields};
+use crate::output::folder::Folder;
+use crate::output::vtu::{Cells, Grid, Values};
 use crate::stability::Mode;
 
 use super::volume::Drawing;

@@ -1,7 +1,7 @@
 //! `squeal static`: equilibria.
 
 use crate::Result;
-use crate::report::summary;
+use crate::output::summary;
 
 use super::study::{self, Found, Study};
 use super::{Run, Shell};

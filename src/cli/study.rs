@@ -9,8 +9,8 @@ use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
 use crate::hdf::is_hdf5;
 use crate::native::{Comm, libraries};
-use crate::report::folder::Folder;
-use crate::report::json;
+use crate::output::folder::Folder;
+use crate::output::{json, results_folder};
 use crate::results::{About, Failure, ModeData, Results, Value};
 use crate::stability::Count;
 use crate::sweep::{Costs, Event, Snapshot, Sweep, Vectors};
@@ -21,7 +21,7 @@ use super::interrupt::Interrupt;
 use super::motion::Motion;
 use super::progress::Progress;
 use super::subject::{self, Subject, Told};
-use super::{Run, Shell, output};
+use super::{Run, Shell};
 
 /// A brake about to be analysed over friction.
 pub struct Study {
@@ -179,7 +179,7 @@ impl Study {
         let place = self.place.display().to_string();
         let text = summary(&results, &place);
         let written = self.folder.map_or(Ok(()), |folder| {
-            output::write(&folder, &results, &text)?;
+            results_folder::write(&folder, &results, &text)?;
             folder.finish()
         });
         shell.comm.agree(written)?;

@@ -10,7 +10,7 @@ use crate::equilibrium::{Equilibrium, PairForces};
 use crate::hdf::is_hdf5;
 use crate::model::NormalLaw;
 use crate::native::{Comm, Vector};
-use crate::report::folder::Folder;
+use crate::output::folder::Folder;
 use crate::results::{About, ContactFaces, Pair, Shape};
 use crate::stability::{Complex, Mode};
 use crate::sweep::{Brake, Source, Sweep};

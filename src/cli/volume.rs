@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 use crate::Result;
 use crate::native::Comm;
-use crate::report::files::write_file;
-use crate::report::folder::Folder;
-use crate::report::vtu::{Array, Cells, Grid};
+use crate::output::files::write_file;
+use crate::output::folder::Folder;
+use crate::output::vtu::{Array, Cells, Grid};
 use crate::sweep::Brake;
 
 /// What this rank draws: the tetrahedra that it counts, and their nodes.

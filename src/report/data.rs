@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::drawing::{self, Face, Outer, Shapes};
-use super::explain;
 use super::findings::{Findings, Instability, Place};
 use super::words;
+use crate::output::explain;
 use crate::results::{ModeData, Value};
 use crate::sweep::Source;
 

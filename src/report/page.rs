@@ -7,10 +7,10 @@ use sha2::{Digest, Sha256};
 
 use super::data::Data;
 use super::findings::{Findings, Instability};
-use super::overwrite::{FileKind, head_contains};
 use super::plots::{self, Figure};
 use super::svg::{PALETTE, escaped};
 use super::words::{self, Answer};
+use crate::output::overwrite::{FileKind, head_contains};
 use crate::results::{About, Pair, Part, Results};
 use crate::{Error, Result};
 

@@ -7,9 +7,9 @@ use std::f64::consts::TAU;
 use std::io::Write;
 
 use super::findings::{Findings, Place};
-use super::overwrite::{FileKind, SIGNATURE, head_contains};
-use super::vtu::{Cells, Grid, Values};
 use crate::algebra::{norm, sub};
+use crate::output::overwrite::{FileKind, SIGNATURE, head_contains};
+use crate::output::vtu::{Cells, Grid, Values};
 use crate::results::{Results, Shape};
 
 /// Moments of a cycle.

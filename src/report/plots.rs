@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::findings::{Findings, Instability, Place};
-use super::overwrite::{FileKind, SIGNATURE, head_contains};
 use super::svg::{Anchor, INK, PALE, Panel, Scale, Sheet, colour};
 use super::words;
+use crate::output::overwrite::{FileKind, SIGNATURE, head_contains};
 use crate::tracking::{Branch, Hopf};
 
 /// A figure of ours in a file.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
-use super::overwrite::FileKind;
+use crate::output::overwrite::FileKind;
 use crate::{Error, Result};
 
 /// Draws SVG figures with the fonts of this computer.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::explain::largest;
 use super::findings::{End, Findings, Instability, Range};
+use crate::output::explain::largest;
 use crate::sweep::{Kind, Source};
 
 /// What is said of one instability.

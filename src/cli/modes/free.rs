@@ -10,8 +10,8 @@ use serde_json::json;
 
 use crate::assembly::System;
 use crate::native::{Comm, Factor, FactorKind};
-use crate::report::folder::Folder;
-use crate::report::vtu::Values;
+use crate::output::folder::Folder;
+use crate::output::vtu::Values;
 use crate::stability::{self, Count, Mode, Pencil, Solver};
 use crate::sweep::{Brake, RigidMotions};
 use crate::{Error, Result};

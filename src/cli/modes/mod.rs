@@ -11,7 +11,7 @@ use clap::Args;
 use crate::matrices::family::{self, Coefficient, Family};
 use crate::matrices::{Role, Term};
 use crate::native::Comm;
-use crate::report::folder::Folder;
+use crate::output::folder::Folder;
 use crate::{Error, Result};
 
 use super::Shell;

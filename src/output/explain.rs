@@ -7,7 +7,7 @@ use crate::results::{ModeData, Results};
 use crate::sweep::{Kind, Source};
 
 /// The word for a kind.
-pub(super) fn kind(kind: Kind) -> &'static str {
+pub fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Part => "part",
         Kind::Connector => "connector",
@@ -66,7 +66,7 @@ pub fn sentence(friction: f64, mode: &ModeData) -> String {
 }
 
 /// The sources with most of something, in percent of its sum.
-pub(super) fn largest(sources: &[Source], of: impl Fn(&Source) -> f64) -> String {
+pub fn largest(sources: &[Source], of: impl Fn(&Source) -> f64) -> String {
     const SHOWN: usize = 3;
     let total: f64 = sources.iter().map(&of).sum();
     let mut shares: Vec<(&str, f64)> = sources.iter().map(|s| (s.name.as_str(), 100.0 * of(s) / total)).collect();

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 use std::io::Write;
 
 use crate::Result;
-use crate::report::folder::Folder;
-use crate::report::{branches, details, explain, tables};
+use crate::output::folder::Folder;
+use crate::output::{branches, details, explain, tables};
 use crate::results::{Results, file};
 
 /// Name of the results file.

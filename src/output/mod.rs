@@ -1,0 +1,18 @@
+//! Results on disk and on screen: a run's folder, tables as text and CSV, JSON documents, VTU files. Reads results, computes nothing of its own.
+
+pub mod branches;
+pub mod comparison;
+pub mod contact_cells;
+pub mod contact_surface;
+pub mod details;
+pub mod eigenvalues;
+pub mod explain;
+pub mod files;
+pub mod folder;
+pub mod json;
+pub mod overwrite;
+pub mod results_folder;
+pub mod study;
+pub mod summary;
+pub mod tables;
+pub mod vtu;
