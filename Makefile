@@ -41,6 +41,7 @@ full: setup build meshes/build/brake-full.msh ## the paper's size: 179 thousand 
 	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force --verbose
 
 bench: setup meshes/build/brake-medium.msh ## seconds, entries and memory of assembly, factorisation and eigensolution
+	cargo bench --bench element
 	cargo bench --bench assembly
 	cargo bench --bench path
 

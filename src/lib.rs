@@ -10,7 +10,7 @@
 //! ```text
 //!  model file -> model --> mesh --> assembly: elements (tetrahedra, connectors) -> System { M, C, K, load }
 //!                  \        \                                                          |
-//!                   `--------`--> contact: search -> trace B, laws -> Interface        |
+//!                   `--------`--> contact: search -> gap operator B, laws -> Interface |
 //!                                                        \                             |
 //!                                    System + Interface --equilibrium (SNES)--> Equilibrium
 //!                                                                                |
@@ -28,7 +28,7 @@
 //! | [`model`] | the user's file, checked, in SI units | [`model::read`] |
 //! | [`mesh`] | Gmsh meshes of 10-node tetrahedra, checked | [`mesh::read`] |
 //! | [`element`] | tetrahedron, facet, quadrature, couplings: pure functions | [`element::tet10`] |
-//! | [`contact`] | search, trace `g = B u`, contact and friction laws | [`contact::Interface::build`] |
+//! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
 //! | [`assembly`] | equations, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
 //! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
 //! | [`stability`] | linearisation, modes of a band, none missed; what explains them | [`stability::solve`] |
@@ -49,7 +49,7 @@
 //! # The one idea
 //!
 //! Whatever adds to M, C or K is an *element* with a list of nodes; one assembly layer scatters them all. Contact sees a body
-//! only through its *trace* `g = B u`; so contact, equilibrium and stability know nothing of the mesh, and a reduced
+//! only through its *gap operator* `g = B u`; so contact, equilibrium and stability know nothing of the mesh, and a reduced
 //! model is another B and another u.
 //!
 //! # Ranks
@@ -60,7 +60,7 @@
 //! them without any communication, and writes its own piece of the results. Surfaces are on every rank, and so are the contact points and
 //! their state, which grow with the power 2/3 of the volume; ranks divide the search for them and tell each other what they found.
 //!
-//! Nodes have *local* numbers, those of the piece: a mesh, a trace, loads and supports all use them. [`mesh::Numbering`] knows the
+//! Nodes have *local* numbers, those of the piece: a mesh, a gap operator, loads and supports all use them. [`mesh::Numbering`] knows the
 //! global ones; local numbers rise with them, so that what is ordered by nodes is ordered alike on all ranks.
 //!
 //! # Notation
@@ -69,7 +69,7 @@
 //! |---|---|---|
 //! | M, C, K | `m`, `c`, `k` | mass kg, damping N s/m, stiffness N/m |
 //! | u | `u` | displacements of the equations, m |
-//! | B, g | `trace`, `gap` | relative displacement at the contact points `g = B u`, m |
+//! | B, g | `gap_operator`, `gap` | relative displacement at the contact points `g = B u`, m |
 //! | n, t | `normal`, `direction` | master's outward normal; direction of sliding |
 //! | d | `penetration` | `-(gap0 + n.g)`, m |
 //! | p | `normal_force` | normal force of a point, N |

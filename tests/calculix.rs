@@ -99,7 +99,7 @@ fn contacts(out: &mut String, brake: &Brake, responses: &[Response]) {
     for (k, &a) in closed.iter().enumerate() {
         let (normal, d) = (interface.points[a].law.normal, responses[a].tangent);
         let stiffness: f64 = (0..9).map(|at| normal[at / 3] * d[at / 3][at % 3] * normal[at % 3]).sum();
-        let (nodes, blocks) = interface.trace.point(a);
+        let (nodes, blocks) = interface.gap_operator.point(a);
         let mut terms = vec![format!("{},1,-1.", number(k))];
         for (node, block) in nodes.iter().zip(blocks) {
             for axis in 0..3 {

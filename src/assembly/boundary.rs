@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::{DofMap, System};
 use crate::Result;
+use crate::element::tet10::FACES;
 use crate::mesh::{Mesh, Numbering};
 use crate::native::{Comm, Gather, Vector};
 
@@ -118,11 +119,9 @@ impl Face {
 /// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it has all
 /// tetrahedra around a node of its own.
 fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<Face> {
-    /// Corners of a tetrahedron's faces, seen from outside.
-    const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     let mut faces: HashMap<[u32; 3], ([u32; 3], usize)> = HashMap::new();
     for (e, tet) in mesh.tets.iter().enumerate() {
-        for face in FACES.map(|face| face.map(|a| tet[a])) {
+        for face in FACES.map(|[a, b, c, ..]| [tet[a], tet[b], tet[c]]) {
             let mut key = face;
             key.sort_unstable();
             // A face between two tetrahedra is not outside.

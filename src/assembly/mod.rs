@@ -15,13 +15,13 @@
 mod axes;
 mod boundary;
 mod dofs;
+mod families;
 mod pattern;
 mod scatter;
-mod structure;
 mod system;
 
 pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
+pub use families::{Link, Tets, held, links, loads};
 pub use pattern::Pattern;
-pub use structure::{Link, Tets, held, links, loads};
 pub use system::{Connectivity, ElementMatrices, Elements, System};

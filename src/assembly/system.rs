@@ -7,7 +7,6 @@ use super::axes::AxisSum;
 use super::scatter::{Places, Scatter};
 use super::{DofMap, Pattern};
 use crate::Result;
-use crate::contact::Trace;
 use crate::mesh::Numbering;
 use crate::native::{Comm, Gather, Matrix, Vector};
 
@@ -183,17 +182,6 @@ fn pass(scatter: &Scatter, families: &[&dyn Elements], mut visit: impl FnMut(&El
                 visit(&element, &places);
             }
         }
-    }
-}
-
-/// Contact points couple the nodes that their relative displacement depends on.
-impl Connectivity for Trace {
-    fn len(&self) -> usize {
-        Trace::len(self)
-    }
-
-    fn nodes(&self, a: usize) -> &[u32] {
-        self.point(a).0
     }
 }
 

@@ -1,14 +1,14 @@
 //! The interface: all contact pairs of a model on its mesh, ready to be evaluated point by point.
 
+use super::gap_operator::GapOperator;
 use super::law::{self, Response, Status};
 use super::search::Team;
-use super::trace::Trace;
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::model::{Model, NormalLaw};
 use std::ops::Range;
 
-/// Contact as the equations see it: points, their laws, and the trace that ties them to the bodies.
+/// Contact as the equations see it: points, their laws, and the gap_operator that ties them to the bodies.
 #[derive(Debug, Clone, Default)]
 pub struct Interface {
     /// Contact pairs, in the order of the model.
@@ -16,7 +16,7 @@ pub struct Interface {
     /// Contact points, pair by pair.
     pub points: Vec<ContactPoint>,
     /// `g = B u`; its point `a` is `points[a]`, its nodes are the mesh's.
-    pub trace: Trace,
+    pub gap_operator: GapOperator,
 }
 
 /// A contact pair.
@@ -82,7 +82,7 @@ pub struct Statistics {
 pub struct ContactPoint {
     /// Index of its pair.
     pub pair: usize,
-    /// The slave's nodes that it stands for: its own, or the cell of a reference node. They come first in its trace.
+    /// The slave's nodes that it stands for: its own, or the cell of a reference node. They come first in its gap_operator.
     pub nodes: Vec<u32>,
     /// Position of the point, m.
     pub position: [f64; 3],
@@ -136,7 +136,7 @@ impl Interface {
         Stage::Solve { friction: self.frictions_at(swept) }
     }
 
-    /// What point `a` answers to its relative displacement g (m, from [`Trace::gap`]).
+    /// What point `a` answers to its relative displacement g (m, from [`GapOperator::gap`]).
     ///
     /// # Panics
     /// Where `a` is no point or the stage has not one friction a pair, as the methods below.

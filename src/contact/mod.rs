@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Model + Mesh --search--> points: w, n, gap0 --+
-//!                     \--> trace:  g = B u -----+--> Interface
+//!                     \--> gap operator: g = B u --> Interface
 //!                            Model --> laws ----+
 //! ```
 //!
@@ -13,7 +13,7 @@
 //! the bodies only through the relative displacement of the two,
 //!
 //! ```text
-//! g_a = u_a - sum_j N_j u_j      that is    g = B u      B: the trace
+//! g_a = u_a - sum_j N_j u_j      that is    g = B u      B: the gap operator
 //! ```
 //!
 //! and its answer is a force f(g) on the slave with `D = -df/dg` ([`law`]). To residual and tangent of the whole they
@@ -23,12 +23,13 @@
 //! F_contact = -B^T f         K_contact = B^T D B
 //! ```
 //!
-//! ([`Trace::spread`] and [`Trace::expand_into`]). Reference nodes that follow a cloud of nodes, and super-elements,
-//! differ in B and in nothing else.
+//! ([`GapOperator::spread`] and [`GapOperator::expand_into`]). Reference nodes that follow a cloud of nodes, and
+//! super-elements, differ in B and in nothing else.
 //!
-//! This room is pure: it knows neither PETSc nor files.
+//! This module is pure: it knows neither PETSc nor files.
 
 mod facet;
+pub mod gap_operator;
 pub mod interface;
 pub mod law;
 mod motion;
@@ -37,9 +38,8 @@ mod projection;
 pub mod search;
 #[cfg(test)]
 pub(crate) mod testing;
-pub mod trace;
 
+pub use gap_operator::GapOperator;
 pub use interface::{ContactPoint, Interface, Kind, Pair, Stage, Statistics};
 pub use law::{Point, Response, Status, Tangential};
 pub use motion::sliding;
-pub use trace::Trace;

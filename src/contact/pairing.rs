@@ -28,7 +28,7 @@ pub(super) fn add_pair(
     let rotation = model.sliding(contact, mesh);
     let first = interface.points.len();
     for point in &found.points {
-        interface.trace.push_projection(point.node, &master.facets[point.facet], &point.shape);
+        interface.gap_operator.push_projection(point.node, &master.facets[point.facet], &point.shape);
         interface.points.push(ContactPoint {
             pair: interface.pairs.len(),
             nodes: vec![point.node],

@@ -9,11 +9,12 @@
 //!   quadrature   points and weights on the reference tetrahedron and triangle
 //!   tet10        the body:     stiffness, mass, mass properties, recovered stress
 //!   tri6         its skin:     area, normal, consistent loads of traction and pressure
+//!   voigt        the order of stresses and strains
 //!   coupling     a cloud's mean rigid motion as 3x3 blocks on its nodes (distributing coupling)
 //!   connector    spring and damper between the mean motions of two clouds
 //! ```
 //!
-//! Symbols, the same in all files of this room:
+//! Symbols, the same in all files of this module:
 //!
 //! | symbol | meaning |
 //! |---|---|
@@ -27,6 +28,7 @@ pub mod connector;
 pub mod coupling;
 pub mod quadrature;
 #[cfg(test)]
-mod samples;
+pub(crate) mod samples;
 pub mod tet10;
 pub mod tri6;
+pub mod voigt;

@@ -1,10 +1,9 @@
-//! What the tests of this room share: reproducible random numbers, elements and materials, and a rule that is exact to any
+//! What the tests of this module share: reproducible random numbers, elements and materials, and a rule that is exact to any
 //! degree.
 
 use super::quadrature::Point;
-use super::tet10::NODES;
+use super::tet10::{NODES, determinants, straight};
 use crate::algebra::{cross, sub};
-use crate::mesh::jacobian::{determinants, straight};
 
 /// A small linear congruential generator (Knuth's MMIX constants): the same numbers on every machine.
 pub struct Random(u64);

@@ -151,11 +151,8 @@ mod tests {
     use crate::element::tet10;
     use proptest::prelude::*;
 
-    /// Facets of a tet10, outward, in the node order of a tri6.
-    const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
-
     fn skin(x: &[[f64; 3]; 10]) -> [[[f64; 3]; 6]; 4] {
-        FACES.map(|face| face.map(|a| x[a]))
+        tet10::FACES.map(|face| face.map(|a| x[a]))
     }
 
     /// `integral of n dA`

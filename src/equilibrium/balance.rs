@@ -107,7 +107,7 @@ impl Balance {
         }
         let mut across_gaps = Wrench::default();
         for (a, response) in responses.iter().enumerate() {
-            interface.trace.spread(a, response.force, |node, force| {
+            interface.gap_operator.spread(a, response.force, |node, force| {
                 across_gaps.add(points[node as usize], force);
                 subtract(node, force);
             });

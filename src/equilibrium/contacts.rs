@@ -12,7 +12,7 @@ pub struct Contacts<'a> {
     interface: &'a Interface,
     dofs: &'a DofMap,
     gather: Gather,
-    /// For each displacement of the trace's nodes its place in the gathered array, -1 where held.
+    /// For each displacement of the gap operator's nodes its place in the gathered array, -1 where held.
     places: Vec<[i32; 3]>,
 }
 
@@ -50,8 +50,8 @@ impl<'a> Contacts<'a> {
         let mut places = vec![[-1; 3]; dofs.n_nodes()];
         let mut indices = Vec::new();
         let mut seen = vec![false; dofs.n_nodes()];
-        for a in 0..interface.trace.len() {
-            for &node in interface.trace.point(a).0 {
+        for a in 0..interface.gap_operator.len() {
+            for &node in interface.gap_operator.point(a).0 {
                 if std::mem::replace(&mut seen[node as usize], true) {
                     continue;
                 }
@@ -77,10 +77,10 @@ impl<'a> Contacts<'a> {
     /// # Errors
     /// PETSc's.
     pub fn gaps(&self, u: &Vector) -> Result<Vec<[f64; 3]>> {
-        let (trace, places) = (&self.interface.trace, &self.places);
+        let (gap_operator, places) = (&self.interface.gap_operator, &self.places);
         self.gather.run(u, |values| {
             let value = |place: i32| if place < 0 { 0.0 } else { values[place as usize] };
-            (0..trace.len()).map(|a| trace.gap(a, |node| places[node as usize].map(value))).collect()
+            (0..gap_operator.len()).map(|a| gap_operator.gap(a, |node| places[node as usize].map(value))).collect()
         })
     }
 
@@ -108,7 +108,7 @@ impl<'a> Contacts<'a> {
     /// `r += factor B_a^T f` on this rank's rows. Not collective.
     pub fn spread_into(&self, a: usize, force: [f64; 3], factor: f64, r: &mut [f64]) {
         let owned = self.dofs.owned();
-        self.interface.trace.spread(a, force, |node, f| {
+        self.interface.gap_operator.spread(a, force, |node, f| {
             for (equation, f) in self.dofs.equations(node).into_iter().zip(f) {
                 if owned.contains(&equation) {
                     r[(equation - owned.start) as usize] += factor * f;
@@ -136,9 +136,9 @@ impl<'a> Contacts<'a> {
             if block.as_flattened().iter().all(|&x| x == 0.0) {
                 continue;
             }
-            self.interface.trace.expand_into(a, &block, &mut dense);
+            self.interface.gap_operator.expand_into(a, &block, &mut dense);
             indices.clear();
-            self.dofs.indices_into(self.interface.trace.point(a).0, &mut indices);
+            self.dofs.indices_into(self.interface.gap_operator.point(a).0, &mut indices);
             matrix.add_block(&indices, &dense)?;
         }
         matrix.finish()

@@ -170,7 +170,7 @@ pub fn free_motions(
         for a in pair.points.clone() {
             for direction in resisted_directions(interface, a) {
                 resist(1.0 / pair.points.len() as f64, &mut |row| {
-                    interface.trace.spread(a, direction, |node, v| bodies.accumulate(row, mesh, node, v));
+                    interface.gap_operator.spread(a, direction, |node, v| bodies.accumulate(row, mesh, node, v));
                 });
             }
         }

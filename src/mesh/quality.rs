@@ -1,36 +1,31 @@
 //! How well shaped the elements are.
 
-#![allow(non_snake_case)] // symbols of the formulas
+use crate::algebra::{cofactor_columns, norm, sub};
+use crate::element::tet10::corner_jacobians;
 
-use super::jacobian;
-use nalgebra::Matrix3;
-
-/// The scaled Jacobian: over the corners, the least of `sqrt 2 det J / (|t_1| |t_2| |t_3|)`.
+/// The scaled Jacobian: over the corners, the least of `sqrt 2 detJ / (|t_1| |t_2| |t_3|)`.
 ///
-/// t_1, t_2, t_3 are the tangents of the (curved) edges at the corner, whose determinant is `det J` too. 1 for a regular tetrahedron,
-/// towards 0 as it flattens, negative where it is inverted.
+/// t_1, t_2, t_3 are the tangents of the (curved) edges at the corner, whose determinant is `detJ` too. 1 for a regular
+/// tetrahedron, towards 0 as it flattens, negative where it is inverted.
 pub fn scaled_jacobian(x: &[[f64; 3]; 10]) -> f64 {
-    let corners = jacobian::at_corners(x);
-    let scaled = corners.iter().enumerate().map(|(i, J)| {
-        let lengths: f64 = (0..4).filter(|&k| k != i).map(|k| tangent_length(J, i, k)).product();
-        2.0_f64.sqrt() * J.determinant() / lengths
+    let scaled = corner_jacobians(x).into_iter().enumerate().map(|(corner, jacobian)| {
+        let lengths: f64 = edge_tangents(corner, &jacobian).map(norm).iter().product();
+        2.0_f64.sqrt() * cofactor_columns(&jacobian).1 / lengths
     });
     scaled.fold(f64::INFINITY, f64::min)
 }
 
-/// `|dx/dL_k - dx/dL_i|`, from the Jacobian's columns `dx/dL_k - dx/dL_0`.
-fn tangent_length(J: &Matrix3<f64>, i: usize, k: usize) -> f64 {
-    match (i, k) {
-        (0, k) => J.column(k - 1).norm(),
-        (i, 0) => J.column(i - 1).norm(),
-        (i, k) => (J.column(k - 1) - J.column(i - 1)).norm(),
-    }
+/// The tangents `dx/dl_k - dx/dl_i` of the three edges at corner `i`, from the Jacobian's columns `dx/dl_k - dx/dl_0`.
+fn edge_tangents(i: usize, jacobian: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let columns: [[f64; 3]; 3] = std::array::from_fn(|k| jacobian.map(|row| row[k]));
+    let Some(own) = i.checked_sub(1) else { return columns };
+    std::array::from_fn(|k| if k == own { columns[k] } else { sub(columns[k], columns[own]) })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::jacobian::straight;
     use super::*;
+    use crate::element::tet10::straight;
 
     const REGULAR: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]];
 

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-/// Local nodes of a tetrahedron's faces, corners then midsides, turning so that the normal points out.
-const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
+use crate::element::tet10::FACES;
 
 /// A face of a tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,23 +78,7 @@ fn sorted(three: &[u32]) -> [u32; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::jacobian::straight;
     use super::*;
-    use nalgebra::Vector3;
-
-    #[test]
-    fn faces_look_out_and_their_midsides_lie_between_their_corners() {
-        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let x = straight(corners).map(Vector3::from);
-        let centre = (x[0] + x[1] + x[2] + x[3]) / 4.0;
-        for [a, b, c, ab, bc, ca] in FACES {
-            let normal = (x[b] - x[a]).cross(&(x[c] - x[a]));
-            assert!(normal.dot(&(x[a] - centre)) > 0.0);
-            for (middle, [i, k]) in [(ab, [a, b]), (bc, [b, c]), (ca, [c, a])] {
-                assert_eq!(x[middle], (x[i] + x[k]) / 2.0);
-            }
-        }
-    }
 
     #[test]
     fn a_shared_facet_belongs_to_the_first_part() {

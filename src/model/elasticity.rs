@@ -6,10 +6,8 @@
 
 #![allow(non_snake_case)] // symbols of the formulas
 
+use crate::element::voigt;
 use nalgebra::{Matrix3, Matrix6, Vector3};
-
-/// The pairs of axes of Voigt's order.
-const VOIGT: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
 
 /// Compliance of an orthotropic material in its own axes, 1/Pa.
 ///
@@ -94,12 +92,12 @@ pub fn symmetric(matrix: &Matrix6<f64>) -> Matrix6<f64> {
 /// It is Bond's matrix: Auld, *Acoustic Fields and Waves in Solids* I (1973), section 3.D (there in the order yz zx xy).
 pub fn rotate(elasticity: &Matrix6<f64>, axes: &Matrix3<f64>) -> Matrix6<f64> {
     let mut T = Matrix6::zeros();
-    for (column, &(i, j)) in VOIGT.iter().enumerate() {
+    for (column, [i, j]) in voigt::PAIRS.into_iter().enumerate() {
         let mut sigma = Matrix3::zeros();
         sigma[(i, j)] = 1.0;
         sigma[(j, i)] = 1.0;
         let turned = axes * sigma * axes.transpose();
-        for (row, &(k, l)) in VOIGT.iter().enumerate() {
+        for (row, [k, l]) in voigt::PAIRS.into_iter().enumerate() {
             T[(row, column)] = turned[(k, l)];
         }
     }
@@ -168,14 +166,13 @@ mod tests {
             prop_assume!(axes_from(unit(first), unit(second)).is_some());
             let R = axes_from(unit(first), unit(second)).unwrap();
             prop_assert!((R.transpose() * R - Matrix3::identity()).norm() < 1e-14 && R.determinant() > 0.0);
-            let voigt = |i, j| VOIGT.iter().position(|&pair| pair == (i, j) || pair == (j, i)).unwrap();
             let turned = rotate(&C, &R);
-            for (I, (i, j)) in VOIGT.into_iter().enumerate() {
-                for (J, (k, l)) in VOIGT.into_iter().enumerate() {
+            for (I, [i, j]) in voigt::PAIRS.into_iter().enumerate() {
+                for (J, [k, l]) in voigt::PAIRS.into_iter().enumerate() {
                     // C'_ijkl = R_ip R_jq R_kr R_ls C_pqrs
                     let term = |n: usize| {
                         let (p, q, r, s) = (n / 27, n / 9 % 3, n / 3 % 3, n % 3);
-                        R[(i, p)] * R[(j, q)] * R[(k, r)] * R[(l, s)] * C[(voigt(p, q), voigt(r, s))]
+                        R[(i, p)] * R[(j, q)] * R[(k, r)] * R[(l, s)] * C[(voigt::INDEX[p][q], voigt::INDEX[r][s])]
                     };
                     prop_assert!((turned[(I, J)] - (0..81).map(term).sum::<f64>()).abs() < 1e-12);
                 }
@@ -216,9 +213,12 @@ mod tests {
         let axis = Vector3::new(1.0, 2.0, -2.0) / 3.0;
         let C = rotate(&from_compliance(&transverse_compliance(&LINING)).unwrap(), &axes_about(axis.into()));
         let stress = axis * axis.transpose();
-        let strain = C.cholesky().unwrap().solve(&nalgebra::Vector6::from_fn(|v, _| stress[VOIGT[v]]));
+        let strain = C
+            .cholesky()
+            .unwrap()
+            .solve(&nalgebra::Vector6::from_fn(|v, _| stress[(voigt::PAIRS[v][0], voigt::PAIRS[v][1])]));
         let mut E = Matrix3::zeros();
-        for (v, &(i, j)) in VOIGT.iter().enumerate() {
+        for (v, [i, j]) in voigt::PAIRS.into_iter().enumerate() {
             E[(i, j)] = if v < 3 { strain[v] } else { strain[v] / 2.0 };
             E[(j, i)] = E[(i, j)];
         }

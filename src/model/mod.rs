@@ -22,6 +22,7 @@
 
 mod analysis;
 mod bodies;
+mod check;
 mod contacts;
 mod elasticity;
 mod item;
@@ -30,6 +31,7 @@ mod loads;
 mod materials;
 pub mod names;
 mod read;
+mod sliding;
 mod source;
 #[cfg(test)]
 mod tests;

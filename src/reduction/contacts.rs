@@ -7,7 +7,7 @@
 //! g = sum_n U_n u_n - sum_j N_j u_j          weight: the area of the cell
 //! ```
 //!
-//! so that reduced contact is another trace and nothing else. Source: Fazio, Nacivet, Sinou (ISMA 2014), section 3.
+//! so that reduced contact is another gap operator and nothing else. Source: Fazio, Nacivet, Sinou (ISMA 2014), section 3.
 
 use std::collections::HashMap;
 
@@ -44,8 +44,8 @@ pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -
             site.add(&mut reduced, shares.next().expect("a share for each sliding pair"))?;
         } else {
             for a in pair.points.clone() {
-                let (nodes, blocks) = full.trace.point(a);
-                reduced.trace.push(nodes, blocks);
+                let (nodes, blocks) = full.gap_operator.point(a);
+                reduced.gap_operator.push(nodes, blocks);
                 reduced.points.push(full.points[a].clone());
             }
         }
@@ -101,7 +101,7 @@ impl Site<'_> {
         let facet = self.mesh.surfaces[&self.pair.master].facets[landing.facet];
         let masters =
             landing.shape.map(|n| std::array::from_fn(|i| std::array::from_fn(|j| if i == j { -n } else { 0.0 })));
-        reduced.trace.push(&[&slaves[..], &facet].concat(), &[&motion.displacement[..], &masters].concat());
+        reduced.gap_operator.push(&[&slaves[..], &facet].concat(), &[&motion.displacement[..], &masters].concat());
         reduced.points.push(ContactPoint {
             pair: cell[0].pair,
             nodes: slaves,
@@ -208,10 +208,10 @@ mod tests {
         let (shift, turn) = ([1e-3, -2e-3, 5e-4], [0.01, 0.02, -0.03]);
         let rigid = |x: [f64; 3]| [0, 1, 2].map(|i| shift[i] + cross(turn, x)[i]);
         for (a, point) in reduced.points.iter().enumerate() {
-            let all = reduced.trace.gap(a, |n| rigid(mesh.nodes[n as usize]));
+            let all = reduced.gap_operator.gap(a, |n| rigid(mesh.nodes[n as usize]));
             assert!(norm(all) < 1e-15, "{all:?}");
             let pad = |n: u32| if point.nodes.contains(&n) { rigid(mesh.nodes[n as usize]) } else { [0.0; 3] };
-            assert!(norm(sub(reduced.trace.gap(a, pad), rigid(point.position))) < 1e-15);
+            assert!(norm(sub(reduced.gap_operator.gap(a, pad), rigid(point.position))) < 1e-15);
         }
     }
 
@@ -222,7 +222,7 @@ mod tests {
         let force = [3.0, -1.0, 2.0];
         for (a, point) in reduced.points.iter().enumerate() {
             let mut sums = [[0.0; 3]; 4];
-            reduced.trace.spread(a, force, |n, f| {
+            reduced.gap_operator.spread(a, force, |n, f| {
                 let side = if point.nodes.contains(&n) { 0 } else { 2 };
                 let moment = cross(sub(mesh.nodes[n as usize], point.position), f);
                 (0..3).for_each(|i| {

@@ -34,7 +34,7 @@ use std::time::Instant;
 use nalgebra::DMatrix;
 
 use crate::assembly::System;
-use crate::contact::{Interface, Trace};
+use crate::contact::{GapOperator, Interface};
 use crate::equilibrium::Equilibrium;
 use crate::native::{Block, Factor, FactorKind, FactorStats, Matrix, Noise, Vector, lapack};
 use crate::{Error, Result};
@@ -92,8 +92,8 @@ pub struct Costs {
 
 /// The reduced structure. Coordinates: three for each retained point, then one for each fixed-interface mode and each inertia mode.
 pub struct Reduced {
-    /// The retained points, as a trace.
-    pub retained: Trace,
+    /// The retained points, as a gap operator.
+    pub retained: GapOperator,
     /// The contact points that they belong to.
     pub contacts: Vec<usize>,
     /// Frequencies of the fixed-interface modes, Hz.

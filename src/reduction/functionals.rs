@@ -1,7 +1,7 @@
 //! The retained coordinates `q_b = B u` of a super-element: linear functionals of the displacements, three a retained point.
 
 use crate::assembly::{DofMap, System};
-use crate::contact::{Interface, Trace};
+use crate::contact::{GapOperator, Interface};
 use crate::native::{Block, Comm};
 
 /// The rows of B as far as this rank's equations go.
@@ -13,9 +13,9 @@ pub struct Functionals {
 }
 
 impl Functionals {
-    /// Three rows for each point of the trace.
-    pub fn new(trace: &Trace, system: &System) -> Functionals {
-        let rows = (0..trace.len()).flat_map(|a| point_rows(trace, a, &system.dofs)).collect();
+    /// Three rows for each point of the gap_operator.
+    pub fn new(gap_operator: &GapOperator, system: &System) -> Functionals {
+        let rows = (0..gap_operator.len()).flat_map(|a| point_rows(gap_operator, a, &system.dofs)).collect();
         Functionals { comm: system.k.comm().clone(), n_local: system.dofs.n_local(), rows }
     }
 
@@ -59,9 +59,9 @@ impl Functionals {
 }
 
 /// The three rows of a point.
-fn point_rows(trace: &Trace, a: usize, dofs: &DofMap) -> [Vec<(usize, f64)>; 3] {
+fn point_rows(gap_operator: &GapOperator, a: usize, dofs: &DofMap) -> [Vec<(usize, f64)>; 3] {
     let owned = dofs.owned();
-    let (nodes, blocks) = trace.point(a);
+    let (nodes, blocks) = gap_operator.point(a);
     std::array::from_fn(|i| {
         let entries = nodes.iter().zip(blocks).flat_map(|(&n, block)| dofs.equations(n).into_iter().zip(block[i]));
         let own = entries.filter(|(equation, b)| owned.contains(equation) && *b != 0.0);
@@ -71,25 +71,25 @@ fn point_rows(trace: &Trace, a: usize, dofs: &DofMap) -> [Vec<(usize, f64)>; 3] 
 
 /// The retained points: the slave's side of every sliding contact point, then the master's, then the mean motion of each list of
 /// loaded nodes. Also the contact points that the first two belong to.
-pub fn retained(interface: &Interface, loaded: &[Vec<u32>]) -> (Trace, Vec<usize>) {
+pub fn retained(interface: &Interface, loaded: &[Vec<u32>]) -> (GapOperator, Vec<usize>) {
     let sliding = interface.pairs.iter().filter(|pair| pair.is_sliding());
     let contacts: Vec<usize> = sliding.flat_map(|pair| pair.points.clone()).collect();
-    let mut trace = Trace::new();
+    let mut gap_operator = GapOperator::new();
     for &a in &contacts {
-        let (nodes, blocks) = interface.trace.point(a);
+        let (nodes, blocks) = interface.gap_operator.point(a);
         let n = interface.points[a].nodes.len();
-        trace.push(&nodes[..n], &blocks[..n]);
+        gap_operator.push(&nodes[..n], &blocks[..n]);
     }
     for &a in &contacts {
-        let (nodes, blocks) = interface.trace.point(a);
+        let (nodes, blocks) = interface.gap_operator.point(a);
         let n = interface.points[a].nodes.len();
         let masters: Vec<_> = blocks[n..].iter().map(|block| block.map(|row| row.map(|b| -b))).collect();
-        trace.push(&nodes[n..], &masters);
+        gap_operator.push(&nodes[n..], &masters);
     }
     for nodes in loaded {
         let share = 1.0 / nodes.len() as f64;
         let block = [[share, 0.0, 0.0], [0.0, share, 0.0], [0.0, 0.0, share]];
-        trace.push(nodes, &vec![block; nodes.len()]);
+        gap_operator.push(nodes, &vec![block; nodes.len()]);
     }
-    (trace, contacts)
+    (gap_operator, contacts)
 }

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::Result;
-use crate::contact::{Interface, Response, Status, Trace};
+use crate::contact::{GapOperator, Interface, Response, Status};
 use crate::equilibrium::Contacts;
 use crate::native::{Matrix, Vector};
 
@@ -24,7 +24,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    pub(super) fn new(structure: &Structure, retained: &Trace, contacts: &[usize]) -> Result<Linear> {
+    pub(super) fn new(structure: &Structure, retained: &GapOperator, contacts: &[usize]) -> Result<Linear> {
         let Structure { system, interface, equilibrium, .. } = structure;
         let evaluation = Contacts::new(interface, system)?;
         let gaps = evaluation.gaps(&equilibrium.u)?;
@@ -43,7 +43,7 @@ impl Linear {
         let mut preload = system.zeros()?;
         evaluation.add_forces(&(0..gaps.len()).map(beside).collect::<Vec<_>>(), 1.0, &mut preload)?;
 
-        let sides = Interface { trace: retained.clone(), ..Interface::default() };
+        let sides = Interface { gap_operator: retained.clone(), ..Interface::default() };
         let support = |point: usize| {
             let contact = contacts.get(point % contacts.len().max(1)).filter(|_| point < 2 * contacts.len());
             let k = contact.map_or(0.0, |&a| interface.points[a].law.stiffness(0.0));

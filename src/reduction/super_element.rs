@@ -12,7 +12,7 @@
 
 use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
 use crate::contact::interface::Pair;
-use crate::contact::{ContactPoint, Interface, Trace};
+use crate::contact::{ContactPoint, GapOperator, Interface};
 use crate::mesh::Numbering;
 use crate::model::NormalLaw;
 use crate::native::{Comm, Matrix};
@@ -134,13 +134,13 @@ impl SuperElement {
     /// The contacts, under the full model's law or another one (of node-to-node elements: N/m and N/m3), corrected to the full model's forces.
     pub fn interface(&self, law: Option<NormalLaw>) -> Interface {
         let n = self.contacts.len() as u32;
-        let mut trace = Trace::new();
+        let mut gap_operator = GapOperator::new();
         let identity = |s: f64| [[s, 0.0, 0.0], [0.0, s, 0.0], [0.0, 0.0, s]];
         for i in 0..n {
-            trace.push(&[i, n + i], &[identity(1.0), identity(-1.0)]);
+            gap_operator.push(&[i, n + i], &[identity(1.0), identity(-1.0)]);
         }
         let pairs = self.pairs.iter().map(|pair| Pair { law: law.unwrap_or(pair.law), ..pair.clone() }).collect();
-        Interface { pairs, points: self.contacts.iter().map(|contact| contact.under(law)).collect(), trace }
+        Interface { pairs, points: self.contacts.iter().map(|contact| contact.under(law)).collect(), gap_operator }
     }
 
     /// The assembled system under `factor` times the loads. Collective.
@@ -153,7 +153,7 @@ impl SuperElement {
         let held: Vec<[bool; 3]> = (0..n.div_ceil(3)).map(|node| [0, 1, 2].map(|i| is_held(3 * node + i))).collect();
         let mut system = {
             let nodes = Numbering::even(held.len(), comm.rank(), comm.size());
-            System::assemble(comm, &nodes, &held, &[&Member::new(self)], &[&interface.trace])?
+            System::assemble(comm, &nodes, &held, &[&Member::new(self)], &[&interface.gap_operator])?
         };
         // Every coordinate couples with every other.
         [&mut system.k, &mut system.m, &mut system.c].into_iter().try_for_each(Matrix::store_dense)?;

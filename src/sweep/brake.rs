@@ -171,7 +171,7 @@ impl Brake {
     /// # Errors
     /// PETSc's.
     pub fn assemble_families(&self, comm: &Comm, families: &[&dyn Elements]) -> Result<System> {
-        let contacts: [&dyn Connectivity; 1] = [&self.interface.trace];
+        let contacts: [&dyn Connectivity; 1] = [&self.interface.gap_operator];
         let mut system = System::assemble(comm, &self.nodes, &self.held, families, &contacts)?;
         system.add_load(&self.loads)?;
         Ok(system)

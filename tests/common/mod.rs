@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use squeal::contact::search::Alone;
-use squeal::mesh::{Mesh, Numbering, Piece, Surface, jacobian};
+use squeal::element::tet10::{self, FACES};
+use squeal::mesh::{Mesh, Numbering, Piece, Surface};
 use squeal::model;
 use squeal::sweep::Brake;
 
@@ -45,9 +46,6 @@ pub struct Block<'a> {
     pub map: &'a dyn Fn([f64; 3]) -> [f64; 3],
 }
 
-/// The faces of a tetrahedron, outward: corners, then midsides of (0,1) (1,2) (2,0).
-const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
-
 impl Block<'_> {
     /// Adds the block as a part, and its sides as surfaces `<part>_x0`, `<part>_x1`, `<part>_y0`, ...
     pub fn add_to(&self, mesh: &mut Mesh) {
@@ -73,7 +71,7 @@ impl Block<'_> {
             let index = mesh.tets.len() as u32;
             mesh.tets.push(tet);
             mesh.tet_part.push(part);
-            let inverted = jacobian::is_inverted(&mesh.tet_nodes(index as usize));
+            let inverted = tet10::is_inverted(&mesh.tet_nodes(index as usize));
             assert!(!inverted, "{}: the map turns the block inside out", self.part);
             for face in FACES {
                 if let Some(side) = self.side(face.map(|a| lattice[a])) {

@@ -37,7 +37,7 @@ fn refused(contact: Contact, turning: bool, mesh: &Mesh) -> String {
 fn pads_on_a_disc_slide_along_the_circles_of_the_disc() {
     let (interface, _) = brake();
     assert_eq!(interface.points.len(), 236);
-    assert_eq!(interface.trace.len(), 236);
+    assert_eq!(interface.gap_operator.len(), 236);
     assert_eq!(interface.pairs[1].points, 118..236);
     for pair in &interface.pairs {
         let found = &pair.statistics;
@@ -70,7 +70,7 @@ fn resultants(
         let force = interface.respond(a, g(point), stage).force;
         slaves[0] += Vector3::from(force);
         slaves[1] += Vector3::from(point.position).cross(&Vector3::from(force));
-        interface.trace.spread(a, force, |node, f| {
+        interface.gap_operator.spread(a, force, |node, f| {
             all[0] += Vector3::from(f);
             all[1] += Vector3::from(mesh.nodes[node as usize]).cross(&Vector3::from(f));
         });

@@ -1,8 +1,8 @@
 //! What the search finds on planes, cylinders, spheres and the test brake.
 
 use super::*;
+use crate::contact::gap_operator::GapOperator;
 use crate::contact::testing::{flipped, pads_on_disc, patch};
-use crate::contact::trace::Trace;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -181,17 +181,17 @@ fn pads_on_a_disc_have_the_reference_points_and_areas() {
     }
 }
 
-/// Trace of a slave patch at height `gap` over a master patch, with all nodes.
-fn traced(gap: f64) -> (Vec<[f64; 3]>, Found, Trace) {
+/// GapOperator of a slave patch at height `gap` over a master patch, with all nodes.
+fn patch_above_patch(gap: f64) -> (Vec<[f64; 3]>, Found, GapOperator) {
     let mut nodes = Vec::new();
     let slave = flipped(&floor(&mut nodes, 3, gap));
     let master = floor(&mut nodes, 4, 0.0);
     let found = find(&slave, &master, &nodes, &ALL, &Alone);
-    let mut trace = Trace::new();
+    let mut gap_operator = GapOperator::new();
     for point in &found.points {
-        trace.push_projection(point.node, &master.facets[point.facet], &point.shape);
+        gap_operator.push_projection(point.node, &master.facets[point.facet], &point.shape);
     }
-    (nodes, found, trace)
+    (nodes, found, gap_operator)
 }
 
 proptest! {
@@ -201,13 +201,13 @@ proptest! {
         shift in prop::array::uniform3(-1.0..1.0),
         turn in prop::array::uniform3(-1.0..1.0),
     ) {
-        let (nodes, found, trace) = traced(gap);
+        let (nodes, found, gap_operator) = patch_above_patch(gap);
         let (shift, turn) = (Vector3::from(shift), Vector3::from(turn));
         let rigid = |n: u32| (shift + turn.cross(&Vector3::from(nodes[n as usize]))).into();
         for (a, point) in found.points.iter().enumerate() {
             // u = s + phi x X: g = phi x (X_slave - X_projection) = gap phi x n, nothing where the gap is zero
             let expected = point.gap * turn.cross(&Vector3::from(point.normal));
-            let g = Vector3::from(trace.gap(a, rigid));
+            let g = Vector3::from(gap_operator.gap(a, rigid));
             prop_assert!((g - expected).norm() < 1e-14);
         }
     }

@@ -40,5 +40,7 @@ mod stiffness;
 
 pub use mass::{MassProperties, mass_properties, scalar_mass, volume};
 pub use recovery::{strain, stress_at_nodes, von_mises};
-pub use shape::{EDGES, NODES, gradients, jacobian, position, shape};
+pub use shape::{
+    EDGES, FACES, NODES, corner_jacobians, determinants, gradients, is_inverted, jacobian, position, shape, straight,
+};
 pub use stiffness::{stiffness, stiffness_14};

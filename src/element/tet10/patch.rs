@@ -4,10 +4,9 @@
 //! at every point. The forces are then `f_a = sum_q w cof(J) grad N_a . stress`, whose integrand has degree 3 on a curved
 //! element (and 1 on a straight one), and only its exact integral cancels at an inner node.
 
-use super::{EDGES, stiffness, stiffness_14};
+use super::{EDGES, is_inverted, stiffness, stiffness_14};
 use crate::algebra::{dot, norm};
 use crate::element::samples::{Random, triclinic};
-use crate::mesh::jacobian::is_inverted;
 use std::collections::BTreeMap;
 
 type Kernel = fn(&[[f64; 3]; 10], &[[f64; 6]; 6], &mut [f64]);

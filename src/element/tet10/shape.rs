@@ -1,5 +1,6 @@
 //! Shape functions, their gradients and the Jacobian.
 
+use crate::algebra::cofactor_columns;
 use crate::element::quadrature::{Point, TETRAHEDRON_4, TETRAHEDRON_14};
 
 /// Reference coordinates of the ten nodes.
@@ -18,6 +19,9 @@ pub const NODES: [[f64; 3]; 10] = [
 
 /// The two corners of each edge; its midside is node `4 + index`.
 pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+
+/// The nodes of each face as a 6-node facet: corners, then midsides, turning so that the normal points out of the element.
+pub const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
 
 /// Shape functions `N_a` at reference coordinates `at`.
 ///
@@ -86,6 +90,17 @@ pub(super) const fn gradients_at<const Q: usize>(rule: &[Point<3>; Q]) -> [[[f64
 pub(super) static GRADIENTS_4: [[[f64; 3]; 10]; 4] = gradients_at(&TETRAHEDRON_4);
 pub(super) static GRADIENTS_14: [[[f64; 3]; 10]; 14] = gradients_at(&TETRAHEDRON_14);
 
+/// The element with straight edges, its midsides in the middle.
+pub fn straight(corners: [[f64; 3]; 4]) -> [[f64; 3]; 10] {
+    std::array::from_fn(|a| match a {
+        0..4 => corners[a],
+        _ => {
+            let [i, j] = EDGES[a - 4].map(|corner| corners[corner]);
+            std::array::from_fn(|k| 0.5 * (i[k] + j[k]))
+        }
+    })
+}
+
 /// The point of the element at reference coordinates `at`, m: `x = sum_a N_a x_a`.
 pub fn position(x: &[[f64; 3]; 10], at: [f64; 3]) -> [f64; 3] {
     let n = shape(at);
@@ -106,10 +121,65 @@ pub fn jacobian(x: &[[f64; 3]; 10], gradients: &[[f64; 3]; 10]) -> [[f64; 3]; 3]
     j
 }
 
+/// The Jacobians at the four corners.
+pub fn corner_jacobians(x: &[[f64; 3]; 10]) -> [[[f64; 3]; 3]; 4] {
+    std::array::from_fn(|corner| jacobian(x, &gradients(NODES[corner])))
+}
+
+/// `detJ` (six times the local volume, m3) at the ten nodes and at the four points of the stiffness rule.
+pub fn determinants(x: &[[f64; 3]; 10]) -> [f64; 14] {
+    std::array::from_fn(|p| {
+        let at = if p < 10 { NODES[p] } else { TETRAHEDRON_4[p - 10].at };
+        cofactor_columns(&jacobian(x, &gradients(at))).1
+    })
+}
+
+/// Whether the element is turned inside out somewhere, or flat: `detJ <= 0` at a node or at a point of the stiffness rule.
+pub fn is_inverted(x: &[[f64; 3]; 10]) -> bool {
+    // Written so that a determinant that is not a number counts as inverted.
+    !determinants(x).iter().all(|&det| det > 0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::{cross, dot, sub};
     use crate::element::samples::{Random, curved_tet};
+
+    const UNIT: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    #[test]
+    fn faces_look_out_and_their_midsides_lie_between_their_corners() {
+        for [a, b, c, ab, bc, ca] in FACES {
+            let normal = cross(sub(NODES[b], NODES[a]), sub(NODES[c], NODES[a]));
+            assert!(dot(normal, sub(NODES[a], [0.25; 3])) > 0.0);
+            for (middle, [i, k]) in [(ab, [a, b]), (bc, [b, c]), (ca, [c, a])] {
+                assert_eq!(NODES[middle], [0, 1, 2].map(|axis| 0.5 * (NODES[i][axis] + NODES[k][axis])));
+            }
+        }
+    }
+
+    #[test]
+    fn a_straight_tetrahedron_has_six_times_its_volume_everywhere() {
+        let mut corners = UNIT.map(|x| [2.0 * x[0] + 0.5, 3.0 * x[1] - x[0], x[2] + 7.0]);
+        for det in determinants(&straight(corners)) {
+            assert!((det - 6.0).abs() < 1e-12);
+        }
+        assert!(!is_inverted(&straight(corners)));
+        corners.swap(0, 1);
+        assert!(is_inverted(&straight(corners)));
+    }
+
+    #[test]
+    fn a_midside_pulled_through_the_element_inverts_it() {
+        let mut x = straight(UNIT);
+        x[4] = [0.2, 0.0, 0.0];
+        assert!(is_inverted(&x));
+        x[4] = [0.4, 0.0, 0.0];
+        assert!(!is_inverted(&x));
+        x[4][1] = f64::NAN;
+        assert!(is_inverted(&x), "a coordinate that is not a number is not taken for a good element");
+    }
 
     #[test]
     fn shape_function_a_is_one_at_node_a_and_zero_at_the_others() {

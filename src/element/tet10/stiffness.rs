@@ -15,9 +15,7 @@
 use super::shape::{GRADIENTS_4, GRADIENTS_14, jacobian};
 use crate::algebra::{cofactor_columns, dot};
 use crate::element::quadrature::{Point, TETRAHEDRON_4, TETRAHEDRON_14};
-
-/// Voigt index of the pair of axes (i, k) in the order xx yy zz xy yz zx.
-pub(super) const VOIGT: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+use crate::element::voigt;
 
 /// Fills `k` (30x30, row-major, dof `3a + i`, N/m) with the stiffness of a tetrahedron by the 4-point rule.
 ///
@@ -65,7 +63,7 @@ fn integrate<const Q: usize>(
             let mut row = [0.0; 30];
             for q in 0..Q {
                 let [g0, g1, g2] = gradients[q][a];
-                let [s0, s1, s2] = VOIGT[i].map(|r| &weighted_db[q][r]);
+                let [s0, s1, s2] = voigt::INDEX[i].map(|r| &weighted_db[q][r]);
                 for c in 3 * a..30 {
                     row[c] += g0 * s0[c] + g1 * s1[c] + g2 * s2[c];
                 }
@@ -95,7 +93,7 @@ fn weighted_db_into(elasticity: &[[f64; 6]; 6], gradients: &[[f64; 3]; 10], fact
         let d = elasticity[r].map(|entry| factor * entry);
         for b in 0..10 {
             for j in 0..3 {
-                let [v0, v1, v2] = VOIGT[j];
+                let [v0, v1, v2] = voigt::INDEX[j];
                 s[r][3 * b + j] = d[v0] * gradients[b][0] + d[v1] * gradients[b][1] + d[v2] * gradients[b][2];
             }
         }
@@ -117,9 +115,8 @@ mod tests {
     use super::*;
     use crate::algebra::cross;
     use crate::element::samples::{Random, collapsed_gauss, curved_tet, straight_tet, triclinic};
-    use crate::element::tet10::{gradients, mass_properties, scalar_mass};
+    use crate::element::tet10::{gradients, mass_properties};
     use nalgebra::DMatrix;
-    use std::time::Instant;
 
     /// `K = sum_q w detJ B^T D B` written as plain matrix products on any list of points.
     fn plain_stiffness(x: &[[f64; 3]; 10], elasticity: &[[f64; 6]; 6], rule: &[Point<3>]) -> DMatrix<f64> {
@@ -213,40 +210,5 @@ mod tests {
         let mut random = Random::seeded(16);
         let k = dense(&curved_tet(&mut random, 0.08), &triclinic(&mut random));
         assert_eq!(k, k.transpose());
-    }
-
-    /// Run with `cargo test --release --lib tet10 -- --ignored --nocapture`.
-    #[test]
-    #[ignore = "a measurement"]
-    fn speed_of_stiffness_and_mass() {
-        let mut random = Random::seeded(17);
-        let elements: Vec<_> = (0..1000).map(|_| curved_tet(&mut random, 0.05)).collect();
-        let materials = [triclinic(&mut random), triclinic(&mut random)];
-        let time = |name: &str, work: &mut dyn FnMut(&[[f64; 3]; 10], usize)| {
-            let best = (0..30)
-                .map(|_| {
-                    let start = Instant::now();
-                    elements.iter().enumerate().for_each(|(e, x)| work(x, e));
-                    start.elapsed().as_secs_f64() / elements.len() as f64
-                })
-                .fold(f64::INFINITY, f64::min);
-            println!("{name}: {:.2} us an element, {:.0} tets/s", best * 1e6, 1.0 / best);
-        };
-        let (mut k, mut m) = ([0.0; 900], [0.0; 100]);
-        let mut sink = 0.0;
-        time("stiffness", &mut |x, e| {
-            stiffness(x, &materials[e % 2], &mut k);
-            sink += k[e % 900];
-        });
-        time("mass", &mut |x, e| {
-            scalar_mass(x, 7800.0, &mut m);
-            sink += m[e % 100];
-        });
-        time("stiffness + mass", &mut |x, e| {
-            stiffness(x, &materials[e % 2], &mut k);
-            scalar_mass(x, 7800.0, &mut m);
-            sink += k[e % 900] + m[e % 100];
-        });
-        assert!(sink.is_finite());
     }
 }

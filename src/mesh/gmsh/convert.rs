@@ -3,8 +3,9 @@
 use super::groups::{Groups, noun};
 use super::kinds::{TET10, TRI6};
 use super::sections::{Block, Sections};
+use crate::element::tet10;
 use crate::mesh::skin::Skin;
-use crate::mesh::{Mesh, Surface, jacobian};
+use crate::mesh::{Mesh, Surface};
 use std::collections::{BTreeMap, HashMap};
 
 /// For each node of ours, its place in Gmsh's order of a 10-node tetrahedron: the last two midsides are swapped.
@@ -105,8 +106,7 @@ fn compact(sections: &Sections, unit: f64, mesh: &mut Mesh) -> Result<Vec<u32>, 
 
 /// Refuses a mesh with inverted elements, telling how many and where.
 fn check_inverted(mesh: &Mesh, elements: &[u64]) -> Result<(), String> {
-    let inverted: Vec<usize> =
-        (0..mesh.tets.len()).filter(|&tet| jacobian::is_inverted(&mesh.tet_nodes(tet))).collect();
+    let inverted: Vec<usize> = (0..mesh.tets.len()).filter(|&tet| tet10::is_inverted(&mesh.tet_nodes(tet))).collect();
     let Some(&first) = inverted.first() else {
         return Ok(());
     };

@@ -1,7 +1,8 @@
 //! Meshes of tests/data read right, and every message about a bad one.
 
 use super::parse;
-use crate::mesh::{Mesh, jacobian, quality::scaled_jacobian};
+use crate::element::tet10;
+use crate::mesh::{Mesh, quality::scaled_jacobian};
 use std::path::{Path, PathBuf};
 
 fn data(name: &str) -> PathBuf {
@@ -140,7 +141,7 @@ fn the_reference_brake_reads_with_its_names_and_facets_outward() {
     assert_eq!(mesh.part_of_surface("lining_outer_face"), Some(3));
     for tet in 0..mesh.tets.len() {
         let x = mesh.tet_nodes(tet);
-        let determinants = jacobian::determinants(&x);
+        let determinants = tet10::determinants(&x);
         let [least, greatest] = [f64::min, f64::max].map(|of| determinants.into_iter().reduce(of).unwrap());
         assert!(scaled_jacobian(&x) > 0.05 && least > 0.5 * greatest, "{tet}");
     }

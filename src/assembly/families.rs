@@ -1,6 +1,6 @@
-//! The full finite element structure as families of elements: tetrahedra by part, and connectors.
+//! The families of elements of a model on its mesh, tetrahedra by part and connectors, its constraints and its loads.
 
-use crate::contact::search;
+use crate::contact::{GapOperator, search};
 use crate::element::connector::{RelativeMotion, relative_motion};
 use crate::element::coupling::Cloud;
 use crate::element::{tet10, tri6};
@@ -152,6 +152,17 @@ impl Elements for Vec<Link> {
             [0.0, 0.0, 0.0, 0.0, 0.0, 0.0] => Vec::new(),
             damping => link.motion.weighted_product(damping),
         };
+    }
+}
+
+/// Contact points couple the nodes that their relative displacement depends on.
+impl Connectivity for GapOperator {
+    fn len(&self) -> usize {
+        GapOperator::len(self)
+    }
+
+    fn nodes(&self, a: usize) -> &[u32] {
+        self.point(a).0
     }
 }
 

@@ -1,4 +1,4 @@
-//! The trace: how contact sees a body, `g = B u`.
+//! The gap operator `g = B u`: the relative displacements at the contact points.
 //!
 //! Row block `a` of B says which nodes the relative motion at contact point `a` depends on, and how:
 //!
@@ -8,13 +8,13 @@
 //!
 //! Node-to-surface contact has `+I` at the slave node and `-N_j I` at the six nodes of the master's facet. A
 //! reference node that follows a cloud of nodes needs full blocks, a super-element has retained points for nodes:
-//! other traces, the same contact code.
+//! other gap operators, the same contact code.
 
 use crate::algebra::product;
 
 /// The blocks of B, compressed by points.
 #[derive(Debug, Clone)]
-pub struct Trace {
+pub struct GapOperator {
     /// Point `a` owns the entries `offsets[a]..offsets[a + 1]`.
     offsets: Vec<usize>,
     /// The node of each entry.
@@ -23,14 +23,14 @@ pub struct Trace {
     blocks: Vec<[[f64; 3]; 3]>,
 }
 
-impl Default for Trace {
+impl Default for GapOperator {
     fn default() -> Self {
-        Trace { offsets: vec![0], nodes: Vec::new(), blocks: Vec::new() }
+        GapOperator { offsets: vec![0], nodes: Vec::new(), blocks: Vec::new() }
     }
 }
 
-impl Trace {
-    /// A trace without points.
+impl GapOperator {
+    /// A gap operator without points.
     pub fn new() -> Self {
         Self::default()
     }
@@ -110,7 +110,7 @@ impl Trace {
 
     /// Expands a point's 3 x 3 block to its nodes, `out = B_a^T D B_a`.
     ///
-    /// `out` becomes row-major, `3n x 3n`, with the dofs x, y, z of the `n` nodes in the order of [`Trace::point`].
+    /// `out` becomes row-major, `3n x 3n`, with the dofs x, y, z of the `n` nodes in the order of [`GapOperator::point`].
     pub fn expand_into(&self, a: usize, d: &[[f64; 3]; 3], out: &mut Vec<f64>) {
         let (_, blocks) = self.point(a);
         let width = 3 * blocks.len();
@@ -162,22 +162,22 @@ mod tests {
 
     #[test]
     fn blocks_of_a_repeated_node_are_added() {
-        let mut trace = Trace::new();
-        trace.push(&[7, 3, 7], &[diagonal(1.0), diagonal(-0.25), diagonal(-0.75)]);
-        let (nodes, blocks) = trace.point(0);
+        let mut gap_operator = GapOperator::new();
+        gap_operator.push(&[7, 3, 7], &[diagonal(1.0), diagonal(-0.25), diagonal(-0.75)]);
+        let (nodes, blocks) = gap_operator.point(0);
         assert_eq!(nodes, [7, 3]);
         assert_eq!(blocks, [diagonal(0.25), diagonal(-0.25)]);
     }
 
     #[test]
     fn points_keep_to_their_own_entries() {
-        let mut trace = Trace::new();
-        assert!(trace.is_empty());
-        trace.push(&[1], &[diagonal(2.0)]);
-        trace.push(&[1, 2], &[diagonal(3.0), diagonal(4.0)]);
-        assert_eq!(trace.len(), 2);
-        assert_eq!(trace.gap(0, |_| [1.0, 0.0, 0.0]), [2.0, 0.0, 0.0]);
-        assert_eq!(trace.gap(1, |_| [1.0, 0.0, 0.0]), [7.0, 0.0, 0.0]);
+        let mut gap_operator = GapOperator::new();
+        assert!(gap_operator.is_empty());
+        gap_operator.push(&[1], &[diagonal(2.0)]);
+        gap_operator.push(&[1, 2], &[diagonal(3.0), diagonal(4.0)]);
+        assert_eq!(gap_operator.len(), 2);
+        assert_eq!(gap_operator.gap(0, |_| [1.0, 0.0, 0.0]), [2.0, 0.0, 0.0]);
+        assert_eq!(gap_operator.gap(1, |_| [1.0, 0.0, 0.0]), [7.0, 0.0, 0.0]);
     }
 
     proptest! {
@@ -187,12 +187,12 @@ mod tests {
             u in prop::collection::vec(vector(), 4),
             force in vector(),
         ) {
-            let mut trace = Trace::new();
-            trace.push(&[0, 1, 2, 3], &blocks);
+            let mut gap_operator = GapOperator::new();
+            gap_operator.push(&[0, 1, 2, 3], &blocks);
             // f.(B u) = (B^T f).u
-            let left = dot(force, trace.gap(0, |n| u[n as usize]));
+            let left = dot(force, gap_operator.gap(0, |n| u[n as usize]));
             let mut right = 0.0;
-            trace.spread(0, force, |n, f| right += dot(f, u[n as usize]));
+            gap_operator.spread(0, force, |n, f| right += dot(f, u[n as usize]));
             prop_assert!((left - right).abs() < 1e-13);
         }
 
@@ -202,14 +202,14 @@ mod tests {
             u in prop::collection::vec(vector(), 3),
             d in block(),
         ) {
-            let mut trace = Trace::new();
-            trace.push(&[0, 1, 2], &blocks);
-            let g = trace.gap(0, |n| u[n as usize]);
+            let mut gap_operator = GapOperator::new();
+            gap_operator.push(&[0, 1, 2], &blocks);
+            let g = gap_operator.gap(0, |n| u[n as usize]);
             let force = [0, 1, 2].map(|i| dot(d[i], g));
             let mut k = Vec::new();
-            trace.expand_into(0, &d, &mut k);
+            gap_operator.expand_into(0, &d, &mut k);
             let flat = u.concat();
-            trace.spread(0, force, |n, f| {
+            gap_operator.spread(0, force, |n, f| {
                 for i in 0..3 {
                     let row = 3 * n as usize + i;
                     let ku: f64 = (0..9).map(|c| k[row * 9 + c] * flat[c]).sum();
