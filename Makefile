@@ -15,7 +15,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help demo test validation calculix full bench lint setup build clean
+.PHONY: help demo test validation calculix docs full bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## this list
@@ -36,6 +36,9 @@ validation: setup $(patsubst %,meshes/build/td1-%.msh,coarse medium fine) ## wri
 calculix: setup ## modes of the same meshes by CalculiX and by us, side by side
 	@scripts/setup.sh --tests
 	cargo nextest run --release --test calculix --no-capture
+
+docs: build ## the manual as a book: target/manual/index.html
+	@scripts/docs.sh $(BINARY) target/manual
 
 full: setup build meshes/build/brake-full.msh ## the paper's size: 179 thousand nodes on $(RANKS) ranks
 	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force --verbose
