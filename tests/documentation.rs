@@ -190,3 +190,32 @@ fn python_reads_results_and_json() {
         assert!(run.status.success() && !run.stdout.is_empty(), "{}", String::from_utf8_lossy(&run.stderr));
     }
 }
+
+/// Every key of a JSON document and every column of a table has a place in the manual.
+#[test]
+fn keys_and_columns_are_documented() {
+    let place = Place::blocks();
+    let known = manual("json.md").text + &manual("files.md").text;
+    let require = |name: &str, source: &str| assert!(known.contains(&format!("`{name}`")), "{source}: {name}");
+    for command in ["check", "stability"] {
+        let said = place.run(&[command, "brake.toml", "--json"]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        let document: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        keys(&document).iter().for_each(|key| require(key, command));
+    }
+    for table in place.list("brake-stability").iter().filter(|name| name.ends_with(".csv")) {
+        let text = place.read(&format!("brake-stability/{table}"));
+        text.lines().next().unwrap().split(',').for_each(|column| require(column, table));
+    }
+}
+
+/// The keys of all objects in a document.
+fn keys(document: &serde_json::Value) -> Vec<String> {
+    match document {
+        serde_json::Value::Object(map) => {
+            map.iter().flat_map(|(key, value)| std::iter::once(key.clone()).chain(keys(value))).collect()
+        }
+        serde_json::Value::Array(list) => list.iter().flat_map(keys).collect(),
+        _ => Vec::new(),
+    }
+}

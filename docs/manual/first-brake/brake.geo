@@ -2,7 +2,7 @@
 //
 //   gmsh -3 brake.geo -o brake.msh
 SetFactory("OpenCASCADE");
-parts() = ShapeFromFile("brake.step");  // in mm; the model file says so: [mesh] unit = "mm"
+parts() = ShapeFromFile("brake.step");  // in mm, which is [mesh] unit of the model file
 
 // 1. Find the solids by place: each box {xmin, ymin, zmin, xmax, ymax, zmax} contains one solid as a whole.
 // (In the window of Gmsh, Tools > Visibility lists numbers, which may be used instead.)
