@@ -40,7 +40,7 @@
 //! | [`output`] | a run's folder, tables, CSV, JSON, VTU | [`output::results_folder::write`] |
 //! | [`report`] | findings, wording, figures, the HTML page | [`report::page`] |
 //! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
-//! | [`matrices`] | given M, C, K from files and into files | [`matrices::Given::read`] |
+//! | [`matrices`] | given M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |
 //! | [`native`] | the only `unsafe`: MPI, LAPACK, PETSc, SLEPc, MUMPS, METIS | |
 //!
 //! Imports run one way, from the bottom of this table to its top (`tests/architecture.rs` holds the exact order). To change a

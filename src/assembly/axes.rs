@@ -29,12 +29,12 @@ impl<'a> AxisSum<'a> {
         let mut rows = Rows::default();
         let first = self.dofs.owned().start;
         let [mut own, mut other] = [Vec::new(), Vec::new()];
-        for (node, i) in self.equations() {
+        for (node, i) in self.owned_dofs() {
             own.clear();
             other.clear();
-            self.visit(node, i, |is_own, equation, _| match is_own {
-                true => own.push(equation - first),
-                false => other.push(equation),
+            self.visit(node, i, |is_own, dof, _| match is_own {
+                true => own.push(dof - first),
+                false => other.push(dof),
             });
             rows.push(&own, &other);
         }
@@ -47,7 +47,7 @@ impl<'a> AxisSum<'a> {
     /// Where the arrays have another size.
     pub fn values_into(&self, [own, other]: &mut [&mut [f64]; 2]) {
         let (mut own, mut other) = (own.iter_mut(), other.iter_mut());
-        for (node, i) in self.equations() {
+        for (node, i) in self.owned_dofs() {
             self.visit(node, i, |is_own, _, value| {
                 let next = if is_own { own.next() } else { other.next() };
                 *next.expect("room for every value") = value;
@@ -56,20 +56,20 @@ impl<'a> AxisSum<'a> {
         assert!(own.len() == 0 && other.len() == 0, "a value for all the room");
     }
 
-    /// Nodes and axes of this rank's equations, in their order.
-    fn equations(&self) -> impl Iterator<Item = (u32, usize)> {
+    /// Nodes and axes of this rank's dofs, in their order.
+    fn owned_dofs(&self) -> impl Iterator<Item = (u32, usize)> {
         let all = self.dofs.owned_nodes().flat_map(|node| [0, 1, 2].map(|i| (node, i)));
-        all.filter(|&(node, i)| self.dofs.equations(node)[i] >= 0)
+        all.filter(|&(node, i)| self.dofs.node_dofs(node)[i] >= 0)
     }
 
-    /// Visits the entries of a row: whether this rank owns the column, its equation, and the value.
+    /// Visits the entries of a row: whether this rank owns the column, its dof, and the value.
     #[inline]
     fn visit(&self, node: u32, i: usize, mut visit: impl FnMut(bool, i32, f64)) {
         let pairs = self.pattern.pairs(node);
         for (&neighbour, &value) in self.pattern.neighbours()[pairs.clone()].iter().zip(&self.values[pairs]) {
-            let equation = self.dofs.equations(neighbour)[i];
-            if equation >= 0 {
-                visit(self.dofs.owns(neighbour), equation, value);
+            let dof = self.dofs.node_dofs(neighbour)[i];
+            if dof >= 0 {
+                visit(self.dofs.owns(neighbour), dof, value);
             }
         }
     }

@@ -18,14 +18,14 @@ pub struct Boundary {
     pub triangles: Vec<[u32; 3]>,
     /// Part of each triangle.
     pub part: Vec<i32>,
-    /// Equations of its nodes, -1 where held.
-    equations: Vec<[i32; 3]>,
+    /// Dofs of its nodes, -1 where constrained.
+    dofs: Vec<[i32; 3]>,
 }
 
 impl Boundary {
     /// Brings the outer faces of all ranks together. Collective.
     pub fn new(comm: &Comm, mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Boundary {
-        let mut faces = Face::from_numbers(&comm.join(&Face::to_numbers(&own_faces(mesh, nodes, dofs))));
+        let mut faces = OuterFace::from_numbers(&comm.join(&OuterFace::to_numbers(&own_faces(mesh, nodes, dofs))));
         faces.sort_by_key(|face| (face.part, face.corners.map(|corner| corner.label)));
         let corners: BTreeMap<u32, Corner> =
             faces.iter().flat_map(|face| face.corners).map(|corner| (corner.label, corner)).collect();
@@ -34,7 +34,7 @@ impl Boundary {
             nodes: corners.values().map(|corner| corner.position).collect(),
             triangles: faces.iter().map(|face| face.corners.map(|corner| place[&corner.label])).collect(),
             part: faces.iter().map(|face| face.part).collect(),
-            equations: corners.values().map(|corner| corner.equations).collect(),
+            dofs: corners.values().map(|corner| corner.dofs).collect(),
         }
     }
 
@@ -44,29 +44,29 @@ impl Boundary {
     /// PETSc's.
     pub fn follow(&self, system: &System, chosen: impl Iterator<Item = usize>) -> Result<Displacements> {
         let is_root = system.k.comm().is_root();
-        let equations: Vec<i32> = chosen.filter(|_| is_root).flat_map(|node| self.equations[node]).collect();
-        let free: Vec<i32> = equations.iter().copied().filter(|&e| e >= 0).collect();
-        Ok(Displacements { equations, gather: Gather::new(&system.load, &free)? })
+        let dofs: Vec<i32> = chosen.filter(|_| is_root).flat_map(|node| self.dofs[node]).collect();
+        let free: Vec<i32> = dofs.iter().copied().filter(|&e| e >= 0).collect();
+        Ok(Displacements { dofs, gather: Gather::new(&system.load, &free)? })
     }
 }
 
 /// Displacements of some nodes, on the root.
 pub struct Displacements {
-    equations: Vec<i32>,
+    dofs: Vec<i32>,
     gather: Gather,
 }
 
 impl Displacements {
-    /// Displacements x, y, z of the nodes one after the other, zero where held; none on other ranks than the root. Collective.
+    /// Displacements x, y, z of the nodes one after the other, zero where constrained; none on other ranks than the root. Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn of(&mut self, vector: &Vector) -> Result<Vec<f64>> {
-        let equations = &self.equations;
+        let dofs = &self.dofs;
         self.gather.run(vector, |values| {
             let mut values = values.iter();
-            let at = |&e: &i32| if e < 0 { 0.0 } else { *values.next().expect("one value a free equation") };
-            equations.iter().map(at).collect()
+            let at = |&e: &i32| if e < 0 { 0.0 } else { *values.next().expect("one value a free dof") };
+            dofs.iter().map(at).collect()
         })
     }
 }
@@ -76,49 +76,49 @@ impl Displacements {
 struct Corner {
     label: u32,
     position: [f64; 3],
-    equations: [i32; 3],
+    dofs: [i32; 3],
 }
 
 /// An outer face of a tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Face {
+struct OuterFace {
     corners: [Corner; 3],
     part: i32,
 }
 
-impl Face {
+impl OuterFace {
     /// Numbers that a face becomes to be sent.
     const WIDTH: usize = 22;
 
-    fn to_numbers(faces: &[Face]) -> Vec<f64> {
+    fn to_numbers(faces: &[OuterFace]) -> Vec<f64> {
         faces.iter().flat_map(|face| face.numbers()).collect()
     }
 
-    fn numbers(&self) -> [f64; Face::WIDTH] {
-        let mut numbers = [0.0; Face::WIDTH];
+    fn numbers(&self) -> [f64; OuterFace::WIDTH] {
+        let mut numbers = [0.0; OuterFace::WIDTH];
         for (corner, out) in self.corners.iter().zip(numbers.chunks_exact_mut(7)) {
             out[0] = f64::from(corner.label);
             out[1..4].copy_from_slice(&corner.position);
-            out[4..].copy_from_slice(&corner.equations.map(f64::from));
+            out[4..].copy_from_slice(&corner.dofs.map(f64::from));
         }
         numbers[21] = f64::from(self.part);
         numbers
     }
 
-    fn from_numbers(numbers: &[f64]) -> Vec<Face> {
+    fn from_numbers(numbers: &[f64]) -> Vec<OuterFace> {
         let corner = |n: &[f64]| Corner {
             label: n[0] as u32,
             position: [n[1], n[2], n[3]],
-            equations: [n[4], n[5], n[6]].map(|e| e as i32),
+            dofs: [n[4], n[5], n[6]].map(|e| e as i32),
         };
-        let face = |n: &[f64]| Face { corners: [0, 7, 14].map(|k| corner(&n[k..])), part: n[21] as i32 };
-        numbers.chunks_exact(Face::WIDTH).map(face).collect()
+        let face = |n: &[f64]| OuterFace { corners: [0, 7, 14].map(|k| corner(&n[k..])), part: n[21] as i32 };
+        numbers.chunks_exact(OuterFace::WIDTH).map(face).collect()
     }
 }
 
 /// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it has all
 /// tetrahedra around a node of its own.
-fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<Face> {
+fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<OuterFace> {
     let mut faces: HashMap<[u32; 3], ([u32; 3], usize)> = HashMap::new();
     for (e, tet) in mesh.tets.iter().enumerate() {
         for face in FACES.map(|[a, b, c, ..]| [tet[a], tet[b], tet[c]]) {
@@ -135,9 +135,9 @@ fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<Face> {
     let corner = |n: u32| Corner {
         label: nodes.labels()[n as usize],
         position: mesh.nodes[n as usize],
-        equations: dofs.equations(n),
+        dofs: dofs.node_dofs(n),
     };
-    outer.iter().map(|&(face, e)| Face { corners: face.map(corner), part: mesh.tet_part[e] as i32 }).collect()
+    outer.iter().map(|&(face, e)| OuterFace { corners: face.map(corner), part: mesh.tet_part[e] as i32 }).collect()
 }
 
 #[cfg(test)]
@@ -151,7 +151,7 @@ mod tests {
         Mesh { nodes, tets, tet_part: vec![0, 1], parts: vec!["a".into(), "b".into()], ..Mesh::default() }
     }
 
-    fn faces(owned: std::ops::Range<u32>) -> Vec<Face> {
+    fn faces(owned: std::ops::Range<u32>) -> Vec<OuterFace> {
         let nodes = Numbering::whole(14, owned);
         own_faces(&mesh(), &nodes, &DofMap::new(&nodes, &[[false; 3]; 14]))
     }
@@ -160,10 +160,10 @@ mod tests {
     fn two_tetrahedra_have_six_outer_faces_each_on_one_rank() {
         let all = faces(0..14);
         assert_eq!(all.iter().map(|face| face.part).collect::<Vec<_>>(), [0, 0, 0, 1, 1, 1]);
-        let below_three = |face: &Face| face.corners.iter().filter(|corner| corner.label < 3).count();
+        let below_three = |face: &OuterFace| face.corners.iter().filter(|corner| corner.label < 3).count();
         assert!(all.iter().all(|face| below_three(face) == 2));
         let apart = [faces(0..1), faces(1..14)].concat();
         assert!(apart.len() == 6 && all.iter().all(|face| apart.contains(face)));
-        assert_eq!(Face::from_numbers(&Face::to_numbers(&all)), all);
+        assert_eq!(OuterFace::from_numbers(&OuterFace::to_numbers(&all)), all);
     }
 }

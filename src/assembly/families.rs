@@ -84,7 +84,7 @@ impl Elements for Tets<'_> {
 /// A connector on its mesh: a spring and damper between the mean motions of two clouds of nodes.
 ///
 /// A surface's cloud is its midside nodes with their contact weights, any other set's all nodes with equal weights.
-pub struct Link {
+pub struct ConnectorElement {
     /// The nodes of both clouds, one after the other.
     pub nodes: Vec<u32>,
     /// The motion of the second cloud relative to the first.
@@ -95,8 +95,8 @@ pub struct Link {
     pub damping: [f64; 6],
 }
 
-impl Link {
-    fn new(connector: &Connector, mesh: &Mesh) -> std::result::Result<Link, String> {
+impl ConnectorElement {
+    fn new(connector: &Connector, mesh: &Mesh) -> std::result::Result<ConnectorElement, String> {
         let set = |name: &String| cloud(mesh, name).ok_or_else(|| format!("the mesh has no {name:?}"));
         let [(first, first_weights), (second, second_weights)] =
             [set(&connector.between[0])?, set(&connector.between[1])?];
@@ -111,7 +111,12 @@ impl Link {
         let [[kx, ky, kz], [rx, ry, rz]] = [connector.stiffness, connector.rotational_stiffness];
         let [cx, cy, cz] = connector.damping;
         let nodes = [first, second].concat();
-        Ok(Link { nodes, motion, stiffness: [kx, ky, kz, rx, ry, rz], damping: [cx, cy, cz, 0.0, 0.0, 0.0] })
+        Ok(ConnectorElement {
+            nodes,
+            motion,
+            stiffness: [kx, ky, kz, rx, ry, rz],
+            damping: [cx, cy, cz, 0.0, 0.0, 0.0],
+        })
     }
 }
 
@@ -119,17 +124,17 @@ impl Link {
 ///
 /// # Errors
 /// [`Error::Input`] where a set is missing, or lies on a line.
-pub fn links(model: &Model, mesh: &Mesh) -> Result<Vec<Link>> {
-    let link = |connector: &Connector| {
-        Link::new(connector, mesh).map_err(|message| {
+pub fn connector_elements(model: &Model, mesh: &Mesh) -> Result<Vec<ConnectorElement>> {
+    let element = |connector: &Connector| {
+        ConnectorElement::new(connector, mesh).map_err(|message| {
             let (file, line, name) = (model.file.display(), connector.line, &connector.name);
             Error::input(format!("{file}:{line}: connector {name:?}: {message}"))
         })
     };
-    model.connectors.iter().map(link).collect()
+    model.connectors.iter().map(element).collect()
 }
 
-impl Connectivity for Vec<Link> {
+impl Connectivity for Vec<ConnectorElement> {
     fn len(&self) -> usize {
         Vec::len(self)
     }
@@ -139,18 +144,18 @@ impl Connectivity for Vec<Link> {
     }
 }
 
-impl Elements for Vec<Link> {
+impl Elements for Vec<ConnectorElement> {
     fn mass_couples_axes(&self) -> bool {
         false
     }
 
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
-        let link = &self[e];
+        let element = &self[e];
         out.m.clear();
-        out.k = link.motion.weighted_product(link.stiffness);
-        out.c = match link.damping {
+        out.k = element.motion.weighted_product(element.stiffness);
+        out.c = match element.damping {
             [0.0, 0.0, 0.0, 0.0, 0.0, 0.0] => Vec::new(),
-            damping => link.motion.weighted_product(damping),
+            damping => element.motion.weighted_product(damping),
         };
     }
 }
@@ -185,14 +190,14 @@ fn cloud(mesh: &Mesh, name: &str) -> Option<(Vec<u32>, Vec<f64>)> {
 ///
 /// # Errors
 /// [`Error::Input`] where a set is missing.
-pub fn held(model: &Model, mesh: &Mesh) -> Result<Vec<[bool; 3]>> {
-    let mut held = vec![[false; 3]; mesh.nodes.len()];
+pub fn constraints(model: &Model, mesh: &Mesh) -> Result<Vec<[bool; 3]>> {
+    let mut constrained = vec![[false; 3]; mesh.nodes.len()];
     for fix in &model.fixes {
         for n in nodes_of(model, mesh, &fix.nodes, fix.line)? {
-            (0..3).for_each(|i| held[n as usize][i] |= fix.axes[i]);
+            (0..3).for_each(|i| constrained[n as usize][i] |= fix.axes[i]);
         }
     }
-    Ok(held)
+    Ok(constrained)
 }
 
 /// The nodal forces (N) of the model's loads.

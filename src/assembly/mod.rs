@@ -1,8 +1,8 @@
 //! From elements to the system matrices: one layer for full and reduced models alike.
 //!
 //! Whatever adds to M, C or K is a family of [`Elements`]: a list of nodes and dense matrices for each member. A *node*
-//! is a place for up to three equations: a mesh node, a reference point, or three generalised coordinates of a super-element.
-//! [`DofMap`] numbers the equations (held displacements have none) so that each rank owns a contiguous range; [`Pattern`]
+//! is a place for up to three free dofs: a mesh node, a reference point, or three generalised coordinates of a super-element.
+//! [`DofMap`] numbers the free dofs (constrained ones have no number) so that each rank owns a contiguous range; [`Pattern`]
 //! is the union of everything that couples nodes, contact points included, open or closed, so that it never changes;
 //! [`System`] is the result.
 //!
@@ -22,6 +22,6 @@ mod system;
 
 pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
-pub use families::{Link, Tets, held, links, loads};
+pub use families::{ConnectorElement, Tets, connector_elements, constraints, loads};
 pub use pattern::Pattern;
 pub use system::{Connectivity, ElementMatrices, Elements, System};

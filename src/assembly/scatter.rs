@@ -35,9 +35,9 @@ impl<'a> Scatter<'a> {
             for &neighbour in &pattern.neighbours()[pattern.pairs(node)] {
                 let (part, shift) = if dofs.owns(neighbour) { (&mut own, first) } else { (&mut other, 0) };
                 columns.push(part.len() as u32);
-                part.extend(dofs.equations(neighbour).into_iter().filter(|&e| e >= 0).map(|e| e - shift));
+                part.extend(dofs.node_dofs(neighbour).into_iter().filter(|&e| e >= 0).map(|e| e - shift));
             }
-            for _ in dofs.equations(node).iter().filter(|&&e| e >= 0) {
+            for _ in dofs.node_dofs(node).iter().filter(|&&e| e >= 0) {
                 rows.push(&own, &other);
             }
         }
@@ -61,13 +61,13 @@ pub struct Places {
     /// For each of these and each node of the element the pair, and the columns before it.
     pairs: Vec<u32>,
     columns: Vec<u32>,
-    /// Whether this rank owns all nodes and none is held: by far most elements.
+    /// Whether this rank owns all nodes and none is constrained: by far most elements.
     is_plain: bool,
 }
 
 /// A node of an element as neighbour of the others.
 struct Neighbour {
-    equations: [i32; 3],
+    dofs: [i32; 3],
     is_own: bool,
 }
 
@@ -89,11 +89,8 @@ impl Places {
     pub fn find(&mut self, scatter: &Scatter, nodes: &[u32]) {
         let Scatter { pattern, dofs, columns, starts } = scatter;
         self.clear();
-        self.nodes.extend(nodes.iter().map(|&n| {
-            let equations = dofs.equations(n);
-            Neighbour { equations, is_own: dofs.owns(n) }
-        }));
-        self.is_plain = self.nodes.iter().all(|node| node.is_own && node.equations.iter().all(|&e| e >= 0));
+        self.nodes.extend(nodes.iter().map(|&n| Neighbour { dofs: dofs.node_dofs(n), is_own: dofs.owns(n) }));
+        self.is_plain = self.nodes.iter().all(|node| node.is_own && node.dofs.iter().all(|&e| e >= 0));
         for (a, &node) in nodes.iter().enumerate().filter(|&(_, &n)| dofs.owns(n)) {
             let first = self.columns.len();
             let pairs = pattern.pairs(node);
@@ -104,8 +101,8 @@ impl Places {
                 self.columns.push(columns[pair]);
             }
             self.own.push(a);
-            for (i, equation) in dofs.equations(node).into_iter().enumerate().filter(|&(_, e)| e >= 0) {
-                let row = (equation - dofs.owned().start) as usize;
+            for (i, dof) in dofs.node_dofs(node).into_iter().enumerate().filter(|&(_, e)| e >= 0) {
+                let row = (dof - dofs.owned().start) as usize;
                 self.rows.push(Row { number: 3 * a + i, first, starts: starts.each_ref().map(|s| s[row] as usize) });
             }
         }
@@ -120,7 +117,7 @@ impl Places {
     }
 
     /// Adds a dense row-major `(3n)^2` matrix of the element to the two arrays of values of a matrix; nothing where it is empty. Rows
-    /// and columns of held displacements are left out, and rows of other ranks.
+    /// and columns of constrained dofs are left out, and rows of other ranks.
     ///
     /// # Panics
     /// Where sizes do not fit.
@@ -142,7 +139,7 @@ impl Places {
                 let (values, start) =
                     if node.is_own { (&mut **own, row.starts[0]) } else { (&mut **other, row.starts[1]) };
                 let values = &mut values[start + column as usize..];
-                let free = entries.iter().zip(node.equations).filter(|(_, e)| *e >= 0);
+                let free = entries.iter().zip(node.dofs).filter(|(_, e)| *e >= 0);
                 values.iter_mut().zip(free).for_each(|(value, (entry, _))| *value += entry);
             }
         }
@@ -171,7 +168,7 @@ mod tests {
     use crate::mesh::Numbering;
 
     const TRIANGLES: [[u32; 3]; 2] = [[4, 0, 1], [1, 3, 4]];
-    const HELD: [[bool; 3]; 5] = [[false; 3], [true, false, true], [false; 3], [false, true, false], [false; 3]];
+    const CONSTRAINED: [[bool; 3]; 5] = [[false; 3], [true, false, true], [false; 3], [false, true, false], [false; 3]];
 
     /// A dense matrix, no two entries alike.
     fn element(e: usize, n: usize) -> Vec<f64> {
@@ -197,7 +194,7 @@ mod tests {
         for (e, nodes) in TRIANGLES.iter().enumerate() {
             for at in 0..81 {
                 let [(a, i), (b, j)] = [at / 9, at % 9].map(|dof| (dof / 3, dof % 3));
-                let [row, column] = [dofs.equations(nodes[a])[i], dofs.equations(nodes[b])[j]];
+                let [row, column] = [dofs.node_dofs(nodes[a])[i], dofs.node_dofs(nodes[b])[j]];
                 if dofs.owned().contains(&row) && column >= 0 {
                     sum[(row - dofs.owned().start) as usize][column as usize] += entry(e, [a, i], [b, j]);
                 }
@@ -210,7 +207,7 @@ mod tests {
     fn sums_are_those_of_every_entry_by_itself() {
         for owned in [0..5, 0..2, 2..4, 3..5, 2..2] {
             let numbering = Numbering::whole(5, owned);
-            let (pattern, dofs) = (Pattern::new(&numbering, &[&TRIANGLES]), DofMap::new(&numbering, &HELD));
+            let (pattern, dofs) = (Pattern::new(&numbering, &[&TRIANGLES]), DofMap::new(&numbering, &CONSTRAINED));
             let (scatter, rows) = Scatter::new(&pattern, &dofs);
             let mut mass = AxisSum::new(&pattern, &dofs);
             let mut places = Places::default();

@@ -1,4 +1,4 @@
-//! The assembled system: M, C, K and the numbering of its equations.
+//! The assembled system: M, C, K and the numbering of its dofs.
 
 use std::borrow::Cow;
 use std::time::Instant;
@@ -60,7 +60,7 @@ impl ElementMatrices {
 
 /// M, C and K of a structure without its contacts, on a pattern that has room for them.
 pub struct System {
-    /// Numbering of the equations.
+    /// Numbers of the free dofs.
     pub dofs: DofMap,
     /// Stiffness, N/m.
     pub k: Matrix,
@@ -75,7 +75,7 @@ pub struct System {
 }
 
 impl System {
-    /// Numbers the equations, then assembles M, C and K of all families. `held` says which displacements of each node are zero;
+    /// Numbers the free dofs, then assembles M, C and K of all families. `constrained` says which displacements of each node are zero;
     /// `contacts` take part in the pattern only. Collective.
     ///
     /// # Errors
@@ -83,7 +83,7 @@ impl System {
     pub fn assemble(
         comm: &Comm,
         nodes: &Numbering,
-        held: &[[bool; 3]],
+        constrained: &[[bool; 3]],
         families: &[&dyn Elements],
         contacts: &[&dyn Connectivity],
     ) -> Result<System> {
@@ -91,7 +91,7 @@ impl System {
         couplings.extend(families.iter().map(|&f| f as &dyn Connectivity));
         let start = Instant::now();
         let pattern = Pattern::new(nodes, &couplings);
-        let dofs = DofMap::new(nodes, held);
+        let dofs = DofMap::new(nodes, constrained);
         let (scatter, rows) = Scatter::new(&pattern, &dofs);
         let k = Matrix::zeros(comm, rows)?;
         let mass = match families.iter().any(|family| family.mass_couples_axes()) {
@@ -105,7 +105,7 @@ impl System {
         Ok(System { dofs, k, m, c, load, pattern_seconds })
     }
 
-    /// Adds forces (N) at nodes to the load; those at held displacements go into the support.
+    /// Adds forces (N) at nodes to the load; those at constrained dofs go into the support.
     ///
     /// # Errors
     /// PETSc's.
@@ -113,9 +113,9 @@ impl System {
         let (owned, dofs) = (self.dofs.owned(), &self.dofs);
         self.load.local_mut(|load| {
             for (node, force) in forces {
-                for (equation, f) in dofs.equations(*node).into_iter().zip(force) {
-                    if owned.contains(&equation) {
-                        load[(equation - owned.start) as usize] += f;
+                for (dof, f) in dofs.node_dofs(*node).into_iter().zip(force) {
+                    if owned.contains(&dof) {
+                        load[(dof - owned.start) as usize] += f;
                     }
                 }
             }
@@ -130,7 +130,7 @@ impl System {
         Vector::zeros(self.k.comm(), self.dofs.n_local())
     }
 
-    /// Values of several vectors at the nodes that this rank has; zero where held. Collective.
+    /// Values of several vectors at the nodes that this rank has; zero where constrained. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -223,11 +223,11 @@ mod tests {
     #[test]
     fn both_ways_of_the_mass_agree() {
         let comm = Session::start(&[]).unwrap();
-        let mut held = [[false; 3]; 4];
-        held[1] = [false, true, false];
+        let mut constrained = [[false; 3]; 4];
+        constrained[1] = [false, true, false];
         let product = |mass_couples_axes: bool| {
             let chain = Chain { nodes: vec![[2, 0], [0, 1], [1, 3]], mass_couples_axes };
-            let system = System::assemble(&comm, &Numbering::even(4, 0, 1), &held, &[&chain], &[]).unwrap();
+            let system = System::assemble(&comm, &Numbering::even(4, 0, 1), &constrained, &[&chain], &[]).unwrap();
             let x: Vec<f64> = (0..11).map(f64::from).collect();
             let (x, mut y) = (Vector::from_local(&comm, &x).unwrap(), system.zeros().unwrap());
             system.m.multiply(&x, &mut y).unwrap();
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(alone, coupled);
         // Ten pairs of nodes with 2 or 3 free axes: one entry an axis that both have free, or one for each two axes.
         assert_eq!((n_alone, n_coupled), (25.0, 73.0));
-        // The row of node 3, axis x: node 1's equation 3 and its own, 8.
+        // The row of node 3, axis x: node 1's dof 3 and its own, 8.
         assert_eq!(alone[8], 3.0 + 2.0 * 8.0);
     }
 }

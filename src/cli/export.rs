@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use serde_json::json;
 
 use crate::assembly::System;
-use crate::matrices::write::Whole;
+use crate::matrices::write::GatheredMatrix;
 use crate::native::Matrix;
 use crate::output::folder::Folder;
 use crate::sweep::{Brake, Sweep};
@@ -94,7 +94,7 @@ impl Export<'_> {
 
     /// Writes a matrix. Collective.
     fn write(&self, name: &str, what: &str, matrix: &Matrix) -> Result<()> {
-        let whole = Whole::gather(matrix)?;
+        let whole = GatheredMatrix::gather(matrix)?;
         let written = match (self.folder, whole) {
             (Some(folder), Some(whole)) => folder.write(&self.file(name), |out| match self.format {
                 Format::Mtx => whole.matrix_market(out, what),

@@ -110,7 +110,7 @@ impl Subject for Brake {
     fn rows(&self, system: &System) -> Vec<String> {
         let row = |node: u32| {
             let ([x, y, z], number) = (self.mesh.nodes[node as usize], self.nodes.labels()[node as usize] + 1);
-            let free = (0..3).filter(move |&i| system.dofs.equations(node)[i] >= 0);
+            let free = (0..3).filter(move |&i| system.dofs.node_dofs(node)[i] >= 0);
             free.map(move |i| format!("node,{number},{},{x:e},{y:e},{z:e}", ["x", "y", "z"][i]))
         };
         system.dofs.owned_nodes().flat_map(row).collect()

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::comparison::{Model, Sizes, Study, n_contacts};
+use crate::comparison::{Sizes, StudiedModel, Study, n_contacts};
 use crate::native::Comm;
 use crate::output::files::{write_file, write_whole};
 use crate::output::study as tables;
@@ -209,10 +209,10 @@ impl<'a> Plan<'a> {
         let table = |name: &str, body: fn(&mut dyn std::io::Write, &Study) -> csv::Result<()>| {
             write_file(&self.place.join(name), |out| body(out, study).map_err(std::io::Error::other))
         };
-        let (layouts, elements): (Vec<&Model>, Vec<&Model>) =
+        let (layouts, elements): (Vec<&StudiedModel>, Vec<&StudiedModel>) =
             study.models.iter().partition(|model| !model.name.starts_with("super-element"));
         let like = layouts.iter().copied().filter(|model| model.sizes.n_contacts == self.arguments.super_element);
-        let of_elements: Vec<&Model> = like.chain(elements.iter().copied()).collect();
+        let of_elements: Vec<&StudiedModel> = like.chain(elements.iter().copied()).collect();
         let figures = [
             (
                 "figure-7.svg",

@@ -183,7 +183,7 @@ impl Subject for ReducedBrake {
             None => format!("inertia mode,{},,,,", i + 1 - n_interface),
         };
         let of = |node: u32| {
-            let free = (0..3).filter(move |&i| system.dofs.equations(node)[i] >= 0);
+            let free = (0..3).filter(move |&i| system.dofs.node_dofs(node)[i] >= 0);
             free.map(move |i| 3 * node as usize + i)
         };
         system.dofs.owned_nodes().flat_map(of).map(coordinate).collect()

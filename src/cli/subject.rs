@@ -90,7 +90,7 @@ pub fn read(comm: &Comm, run: &Run) -> Result<Box<dyn Subject>> {
 
 /// The pairs of an interface, as results know them.
 pub fn pairs(interface: &Interface) -> Vec<Pair> {
-    let of = |pair: &crate::contact::Pair| Pair {
+    let of = |pair: &crate::contact::ContactPair| Pair {
         name: pair.name.clone(),
         sliding: pair.is_sliding(),
         swept: pair.swept,

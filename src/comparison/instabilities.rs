@@ -8,7 +8,7 @@ use crate::results::{ModeData, Results, Value};
 
 /// A mode of a reference that grows at some friction, followed over all frictions asked for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Instability {
+pub struct ReferenceInstability {
     /// Friction, and number of the mode at it, from 0.
     pub places: Vec<(f64, usize)>,
 }
@@ -29,7 +29,7 @@ pub struct CurvePoint {
 }
 
 /// The `n` instabilities of the lowest frequencies: branches where modes were followed, else single modes of a single friction.
-pub fn lowest(reference: &Results, n: usize) -> Vec<Instability> {
+pub fn lowest(reference: &Results, n: usize) -> Vec<ReferenceInstability> {
     let asked: Vec<&Value> = reference.values.iter().filter(|value| value.asked).collect();
     let mut found = match &reference.diagram {
         Some(diagram) => diagram
@@ -47,7 +47,7 @@ pub fn lowest(reference: &Results, n: usize) -> Vec<Instability> {
     found.sort_by(|a, b| first_unstable(a).partial_cmp(&first_unstable(b)).expect("frequencies are numbers"));
     found.truncate(n);
     let places = |found: Vec<(&Value, usize)>| found.into_iter().map(|(value, i)| (value.friction, i)).collect();
-    found.into_iter().map(|one| Instability { places: places(one) }).collect()
+    found.into_iter().map(|one| ReferenceInstability { places: places(one) }).collect()
 }
 
 /// The modes that are the points of a branch, at the frictions asked for, where they are in the band.
@@ -60,7 +60,7 @@ fn along<'r>(points: impl Iterator<Item = (f64, Complex64)>, asked: &[&'r Value]
     points.filter_map(place).collect()
 }
 
-impl Instability {
+impl ReferenceInstability {
     /// The instability in the reference itself.
     pub fn of(&self, reference: &Results) -> Vec<CurvePoint> {
         let point = |&(friction, i): &(f64, usize)| {
@@ -86,7 +86,7 @@ impl Instability {
 
 /// Modes of the second result that grow without their partner in the first one growing, or without any: friction, Hz, 1/s.
 pub fn spurious(comparison: &Comparison) -> Vec<[f64; 3]> {
-    let at_one = |at: &super::AtFriction| {
+    let at_one = |at: &super::ComparisonAtValue| {
         let pairs = at.pairs.iter().filter(|pair| pair.unstable == [false, true]);
         let paired = pairs.map(|pair| [at.friction, pair.frequencies[1], pair.growth_rates[1]]);
         let lone = at.unmatched[1].iter().filter(|lone| lone.unstable);

@@ -1,26 +1,26 @@
 //! Two results, mode by mode: which modes are the same, and by how much they differ. Pure: plain data in, plain data out.
 //!
 //! The results may be of a full model, of one with fewer contacts, of a super-element, of another mesh. Their shapes are compared where both are
-//! known ([`Places`]). How much two complex shapes x and y have in common, whatever their scales, is the modal assurance criterion
+//! known ([`CommonPoints`]). How much two complex shapes x and y have in common, whatever their scales, is the modal assurance criterion
 //!
 //! ```text
 //! MAC = |x^H y|^2 / ((x^H x) (y^H y))        1: one shape, 0: orthogonal
 //! ```
 //!
 //! Modes whose eigenvalues nearly agree, such as the doublets of a disc, have no shapes of their own: any mixture is as good. They are compared
-//! as subspaces ([`Likeness`]). Who is whose partner is then an optimal assignment over shape and eigenvalue; modes
+//! as subspaces ([`MacTable`]). Who is whose partner is then an optimal assignment over shape and eigenvalue; modes
 //! that have too little in common with every partner left stay without one.
 
+mod common_points;
 mod instabilities;
-mod likeness;
+mod mac;
 mod pairing;
-mod places;
 mod study;
 
+pub use common_points::CommonPoints;
 pub use instabilities::CurvePoint;
-pub use likeness::Likeness;
-pub use places::Places;
-pub use study::{Errors, Model, Sizes, Study, n_contacts};
+pub use mac::MacTable;
+pub use study::{Errors, Sizes, StudiedModel, Study, n_contacts};
 
 use num_complex::Complex64;
 use serde::Serialize;
@@ -41,23 +41,23 @@ pub struct Comparison {
     /// modulus of one.
     pub largest_growth: f64,
     /// One friction after the other, rising.
-    pub frictions: Vec<AtFriction>,
+    pub frictions: Vec<ComparisonAtValue>,
 }
 
 /// One friction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AtFriction {
+pub struct ComparisonAtValue {
     /// Friction of the swept pairs.
     pub friction: f64,
     /// Modes that are the same, by A's frequency.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<ModePair>,
     /// Modes of A and of B without partner, numbered from 0.
-    pub unmatched: [Vec<Lone>; 2],
+    pub unmatched: [Vec<UnpairedMode>; 2],
 }
 
 /// A mode of A and its partner of B.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Pair {
+pub struct ModePair {
     /// Their numbers among the modes of the friction, from 0.
     pub modes: [usize; 2],
     /// Hz.
@@ -76,7 +76,7 @@ pub struct Pair {
 
 /// A mode without partner.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Lone {
+pub struct UnpairedMode {
     /// Its number among the modes of the friction, from 0.
     pub mode: usize,
     /// Hz.
@@ -97,14 +97,15 @@ const SAME_FRICTION: f64 = 1e-9;
 pub fn compare(a: &Results, b: &Results) -> Result<Comparison> {
     let band = common_band(a.about.band, b.about.band)?;
     let common = common_frictions(a, b)?;
-    let places = Places::new(a, b)?;
+    let points = CommonPoints::new(a, b)?;
     let of_a: Vec<f64> = common.iter().flat_map(|[a, _]| &a.modes).map(ModeData::growth_rate).collect();
     let fastest = of_a.iter().copied().fold(0.0, f64::max);
     let largest = of_a.iter().fold(f64::MIN_POSITIVE, |most, growth| most.max(growth.abs()));
     let largest_growth =
         if common.iter().any(|[a, _]| a.modes.iter().any(|mode| mode.unstable)) { fastest } else { largest };
-    let frictions = common.iter().map(|values| AtFriction::new(*values, &places, band, largest_growth)).collect();
-    Ok(Comparison { band, n_points: places.len(), interpolated: places.are_interpolated(), largest_growth, frictions })
+    let frictions =
+        common.iter().map(|values| ComparisonAtValue::new(*values, &points, band, largest_growth)).collect();
+    Ok(Comparison { band, n_points: points.len(), interpolated: points.are_interpolated(), largest_growth, frictions })
 }
 
 fn common_band(a: [f64; 2], b: [f64; 2]) -> Result<[f64; 2]> {
@@ -134,31 +135,32 @@ fn common_frictions<'r>(a: &'r Results, b: &'r Results) -> Result<Vec<[&'r Value
     Ok(common)
 }
 
-impl AtFriction {
-    fn new([a, b]: [&Value; 2], places: &Places, band: [f64; 2], largest_growth: f64) -> AtFriction {
+impl ComparisonAtValue {
+    fn new([a, b]: [&Value; 2], points: &CommonPoints, band: [f64; 2], largest_growth: f64) -> ComparisonAtValue {
         let [lambdas_a, lambdas_b] = [a, b].map(|value| value.modes.iter().map(|mode| mode.lambda).collect::<Vec<_>>());
-        let shapes_a: Vec<Vec<Complex64>> = a.modes.iter().map(|mode| places.of_a(&mode.sampled)).collect();
-        let shapes_b: Vec<Vec<Complex64>> = b.modes.iter().map(|mode| places.of_b(&mode.sampled)).collect();
-        let likeness = Likeness::new([&lambdas_a, &lambdas_b], [&shapes_a, &shapes_b]);
-        let found = pairing::pairs(&likeness, [&lambdas_a, &lambdas_b]);
-        let pair =
-            |&[i, j]: &[usize; 2]| Pair::new([i, j], [&a.modes[i], &b.modes[j]], likeness.mac(i, j), largest_growth);
+        let shapes_a: Vec<Vec<Complex64>> = a.modes.iter().map(|mode| points.of_a(&mode.sampled)).collect();
+        let shapes_b: Vec<Vec<Complex64>> = b.modes.iter().map(|mode| points.of_b(&mode.sampled)).collect();
+        let mac_table = MacTable::new([&lambdas_a, &lambdas_b], [&shapes_a, &shapes_b]);
+        let found = pairing::pairs(&mac_table, [&lambdas_a, &lambdas_b]);
+        let pair = |&[i, j]: &[usize; 2]| {
+            ModePair::new([i, j], [&a.modes[i], &b.modes[j]], mac_table.mac(i, j), largest_growth)
+        };
         let inside = |f: f64| (band[0]..=band[1]).contains(&f);
         let pairs = found.iter().map(pair).filter(|pair| pair.frequencies.iter().any(|&f| inside(f))).collect();
         let unmatched = [0, 1].map(|side| {
             let modes = &[a, b][side].modes;
             let alone = |i: &usize| found.iter().all(|pair| pair[side] != *i) && inside(modes[*i].frequency());
-            (0..modes.len()).filter(alone).map(|i| Lone::new(i, &modes[i])).collect()
+            (0..modes.len()).filter(alone).map(|i| UnpairedMode::new(i, &modes[i])).collect()
         });
-        AtFriction { friction: a.friction, pairs, unmatched }
+        ComparisonAtValue { friction: a.friction, pairs, unmatched }
     }
 }
 
-impl Pair {
-    fn new(modes: [usize; 2], [a, b]: [&ModeData; 2], mac: f64, largest_growth: f64) -> Pair {
+impl ModePair {
+    fn new(modes: [usize; 2], [a, b]: [&ModeData; 2], mac: f64, largest_growth: f64) -> ModePair {
         let frequencies = [a.frequency(), b.frequency()];
         let growth_rates = [a.growth_rate(), b.growth_rate()];
-        Pair {
+        ModePair {
             modes,
             frequencies,
             growth_rates,
@@ -170,9 +172,9 @@ impl Pair {
     }
 }
 
-impl Lone {
-    fn new(mode: usize, data: &ModeData) -> Lone {
-        Lone { mode, frequency: data.frequency(), growth_rate: data.growth_rate(), unstable: data.unstable }
+impl UnpairedMode {
+    fn new(mode: usize, data: &ModeData) -> UnpairedMode {
+        UnpairedMode { mode, frequency: data.frequency(), growth_rate: data.growth_rate(), unstable: data.unstable }
     }
 }
 

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use pathfinding::kuhn_munkres::kuhn_munkres;
 use pathfinding::matrix::Matrix;
 
-use super::likeness::{Likeness, distance};
+use super::mac::{MacTable, distance};
 
 /// Eigenvalues of one mode are closer than this, relative to the larger.
 const WINDOW: f64 = 0.2;
@@ -21,9 +21,9 @@ const PARTS: f64 = 1e12;
 ///
 /// of pairs that are close enough in eigenvalue (`d_most`) and have enough in common. So shape decides, and the eigenvalue where shape
 /// does not, as in a doublet. Source: J. Munkres, *Algorithms for the assignment and transportation problems*, J. SIAM 5 (1957).
-pub fn pairs(likeness: &Likeness, [a, b]: [&[Complex64]; 2]) -> Vec<[usize; 2]> {
+pub fn pairs(mac_table: &MacTable, [a, b]: [&[Complex64]; 2]) -> Vec<[usize; 2]> {
     let score = |i: usize, j: usize| {
-        let (mac, d) = (likeness.mac(i, j), distance(a[i], b[j]));
+        let (mac, d) = (mac_table.mac(i, j), distance(a[i], b[j]));
         if mac < LEAST || d > WINDOW { 0.0 } else { mac * (1.0 - (d / WINDOW).powi(2)) }
     };
     let n = a.len().max(b.len());
@@ -48,7 +48,7 @@ mod tests {
     }
 
     fn found(a: &[Complex64], b: &[Complex64], shapes: [&[Vec<Complex64>]; 2]) -> Vec<[usize; 2]> {
-        pairs(&Likeness::new([a, b], shapes), [a, b])
+        pairs(&MacTable::new([a, b], shapes), [a, b])
     }
 
     #[test]

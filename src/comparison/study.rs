@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::instabilities::{CurvePoint, Instability, lowest, spurious};
-use super::{AtFriction, Comparison, Pair, compare};
+use super::instabilities::{CurvePoint, ReferenceInstability, lowest, spurious};
+use super::{Comparison, ComparisonAtValue, ModePair, compare};
 use crate::Result;
 use crate::results::{Results, Value};
 
@@ -19,14 +19,14 @@ pub struct Study {
     /// The frictions asked for, rising.
     pub frictions: Vec<f64>,
     /// Full contact on the full structure; its curves are the instabilities of lowest frequency.
-    pub reference: Model,
+    pub reference: StudiedModel,
     /// The others.
-    pub models: Vec<Model>,
+    pub models: Vec<StudiedModel>,
 }
 
 /// One of the models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Model {
+pub struct StudiedModel {
     /// What people call it.
     pub name: String,
     /// Its sizes.
@@ -83,7 +83,7 @@ impl Study {
         frictions.sort_by(f64::total_cmp);
         let curves = lowest(results, INSTABILITIES).iter().map(|one| one.of(results)).collect();
         let about = &results.about;
-        let reference = Model {
+        let reference = StudiedModel {
             name: "full contact".into(),
             sizes: Sizes { n_contacts: n_contacts(results), n_retained: None, n_equations: about.n_equations },
             seconds: seconds(results),
@@ -108,8 +108,8 @@ impl Study {
         making_seconds: Option<f64>,
     ) -> Result<()> {
         let comparison = compare(reference, results)?;
-        let followed: Vec<Instability> = lowest(reference, INSTABILITIES);
-        self.models.push(Model {
+        let followed: Vec<ReferenceInstability> = lowest(reference, INSTABILITIES);
+        self.models.push(StudiedModel {
             name: name.into(),
             sizes,
             seconds: seconds(results),
@@ -122,7 +122,7 @@ impl Study {
     }
 
     /// In how many of the frictions at which an instability of the reference grows it grows in a model, too: `[in the model, in all]`.
-    pub fn found(&self, instability: usize, model: &Model) -> [usize; 2] {
+    pub fn found(&self, instability: usize, model: &StudiedModel) -> [usize; 2] {
         let grows = || self.reference.curves[instability].iter().filter(|point| point.unstable);
         let also = |point: &&CurvePoint| {
             let same = |other: &&CurvePoint| other.friction == point.friction;
@@ -147,8 +147,8 @@ fn seconds(results: &Results) -> f64 {
 }
 
 fn errors(comparison: &Comparison) -> Vec<Errors> {
-    let largest = |at: &AtFriction, of: &dyn Fn(&Pair) -> f64| at.pairs.iter().map(of).fold(0.0, f64::max);
-    let one = |at: &AtFriction| Errors {
+    let largest = |at: &ComparisonAtValue, of: &dyn Fn(&ModePair) -> f64| at.pairs.iter().map(of).fold(0.0, f64::max);
+    let one = |at: &ComparisonAtValue| Errors {
         friction: at.friction,
         n_pairs: at.pairs.len(),
         worst_frequency: largest(at, &|pair| pair.frequency_error.abs()),

@@ -12,7 +12,7 @@ use std::ops::Range;
 #[derive(Debug, Clone, Default)]
 pub struct Interface {
     /// Contact pairs, in the order of the model.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<ContactPair>,
     /// Contact points, pair by pair.
     pub points: Vec<ContactPoint>,
     /// `g = B u`; its point `a` is `points[a]`, its nodes are the mesh's.
@@ -21,7 +21,7 @@ pub struct Interface {
 
 /// A contact pair.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pair {
+pub struct ContactPair {
     /// Name in tables.
     pub name: String,
     /// Surface whose midside nodes are the contact points.
@@ -33,7 +33,7 @@ pub struct Pair {
     /// Coefficient of friction in the model file.
     pub friction: f64,
     /// What acts in the tangent plane.
-    pub kind: Kind,
+    pub kind: TangentialKind,
     /// Whether the pair may open.
     pub separation: bool,
     /// Whether a sweep changes its friction.
@@ -44,16 +44,16 @@ pub struct Pair {
     pub statistics: Statistics,
 }
 
-impl Pair {
+impl ContactPair {
     /// Whether the two surfaces slide for ever.
     pub fn is_sliding(&self) -> bool {
-        self.kind == Kind::Sliding
+        self.kind == TangentialKind::Sliding
     }
 }
 
 /// What acts in the tangent plane of a pair; [`law::Tangential`] says how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum TangentialKind {
     /// Nothing.
     Frictionless,
     /// Sliding for ever: the master turns.
@@ -87,7 +87,7 @@ pub struct ContactPoint {
     /// Position of the point, m.
     pub position: [f64; 3],
     /// Its law, with weight, normal and gap.
-    pub law: law::Point,
+    pub law: law::PointLaw,
 }
 
 /// Which law acts.

@@ -40,6 +40,6 @@ pub mod search;
 pub(crate) mod testing;
 
 pub use gap_operator::GapOperator;
-pub use interface::{ContactPoint, Interface, Kind, Pair, Stage, Statistics};
-pub use law::{Point, Response, Status, Tangential};
+pub use interface::{ContactPair, ContactPoint, Interface, Stage, Statistics, TangentialKind};
+pub use law::{PointLaw, Response, Status, Tangential};
 pub use motion::sliding;

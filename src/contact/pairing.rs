@@ -1,6 +1,6 @@
 //! From a contact of the model to a pair of the interface: search, and choose the laws.
 
-use super::interface::{ContactPoint, Interface, Kind, Pair, Statistics};
+use super::interface::{ContactPair, ContactPoint, Interface, Statistics, TangentialKind};
 use super::law::{self, Tangential};
 use super::motion::sliding;
 use super::search::{Found, FoundPoint, Options, Team, find};
@@ -23,8 +23,8 @@ pub(super) fn add_pair(
     team: &dyn Team,
 ) -> Result<()> {
     let (slave, master) = (&mesh.surfaces[&contact.slave], &mesh.surfaces[&contact.master]);
-    let site = Site { model, mesh, contact, slave, master, team };
-    let found = site.search()?;
+    let surfaces = ContactSurfaces { model, mesh, contact, slave, master, team };
+    let found = surfaces.search()?;
     let rotation = model.sliding(contact, mesh);
     let first = interface.points.len();
     for point in &found.points {
@@ -33,19 +33,19 @@ pub(super) fn add_pair(
             pair: interface.pairs.len(),
             nodes: vec![point.node],
             position: point.position,
-            law: site.law(point, rotation),
+            law: surfaces.law(point, rotation),
         });
     }
-    interface.pairs.push(Pair {
+    interface.pairs.push(ContactPair {
         name: contact.name.clone(),
         slave: contact.slave.clone(),
         master: contact.master.clone(),
         law: contact.law,
         friction: contact.friction,
         kind: match (rotation, contact.stick) {
-            (Some(_), _) => Kind::Sliding,
-            (None, Some(_)) => Kind::StickSlip,
-            (None, None) => Kind::Frictionless,
+            (Some(_), _) => TangentialKind::Sliding,
+            (None, Some(_)) => TangentialKind::StickSlip,
+            (None, None) => TangentialKind::Frictionless,
         },
         separation: contact.separation,
         swept,
@@ -56,7 +56,7 @@ pub(super) fn add_pair(
 }
 
 /// A contact with the surfaces that its names stand for.
-struct Site<'a> {
+struct ContactSurfaces<'a> {
     model: &'a Model,
     mesh: &'a Mesh,
     contact: &'a Contact,
@@ -65,7 +65,7 @@ struct Site<'a> {
     team: &'a dyn Team,
 }
 
-impl Site<'_> {
+impl ContactSurfaces<'_> {
     /// An input error with the contact's file, line and name.
     fn refuse(&self, reason: &str) -> Error {
         let message = format!("contact \"{}\": {reason}", self.contact.name);
@@ -119,13 +119,13 @@ impl Site<'_> {
     }
 
     /// The law of a point, on which the master slides with its rotation or rests.
-    fn law(&self, point: &FoundPoint, rotation: Option<&Rotation>) -> law::Point {
+    fn law(&self, point: &FoundPoint, rotation: Option<&Rotation>) -> law::PointLaw {
         let tangential = match (rotation, self.contact.stick) {
             (Some(rotation), _) => sliding(rotation, point.position, point.normal, point.size),
             (None, Some(stick)) => Tangential::StickSlip { stick },
             (None, None) => Tangential::Frictionless,
         };
-        law::Point {
+        law::PointLaw {
             weight: point.weight,
             normal: point.normal,
             gap: point.gap,

@@ -1,7 +1,7 @@
 //! What the tests of this module share: reproducible random numbers, elements and materials, and a rule that is exact to any
 //! degree.
 
-use super::quadrature::Point;
+use super::quadrature::QuadraturePoint;
 use super::tet10::{NODES, determinants, straight};
 use crate::algebra::{cross, sub};
 
@@ -114,13 +114,13 @@ fn gauss(n: usize) -> Vec<(f64, f64)> {
 /// A rule on the reference tetrahedron, exact to degree `2n - 3`: the cube's Gauss rule with one face collapsed.
 ///
 /// `(xi, eta, zeta) = (r, s (1-r), t (1-r)(1-s))`, with the volume factor `(1-r)^2 (1-s)`.
-pub fn collapsed_gauss(n: usize) -> Vec<Point<3>> {
+pub fn collapsed_gauss(n: usize) -> Vec<QuadraturePoint<3>> {
     let line = gauss(n);
     let mut rule = Vec::with_capacity(n * n * n);
     for &(r, wr) in &line {
         for &(s, ws) in &line {
             for &(t, wt) in &line {
-                rule.push(Point {
+                rule.push(QuadraturePoint {
                     at: [r, s * (1.0 - r), t * (1.0 - r) * (1.0 - s)],
                     weight: wr * ws * wt * (1.0 - r).powi(2) * (1.0 - s),
                 });

@@ -17,7 +17,7 @@
 //! the 7-point rule; areas and traction loads, which take its length, are exact on plane facets only and otherwise as good
 //! as the facet's shape (a quarter of a cylinder in 2, 4, 8 facets along the arc: 4e-4, 2e-5, 2e-6 of its area).
 
-use super::quadrature::{Point, TRIANGLE_7};
+use super::quadrature::{QuadraturePoint, TRIANGLE_7};
 use crate::algebra::{cross, norm};
 
 /// Reference coordinates of the six nodes.
@@ -120,7 +120,7 @@ static DERIVATIVES: [[[f64; 2]; 6]; 7] = {
 
 /// At each point of the rule: shape values and `w (a_xi x a_eta)`.
 fn area_normals(x: &[[f64; 3]; 6]) -> impl Iterator<Item = (&'static [f64; 6], [f64; 3])> + '_ {
-    let weighted = |(q, point): (usize, &Point<2>)| {
+    let weighted = |(q, point): (usize, &QuadraturePoint<2>)| {
         let [along_xi, along_eta] = [0, 1].map(|k| combine(x, &DERIVATIVES[q].map(|row| row[k])));
         (&SHAPES[q], cross(along_xi, along_eta).map(|c| point.weight * c))
     };

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::algebra::{cross, dot, norm, sub};
 use crate::assembly::{DofMap, ElementMatrices, Elements, System};
-use crate::contact::interface::{Interface, Pair};
+use crate::contact::interface::{ContactPair, Interface};
 use crate::contact::law::{Response, Status};
 use crate::native::Comm;
 
@@ -113,7 +113,7 @@ impl Balance {
             });
         }
         let held = |node: u32, f: [f64; 3]| {
-            let equations = dofs.equations(node);
+            let equations = dofs.node_dofs(node);
             [0, 1, 2].map(|i| if equations[i] < 0 { f[i] } else { 0.0 })
         };
         let reactions: Vec<_> = internal.into_iter().map(|(node, f)| (node, held(node, f))).collect();
@@ -145,7 +145,7 @@ impl Balance {
 
 /// `f = sum_e K_e u_e` at the nodes of this rank that have a held displacement.
 fn internal_forces_at_supports(families: &[&dyn Elements], dofs: &DofMap, u: &[[f64; 3]]) -> BTreeMap<u32, [f64; 3]> {
-    let is_held = |n: u32| dofs.owns(n) && dofs.equations(n).iter().any(|&e| e < 0);
+    let is_held = |n: u32| dofs.owns(n) && dofs.node_dofs(n).iter().any(|&e| e < 0);
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     let mut element = ElementMatrices::default();
     for family in families {
@@ -171,7 +171,7 @@ impl PairForces {
         interface.pairs.iter().map(|pair| PairForces::new(interface, pair, responses)).collect()
     }
 
-    fn new(interface: &Interface, pair: &Pair, responses: &[Response]) -> PairForces {
+    fn new(interface: &Interface, pair: &ContactPair, responses: &[Response]) -> PairForces {
         let own = &responses[pair.points.clone()];
         let mut forces = PairForces {
             counts: Counts::of(own),

@@ -55,7 +55,7 @@ impl<'a> Contacts<'a> {
                 if std::mem::replace(&mut seen[node as usize], true) {
                     continue;
                 }
-                for (place, equation) in places[node as usize].iter_mut().zip(dofs.equations(node)) {
+                for (place, equation) in places[node as usize].iter_mut().zip(dofs.node_dofs(node)) {
                     if equation >= 0 {
                         *place = indices.len() as i32;
                         indices.push(equation);
@@ -109,7 +109,7 @@ impl<'a> Contacts<'a> {
     pub fn spread_into(&self, a: usize, force: [f64; 3], factor: f64, r: &mut [f64]) {
         let owned = self.dofs.owned();
         self.interface.gap_operator.spread(a, force, |node, f| {
-            for (equation, f) in self.dofs.equations(node).into_iter().zip(f) {
+            for (equation, f) in self.dofs.node_dofs(node).into_iter().zip(f) {
                 if owned.contains(&equation) {
                     r[(equation - owned.start) as usize] += factor * f;
                 }

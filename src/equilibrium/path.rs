@@ -3,7 +3,7 @@
 use super::contacts::Contacts;
 use super::newton::{self, Iteration, Step, Workspace};
 use crate::assembly::System;
-use crate::contact::interface::{Interface, Pair};
+use crate::contact::interface::{ContactPair, Interface};
 use crate::contact::{Response, Stage};
 use crate::native::{Factor, Matrix, Precision, Vector};
 
@@ -282,7 +282,7 @@ fn history(iterations: &[Iteration]) -> String {
 
 /// The pairs whose settled forces add up to a pull, with that pull, N.
 fn pulled_apart(interface: &Interface, responses: &[Response]) -> Vec<(String, f64)> {
-    let sums = |pair: &Pair| {
+    let sums = |pair: &ContactPair| {
         let forces = responses.get(pair.points.clone()).unwrap_or_default().iter().map(|r| r.normal_force);
         (forces.clone().sum::<f64>(), forces.map(f64::abs).sum::<f64>())
     };

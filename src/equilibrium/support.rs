@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::algebra::cross;
-use crate::assembly::Link;
+use crate::assembly::ConnectorElement;
 use crate::contact::interface::Interface;
 use crate::contact::law::Tangential;
 use crate::mesh::{Mesh, Numbering};
@@ -141,7 +141,7 @@ pub fn free_motions(
     nodes: &Numbering,
     interface: &Interface,
     held: &[[bool; 3]],
-    links: &[Link],
+    links: &[ConnectorElement],
 ) -> Vec<FreeMotion> {
     let bodies = Bodies::new(comm, mesh, nodes);
     let width = 6 * bodies.parts.len();

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::problem::{Problem, Term};
-use super::sparse::{Pattern, symmetric_part};
+use super::combined::{CombinedTerms, Term};
+use super::sparse::{SparsityPattern, symmetric_part};
 use super::{Dof, Role};
 use crate::Result;
 use crate::native::{Comm, Matrix, Rows};
@@ -32,7 +32,7 @@ pub struct Names {
 
 /// A quadratic eigenproblem of given matrices, scaled: `D (lambda^2 M + lambda C + K) D y = 0`, `x = D y`. All terms share one symmetric
 /// pattern.
-pub struct Given {
+pub struct ExternalMatrices {
     terms: Vec<Term>,
     matrices: Vec<Matrix>,
     /// `(K_i + K_i^T) / 2` of the terms of an unsymmetric K; of other terms none.
@@ -65,26 +65,26 @@ pub struct Sums {
 const ROUNDING: f64 = 1e-10;
 
 /// What a rank gets of a problem.
-struct Piece {
+struct RowBlock {
     offsets: Vec<u32>,
     columns: Vec<u32>,
     values: Vec<Vec<f64>>,
     scale: Vec<f64>,
 }
 
-impl Given {
+impl ExternalMatrices {
     /// Reads the terms on the root and gives every rank its rows. `omega` is a typical frequency, rad/s. Collective.
     ///
     /// # Errors
-    /// See [`Problem::read`]; PETSc's.
-    pub fn read(comm: &Comm, terms: &[Term], omega: f64) -> Result<Given> {
-        let problem = if comm.is_root() { Problem::read(terms, omega).map(Some) } else { Ok(None) };
+    /// See [`CombinedTerms::read`]; PETSc's.
+    pub fn read(comm: &Comm, terms: &[Term], omega: f64) -> Result<ExternalMatrices> {
+        let problem = if comm.is_root() { CombinedTerms::read(terms, omega).map(Some) } else { Ok(None) };
         let problem = comm.agree(problem)?;
-        Given::distribute(comm, terms, problem)
+        ExternalMatrices::distribute(comm, terms, problem)
     }
 
     /// Distributes what the root has. Collective.
-    fn distribute(comm: &Comm, terms: &[Term], problem: Option<Problem>) -> Result<Given> {
+    fn distribute(comm: &Comm, terms: &[Term], problem: Option<CombinedTerms>) -> Result<ExternalMatrices> {
         let (parts, is_symmetric) = problem.as_ref().map_or_else(Default::default, |problem| parts(terms, problem));
         let flags: Vec<f64> =
             (0..terms.len()).map(|i| f64::from(u8::from(is_symmetric.get(i) == Some(&true)))).collect();
@@ -93,11 +93,11 @@ impl Given {
         let owned = |rank: usize| rank * n / comm.size()..(rank + 1) * n / comm.size();
         let piece = match &problem {
             Some(problem) => {
-                let piece = |rank: usize| Piece::of(problem, &parts, owned(rank));
+                let piece = |rank: usize| RowBlock::of(problem, &parts, owned(rank));
                 (1..comm.size()).for_each(|rank| comm.send(&piece(rank).to_bytes(), rank));
                 piece(0)
             }
-            None => Piece::from_bytes(&comm.receive(0)),
+            None => RowBlock::from_bytes(&comm.receive(0)),
         };
         let matrices = piece.matrices(comm, &owned(comm.rank()))?;
         let all = |role: Role| terms.iter().zip(&flags).filter(|(term, _)| term.role == role).all(|(_, flag)| *flag);
@@ -106,10 +106,13 @@ impl Given {
         let own: Vec<Matrix> = matrices.by_ref().take(terms.len()).collect();
         let has_part = |i: usize| terms[i].role == Role::Stiffness && !flags[i];
         let symmetric_parts = (0..terms.len()).map(|i| if has_part(i) { matrices.next() } else { None }).collect();
-        let names =
-            problem.map_or_else(Names::default, |Problem { rows, dofs, n_held, .. }| Names { rows, dofs, n_held });
+        let names = problem.map_or_else(Names::default, |CombinedTerms { rows, dofs, n_held, .. }| Names {
+            rows,
+            dofs,
+            n_held,
+        });
         let (terms, owned) = (terms.to_vec(), owned(comm.rank()));
-        Ok(Given { terms, matrices: own, symmetric_parts, scale: piece.scale, symmetry, n, owned, names })
+        Ok(ExternalMatrices { terms, matrices: own, symmetric_parts, scale: piece.scale, symmetry, n, owned, names })
     }
 
     /// The sums at a value of the parameter. Collective.
@@ -162,7 +165,7 @@ impl Given {
 }
 
 /// The symmetric parts of the terms of K that need them, and which terms are symmetric.
-fn parts(terms: &[Term], problem: &Problem) -> (Vec<Vec<f64>>, Vec<bool>) {
+fn parts(terms: &[Term], problem: &CombinedTerms) -> (Vec<Vec<f64>>, Vec<bool>) {
     let (mut parts, mut flags) = (Vec::new(), Vec::new());
     for (term, values) in terms.iter().zip(&problem.values) {
         let (part, difference) = symmetric_part(&problem.pattern, values);
@@ -176,12 +179,12 @@ fn parts(terms: &[Term], problem: &Problem) -> (Vec<Vec<f64>>, Vec<bool>) {
     (parts, flags)
 }
 
-impl Piece {
+impl RowBlock {
     /// Some rows of a problem, with the symmetric parts after the terms.
-    fn of(problem: &Problem, parts: &[Vec<f64>], rows: Range<usize>) -> Piece {
-        let Pattern { offsets, columns } = &problem.pattern;
+    fn of(problem: &CombinedTerms, parts: &[Vec<f64>], rows: Range<usize>) -> RowBlock {
+        let SparsityPattern { offsets, columns } = &problem.pattern;
         let range = offsets[rows.start]..offsets[rows.end];
-        Piece {
+        RowBlock {
             offsets: offsets[rows.start..=rows.end].iter().map(|&at| (at - range.start) as u32).collect(),
             columns: columns[range.clone()].to_vec(),
             values: problem.values.iter().chain(parts).map(|values| values[range.clone()].to_vec()).collect(),
@@ -198,7 +201,7 @@ impl Piece {
         bytes
     }
 
-    fn from_bytes(bytes: &[u8]) -> Piece {
+    fn from_bytes(bytes: &[u8]) -> RowBlock {
         let (head, mut rest) = bytes.split_at(24);
         let sizes: Vec<usize> = head.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes) as usize).collect();
         let mut take = |n_bytes: usize| {
@@ -211,7 +214,7 @@ impl Piece {
         let (offsets, columns): (Vec<u32>, Vec<u32>) = (integers(take(4 * sizes[0])), integers(take(4 * sizes[1])));
         let values = (0..sizes[2]).map(|_| numbers(take(8 * columns.len()))).collect();
         let scale = numbers(take(8 * (offsets.len() - 1)));
-        Piece { offsets, columns, values, scale }
+        RowBlock { offsets, columns, values, scale }
     }
 
     /// The matrices of all values on one pattern. Collective.

@@ -28,7 +28,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Role;
-use super::problem::Term;
+use super::combined::Term;
 use crate::{Error, Result};
 
 /// A factor of a matrix: an expression of the parameter.
@@ -96,7 +96,7 @@ struct RawTerm {
 
 /// The sums that make a family of eigenproblems.
 #[derive(Debug, Clone)]
-pub struct Family {
+pub struct MatrixFamily {
     /// A line for titles.
     pub title: String,
     /// Name of the parameter.
@@ -109,7 +109,7 @@ pub struct Family {
 ///
 /// # Errors
 /// [`Error::Input`] with file and line.
-pub fn read(path: &Path) -> Result<Family> {
+pub fn read(path: &Path) -> Result<MatrixFamily> {
     let place = path.display();
     let text =
         std::fs::read_to_string(path).map_err(|reason| Error::input(format!("{place}: cannot be read: {reason}")))?;
@@ -135,7 +135,7 @@ pub fn read(path: &Path) -> Result<Family> {
         return Err(Error::input(format!("{place}: a family needs a [[mass]] and a [[stiffness]]")));
     }
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    Ok(Family { title: keys.title.unwrap_or(stem), parameter: keys.parameter, terms })
+    Ok(MatrixFamily { title: keys.title.unwrap_or(stem), parameter: keys.parameter, terms })
 }
 
 #[cfg(test)]

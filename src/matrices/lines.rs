@@ -17,18 +17,18 @@ const HEAD: usize = 16;
 const BUFFER: usize = 1 << 18;
 
 /// An open file, its compression undone.
-pub struct Source {
+pub struct MatrixFile {
     path: PathBuf,
     head: Vec<u8>,
     reader: Box<dyn BufRead>,
 }
 
-impl Source {
+impl MatrixFile {
     /// Opens a file, and undoes gzip.
     ///
     /// # Errors
     /// [`Error::Input`] where it cannot be read.
-    pub fn open(path: &Path) -> Result<Source> {
+    pub fn open(path: &Path) -> Result<MatrixFile> {
         let fail = |reason: io::Error| Error::input(format!("{}: {}", path.display(), told(&reason)));
         let mut raw = BufReader::with_capacity(BUFFER, File::open(path).map_err(fail)?);
         let is_gzip = raw.fill_buf().map_err(fail)?.starts_with(&GZIP);
@@ -38,7 +38,7 @@ impl Source {
         };
         let mut head = Vec::new();
         reader.by_ref().take(HEAD as u64).read_to_end(&mut head).map_err(fail)?;
-        Ok(Source { path: path.to_owned(), reader: Box::new(Cursor::new(head.clone()).chain(reader)), head })
+        Ok(MatrixFile { path: path.to_owned(), reader: Box::new(Cursor::new(head.clone()).chain(reader)), head })
     }
 
     /// The first bytes.
@@ -84,14 +84,14 @@ fn told(reason: &io::Error) -> String {
 
 /// A text file line by line.
 pub struct Lines {
-    source: Source,
+    source: MatrixFile,
     line: Vec<u8>,
     number: usize,
 }
 
 impl Lines {
     /// The lines of an open file.
-    pub fn new(source: Source) -> Lines {
+    pub fn new(source: MatrixFile) -> Lines {
         Lines { source, line: Vec::new(), number: 0 }
     }
 

@@ -1,6 +1,6 @@
 //! Matrix Market files: coordinate and array, real and integer, general, symmetric and skew-symmetric.
 //!
-//! Source: Boisvert, Pozo and Remington, The Matrix Market exchange formats, NISTIR 5935 (1996).
+//! MatrixFile: Boisvert, Pozo and Remington, The Matrix Market exchange formats, NISTIR 5935 (1996).
 
 use super::entries::{Entries, Naming, Storage};
 use super::lines::Lines;
@@ -10,7 +10,7 @@ use crate::Result;
 pub const BANNER: &str = "%%matrixmarket";
 
 #[derive(Clone, Copy, PartialEq)]
-enum Symmetry {
+enum MarketSymmetry {
     General,
     Symmetric,
     Skew,
@@ -52,7 +52,7 @@ pub fn read(lines: &mut Lines) -> Result<Entries> {
 }
 
 /// Whether the values stand without their places, and the symmetry.
-fn header(lines: &Lines) -> Result<(bool, Symmetry)> {
+fn header(lines: &Lines) -> Result<(bool, MarketSymmetry)> {
     let words: Vec<String> = lines.text().split_whitespace().map(str::to_lowercase).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let &[_, "matrix", format, field, symmetry] = &words[..] else {
@@ -74,9 +74,9 @@ fn header(lines: &Lines) -> Result<(bool, Symmetry)> {
         _ => return Err(lines.error(format!("unknown field {field:?}: real and integer are known"))),
     }
     match symmetry {
-        "general" => Ok((is_array, Symmetry::General)),
-        "symmetric" => Ok((is_array, Symmetry::Symmetric)),
-        "skew-symmetric" => Ok((is_array, Symmetry::Skew)),
+        "general" => Ok((is_array, MarketSymmetry::General)),
+        "symmetric" => Ok((is_array, MarketSymmetry::Symmetric)),
+        "skew-symmetric" => Ok((is_array, MarketSymmetry::Skew)),
         _ => {
             Err(lines.error(format!("unknown symmetry {symmetry:?}: general, symmetric and skew-symmetric are known")))
         }
@@ -97,7 +97,12 @@ fn next_data(lines: &mut Lines, what: &str) -> Result<()> {
     Err(lines.error(format!("the file ends where {what} should stand. Copy it again")))
 }
 
-fn coordinates(lines: &mut Lines, [n, n_entries]: [i64; 2], symmetry: Symmetry, entries: &mut Entries) -> Result<()> {
+fn coordinates(
+    lines: &mut Lines,
+    [n, n_entries]: [i64; 2],
+    symmetry: MarketSymmetry,
+    entries: &mut Entries,
+) -> Result<()> {
     for k in 0..n_entries {
         next_data(lines, &format!("entry {} of {n_entries}", k + 1))?;
         let mut words = lines.text().split_whitespace();
@@ -114,12 +119,12 @@ fn coordinates(lines: &mut Lines, [n, n_entries]: [i64; 2], symmetry: Symmetry, 
 }
 
 /// Values column by column; of symmetric matrices from the diagonal down, of skew ones from below it.
-fn array(lines: &mut Lines, n: u32, symmetry: Symmetry, entries: &mut Entries) -> Result<()> {
+fn array(lines: &mut Lines, n: u32, symmetry: MarketSymmetry, entries: &mut Entries) -> Result<()> {
     for j in 0..n {
         let first = match symmetry {
-            Symmetry::General => 0,
-            Symmetry::Symmetric => j,
-            Symmetry::Skew => j + 1,
+            MarketSymmetry::General => 0,
+            MarketSymmetry::Symmetric => j,
+            MarketSymmetry::Skew => j + 1,
         };
         for i in first..n {
             next_data(lines, &format!("the value of row {}, column {}", i + 1, j + 1))?;
@@ -132,15 +137,15 @@ fn array(lines: &mut Lines, n: u32, symmetry: Symmetry, entries: &mut Entries) -
     Ok(())
 }
 
-fn add(lines: &Lines, [i, j]: [u32; 2], value: f64, symmetry: Symmetry, entries: &mut Entries) -> Result<()> {
+fn add(lines: &Lines, [i, j]: [u32; 2], value: f64, symmetry: MarketSymmetry, entries: &mut Entries) -> Result<()> {
     entries.items.push((i, j, value));
     match symmetry {
-        Symmetry::General => {}
-        Symmetry::Symmetric if i != j => entries.items.push((j, i, value)),
-        Symmetry::Symmetric => {}
-        Symmetry::Skew if i != j => entries.items.push((j, i, -value)),
-        Symmetry::Skew if value == 0.0 => {}
-        Symmetry::Skew => return Err(lines.error("a skew-symmetric matrix has nothing on its diagonal")),
+        MarketSymmetry::General => {}
+        MarketSymmetry::Symmetric if i != j => entries.items.push((j, i, value)),
+        MarketSymmetry::Symmetric => {}
+        MarketSymmetry::Skew if i != j => entries.items.push((j, i, -value)),
+        MarketSymmetry::Skew if value == 0.0 => {}
+        MarketSymmetry::Skew => return Err(lines.error("a skew-symmetric matrix has nothing on its diagonal")),
     }
     Ok(())
 }

@@ -1,35 +1,35 @@
 //! Matrices from files and into files: the quadratic eigenproblem `(lambda^2 M + lambda C + K) x = 0` of any program.
 //!
 //! ```text
-//! files --read--> Entries --Problem--> one numbering, one pattern, one scaling --distribute--> M, C, K on all ranks
+//! files --read--> Entries --CombinedTerms--> one numbering, one pattern, one scaling --distribute--> M, C, K on all ranks
 //! ```
 //!
 //! [`read`] knows a format by its content: Matrix Market, PETSc binary, Abaqus's and CalculiX's text, each also gzipped. Every matrix is a
 //! sum `A(p) = sum_i f_i(p) A_i` of files with expressions of one parameter ([`family`]); a single file is the sum with one term.
 //!
-//! [`Problem`] puts the files together on the root: rows that have names (nodes and degrees of freedom) are matched by them, held ones are left
+//! [`CombinedTerms`] puts the files together on the root: rows that have names (nodes and degrees of freedom) are matched by them, held ones are left
 //! out, and the whole is scaled: `D P(lambda) D`, D diagonal, has the same eigenvalues, and its entries are of one size also where
 //! metres meet radians. The entries of D are powers of two, so that scaling rounds nothing.
 
 mod abaqus;
+mod combined;
 mod distribute;
 mod entries;
 pub mod family;
 mod lines;
 mod market;
 mod petsc_binary;
-mod problem;
 mod sparse;
 pub mod write;
 
-pub use distribute::{Given, Names, Sums, Symmetry};
+pub use combined::{CombinedTerms, Term};
+pub use distribute::{ExternalMatrices, Names, Sums, Symmetry};
 pub use entries::{Dof, Entries, Naming, Storage};
-pub use problem::{Problem, Term};
 
 use std::path::Path;
 
 use crate::Result;
-use lines::{Lines, Source};
+use lines::{Lines, MatrixFile};
 
 /// Which of the three matrices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl Role {
 /// # Errors
 /// [`crate::Error::Input`] with file and line, whatever is wrong.
 pub fn read(path: &Path, role: Role) -> Result<Entries> {
-    let source = Source::open(path)?;
+    let source = MatrixFile::open(path)?;
     if let Some(width) = petsc_binary::index_width(source.head()) {
         return petsc_binary::read(source, width);
     }

@@ -5,10 +5,10 @@
 //! ```
 //!
 //! Indices have 32 or 64 bits, as PETSc was configured; entries = -1 marks a dense matrix, its values by rows.
-//! Source: PETSc's manual page of `MatLoad`.
+//! MatrixFile: PETSc's manual page of `MatLoad`.
 
 use super::entries::{Entries, Naming, Storage};
-use super::lines::Source;
+use super::lines::MatrixFile;
 use crate::{Error, Result};
 
 /// `MAT_FILE_CLASSID`.
@@ -28,7 +28,7 @@ pub fn index_width(head: &[u8]) -> Option<usize> {
 ///
 /// # Errors
 /// [`Error::Input`] with the file, whatever is wrong.
-pub fn read(mut source: Source, width: usize) -> Result<Entries> {
+pub fn read(mut source: MatrixFile, width: usize) -> Result<Entries> {
     let place = source.path().display().to_string();
     let fail = |what: String| Err(Error::input(format!("{place}: {what}")));
     let head = indices(&mut source, 4, width)?;
@@ -77,7 +77,7 @@ pub fn read(mut source: Source, width: usize) -> Result<Entries> {
 }
 
 /// So many indices; read in pieces, so that a wrong count does not take the memory.
-fn indices(source: &mut Source, n: usize, width: usize) -> Result<Vec<i64>> {
+fn indices(source: &mut MatrixFile, n: usize, width: usize) -> Result<Vec<i64>> {
     const PIECE: usize = 1 << 16;
     let mut found = Vec::new();
     let mut bytes = vec![0; PIECE.min(n) * width];

@@ -2,7 +2,7 @@
 
 /// A pattern: the columns of each row, rising.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pattern {
+pub struct SparsityPattern {
     /// Where each row starts, and the end of the last.
     pub offsets: Vec<usize>,
     /// Columns, row after row.
@@ -13,12 +13,12 @@ pub struct Pattern {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sparse {
     /// Where the values are.
-    pub pattern: Pattern,
+    pub pattern: SparsityPattern,
     /// The values, in the order of the pattern's columns.
     pub values: Vec<f64>,
 }
 
-impl Pattern {
+impl SparsityPattern {
     /// Number of rows.
     pub fn n_rows(&self) -> usize {
         self.offsets.len() - 1
@@ -35,8 +35,8 @@ impl Pattern {
     }
 
     /// The smallest pattern that holds all of these and their transposes, and the diagonal.
-    pub fn symmetric_union(n: usize, patterns: &[&Pattern]) -> Pattern {
-        let transposed: Vec<Pattern> = patterns.iter().map(|pattern| pattern.transposed()).collect();
+    pub fn symmetric_union(n: usize, patterns: &[&SparsityPattern]) -> SparsityPattern {
+        let transposed: Vec<SparsityPattern> = patterns.iter().map(|pattern| pattern.transposed()).collect();
         let (mut offsets, mut columns) = (vec![0], Vec::new());
         for i in 0..n {
             let first = columns.len();
@@ -53,10 +53,10 @@ impl Pattern {
             columns.truncate(kept);
             offsets.push(kept);
         }
-        Pattern { offsets, columns }
+        SparsityPattern { offsets, columns }
     }
 
-    fn transposed(&self) -> Pattern {
+    fn transposed(&self) -> SparsityPattern {
         let n = self.n_rows();
         let mut offsets = vec![0; n + 1];
         self.columns.iter().for_each(|&j| offsets[j as usize + 1] += 1);
@@ -68,7 +68,7 @@ impl Pattern {
                 next[j as usize] += 1;
             }
         }
-        Pattern { offsets, columns }
+        SparsityPattern { offsets, columns }
     }
 }
 
@@ -96,7 +96,7 @@ impl Sparse {
             }
             offsets.push(columns.len());
         }
-        Sparse { pattern: Pattern { offsets, columns }, values }
+        Sparse { pattern: SparsityPattern { offsets, columns }, values }
     }
 
     /// Entries of a row: column and value.
@@ -123,7 +123,7 @@ impl Sparse {
     ///
     /// # Panics
     /// Where the pattern does not hold this one's.
-    pub fn on(&self, pattern: &Pattern) -> Vec<f64> {
+    pub fn on(&self, pattern: &SparsityPattern) -> Vec<f64> {
         let mut values = vec![0.0; pattern.columns.len()];
         for i in 0..self.pattern.n_rows() {
             for (j, value) in self.row(i) {
@@ -135,7 +135,7 @@ impl Sparse {
 }
 
 /// `(A + A^T) / 2` of values on a symmetric pattern, and the largest `|a_ij - a_ji|`.
-pub fn symmetric_part(pattern: &Pattern, values: &[f64]) -> (Vec<f64>, f64) {
+pub fn symmetric_part(pattern: &SparsityPattern, values: &[f64]) -> (Vec<f64>, f64) {
     let (mut part, mut largest) = (values.to_vec(), 0.0_f64);
     for i in 0..pattern.n_rows() {
         for at in pattern.offsets[i]..pattern.offsets[i + 1] {
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn a_union_holds_all_and_their_transposes() {
         let (a, b) = (Sparse::new(3, &[(0, 1, 2.0)]), Sparse::new(3, &[(2, 0, 8.0), (1, 1, 1.0)]));
-        let union = Pattern::symmetric_union(3, &[&a.pattern, &b.pattern]);
+        let union = SparsityPattern::symmetric_union(3, &[&a.pattern, &b.pattern]);
         assert_eq!([0, 1, 2].map(|i| union.row(i).to_vec()), [vec![0, 1, 2], vec![0, 1], vec![0, 2]]);
         assert_eq!(b.on(&union), [0.0, 0.0, 0.0, 0.0, 1.0, 8.0, 0.0]);
         let (part, largest) = symmetric_part(&union, &b.on(&union));

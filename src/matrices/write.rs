@@ -9,7 +9,7 @@ use super::petsc_binary::MATRIX;
 
 /// All rows of a matrix, compressed; entries that are zero are left out.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Whole {
+pub struct GatheredMatrix {
     /// Number of entries of each row.
     pub lengths: Vec<u32>,
     /// Columns from 0, row after row.
@@ -18,14 +18,14 @@ pub struct Whole {
     pub values: Vec<f64>,
 }
 
-impl Whole {
+impl GatheredMatrix {
     /// Brings a distributed matrix to the root; none elsewhere. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn gather(matrix: &Matrix) -> Result<Option<Whole>> {
+    pub fn gather(matrix: &Matrix) -> Result<Option<GatheredMatrix>> {
         let comm = matrix.comm();
-        let mut whole = Whole::default();
+        let mut whole = GatheredMatrix::default();
         matrix.visit_rows(|_, columns, values| {
             let before = whole.columns.len();
             let entries = columns.iter().zip(values).filter(|(_, value)| **value != 0.0);

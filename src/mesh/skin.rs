@@ -6,7 +6,7 @@ use crate::element::tet10::FACES;
 
 /// A face of a tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Face {
+pub struct SkinFace {
     /// The part of the tetrahedron.
     pub part: u32,
     /// Nodes of the facet, turning so that its normal points out of the tetrahedron.
@@ -17,7 +17,7 @@ pub struct Face {
 
 /// Finds the tetrahedra behind facets.
 pub struct Skin {
-    faces: HashMap<[u32; 3], Option<Face>>,
+    faces: HashMap<[u32; 3], Option<SkinFace>>,
 }
 
 impl Skin {
@@ -44,7 +44,7 @@ impl Skin {
                     continue;
                 }
                 if let Some(face) = faces.get_mut(&key(&facet)) {
-                    *face = Some(outer(*face, Face { part, facet, inner: false }));
+                    *face = Some(outer(*face, SkinFace { part, facet, inner: false }));
                 }
             }
         }
@@ -52,18 +52,18 @@ impl Skin {
     }
 
     /// The face behind a facet; none where no tetrahedron has its six nodes as a face.
-    pub fn face(&self, facet: &[u32; 6]) -> Option<Face> {
+    pub fn face(&self, facet: &[u32; 6]) -> Option<SkinFace> {
         let face = self.faces.get(&key(facet)).copied().flatten()?;
         (sorted(&face.facet[3..]) == sorted(&facet[3..])).then_some(face)
     }
 }
 
 /// Of two tetrahedra that meet at a facet, the one of the first part.
-fn outer(known: Option<Face>, found: Face) -> Face {
+fn outer(known: Option<SkinFace>, found: SkinFace) -> SkinFace {
     let Some(known) = known else {
         return found;
     };
-    Face { inner: true, ..if known.part <= found.part { known } else { found } }
+    SkinFace { inner: true, ..if known.part <= found.part { known } else { found } }
 }
 
 fn key(facet: &[u32; 6]) -> [u32; 3] {
@@ -88,11 +88,11 @@ mod tests {
         for (parts, tet) in [([0, 1], 0), ([1, 0], 1), ([0, 0], 0)] {
             let skin = Skin::new(14, &tets, &parts, [facet].iter());
             let face = skin.face(&facet).unwrap();
-            assert_eq!(face, Face { part: 0, facet: seen_from[tet], inner: true });
+            assert_eq!(face, SkinFace { part: 0, facet: seen_from[tet], inner: true });
         }
         let skin = Skin::new(14, &tets, &[0, 1], [[0, 1, 3, 4, 8, 7]].iter());
         let face = skin.face(&[3, 0, 1, 7, 4, 8]).unwrap();
-        assert_eq!(face, Face { part: 0, facet: [0, 1, 3, 4, 8, 7], inner: false });
+        assert_eq!(face, SkinFace { part: 0, facet: [0, 1, 3, 4, 8, 7], inner: false });
         assert_eq!(skin.face(&[3, 0, 1, 7, 4, 9]), None);
         assert_eq!(skin.face(&[0, 3, 2, 7, 9, 6]), None);
     }

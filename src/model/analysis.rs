@@ -2,8 +2,8 @@
 
 use super::contacts::friction;
 use super::item::{Item, Number};
-use super::keys::{self, FrictionSweep, Text};
-use super::source::Source;
+use super::keys::{self, FrictionSweepTable, Text};
+use super::source::ModelText;
 use super::{Contact, Reduction, names};
 use crate::Result;
 use toml::Spanned;
@@ -15,7 +15,7 @@ const RANGE: &str = "Give from, to and step (above 0, from <= to), or values = [
 
 /// A friction sweep.
 #[derive(Default)]
-pub struct Sweep {
+pub struct SweepSettings {
     /// The contacts that it changes; none named: all that slide.
     pub contacts: Vec<String>,
     /// The values.
@@ -25,13 +25,17 @@ pub struct Sweep {
 }
 
 /// The sweep, once the contacts it names exist.
-pub fn sweep(source: Source, raw: Option<&Spanned<keys::Sweep>>, contacts: &[Contact]) -> Result<Sweep> {
+pub fn sweep(
+    source: ModelText,
+    raw: Option<&Spanned<keys::SweepTable>>,
+    contacts: &[Contact],
+) -> Result<SweepSettings> {
     let Some(raw) = raw else {
-        return Ok(Sweep::default());
+        return Ok(SweepSettings::default());
     };
     let friction = &raw.get_ref().friction;
     let item = Item::new(source, "sweep".to_owned(), friction.span());
-    Ok(Sweep {
+    Ok(SweepSettings {
         contacts: swept(&item, friction.get_ref().contacts.as_deref(), contacts)?,
         frictions: values(&item, friction.get_ref())?,
         line: item.line(),
@@ -59,7 +63,7 @@ fn swept(item: &Item, wanted: Option<&[Text]>, contacts: &[Contact]) -> Result<V
     Ok(swept)
 }
 
-fn values(item: &Item, raw: &FrictionSweep) -> Result<Vec<f64>> {
+fn values(item: &Item, raw: &FrictionSweepTable) -> Result<Vec<f64>> {
     match (&raw.values, &raw.from, &raw.to, &raw.step) {
         (Some(values), None, None, None) if !values.is_empty() => {
             let mut seen: Vec<f64> = Vec::new();
@@ -104,7 +108,7 @@ pub fn spaced(from: f64, to: f64, step: f64) -> Option<Vec<f64>> {
 }
 
 /// The reduction.
-pub fn reduction(source: Source, raw: &Spanned<keys::Reduction>) -> Result<Reduction> {
+pub fn reduction(source: ModelText, raw: &Spanned<keys::ReductionTable>) -> Result<Reduction> {
     let item = Item::new(source, "reduction".to_owned(), raw.span());
     let contacts = &raw.get_ref().contacts;
     if *contacts.get_ref() == 0 {

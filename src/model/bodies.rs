@@ -2,20 +2,20 @@
 
 use super::item::Item;
 use super::keys::{self, Text};
-use super::source::{Source, Span};
+use super::source::{ModelText, Span};
 use super::{Fix, Material, Part, Rayleigh, Rotation, names};
 use crate::Result;
 use std::collections::HashSet;
 use toml::Spanned;
 
 /// The parts in the order of the file.
-pub fn parts(source: Source, raw: &keys::Named<keys::Part>, materials: &[Material]) -> Result<Vec<Part>> {
-    let mut raw: Vec<(&Text, &keys::Part)> = raw.iter().collect();
+pub fn parts(source: ModelText, raw: &keys::Named<keys::PartTable>, materials: &[Material]) -> Result<Vec<Part>> {
+    let mut raw: Vec<(&Text, &keys::PartTable)> = raw.iter().collect();
     raw.sort_by_key(|(name, _)| name.span().start);
     raw.into_iter().map(|(name, raw)| part(source, name, raw, materials)).collect()
 }
 
-fn part(source: Source, name: &Text, raw: &keys::Part, materials: &[Material]) -> Result<Part> {
+fn part(source: ModelText, name: &Text, raw: &keys::PartTable, materials: &[Material]) -> Result<Part> {
     let item = Item::new(source, format!("part {:?}", name.get_ref()), name.span());
     let wanted = raw.material.get_ref();
     let Some(material) = materials.iter().find(|m| &m.name == wanted) else {
@@ -31,7 +31,7 @@ fn part(source: Source, name: &Text, raw: &keys::Part, materials: &[Material]) -
     })
 }
 
-fn rayleigh(item: &Item, raw: &keys::Rayleigh) -> Result<Rayleigh> {
+fn rayleigh(item: &Item, raw: &keys::RayleighTable) -> Result<Rayleigh> {
     let coefficient = |value: &Option<_>, key, advice| match value {
         Some(value) => item.not_negative(value, key, advice),
         None => Ok(0.0),
@@ -43,8 +43,8 @@ fn rayleigh(item: &Item, raw: &keys::Rayleigh) -> Result<Rayleigh> {
 }
 
 /// The fixed displacements.
-pub fn fixes(source: Source, raw: &[Spanned<keys::Fix>]) -> Result<Vec<Fix>> {
-    let fix = |fix: &Spanned<keys::Fix>| {
+pub fn fixes(source: ModelText, raw: &[Spanned<keys::FixTable>]) -> Result<Vec<Fix>> {
+    let fix = |fix: &Spanned<keys::FixTable>| {
         let raw = fix.get_ref();
         let item = Item::new(source, format!("fix of {:?}", raw.nodes), fix.span());
         Ok(Fix { nodes: raw.nodes.clone(), axes: axes(&item, &raw.axes)?, line: item.line() })
@@ -70,7 +70,12 @@ fn wrong_axes(item: &Item, text: &Text) -> crate::Error {
 }
 
 /// The imposed velocities; `unit` is metres per unit of the mesh.
-pub fn rotations(source: Source, raw: &[Spanned<keys::Rotation>], parts: &[Part], unit: f64) -> Result<Vec<Rotation>> {
+pub fn rotations(
+    source: ModelText,
+    raw: &[Spanned<keys::RotationTable>],
+    parts: &[Part],
+    unit: f64,
+) -> Result<Vec<Rotation>> {
     let mut seen = HashSet::new();
     let mut rotations = Vec::new();
     for rotation in raw {
@@ -95,7 +100,7 @@ fn known_part(item: &Item, name: &str, span: &Span, parts: &[Part]) -> Result<()
     Err(item.error(span, what, format_args!("{advice}; or add it")))
 }
 
-fn rotation(item: &Item, raw: &keys::Rotation, unit: f64) -> Result<Rotation> {
+fn rotation(item: &Item, raw: &keys::RotationTable, unit: f64) -> Result<Rotation> {
     let through = match &raw.through {
         Some(point) => item.finite(point, "through")?,
         None => [0.0; 3],

@@ -2,7 +2,7 @@
 
 use super::item::{Item, Vector};
 use super::keys;
-use super::source::Source;
+use super::source::ModelText;
 use super::{Connector, Contact, NormalLaw};
 use crate::Result;
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use toml::Spanned;
 pub const LARGEST_FRICTION: f64 = 2.0;
 
 /// The contact pairs; `unit` is metres per unit of the mesh.
-pub fn contacts(source: Source, raw: &[Spanned<keys::Contact>], unit: f64) -> Result<Vec<Contact>> {
+pub fn contacts(source: ModelText, raw: &[Spanned<keys::ContactTable>], unit: f64) -> Result<Vec<Contact>> {
     let mut seen = HashMap::new();
     let mut contacts = Vec::new();
     for contact in raw {
@@ -36,7 +36,7 @@ pub fn unused(item: &Item, name: &str, seen: &mut HashMap<String, usize>) -> Res
     }
 }
 
-fn contact(item: &Item, name: String, raw: &keys::Contact, unit: f64) -> Result<Contact> {
+fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Result<Contact> {
     if raw.slave == raw.master {
         let what = format_args!("slave and master are both {:?}", raw.slave);
         return Err(item.error_here(what, "Name the two surfaces that meet"));
@@ -65,7 +65,7 @@ pub fn friction(item: &Item, value: &Spanned<f64>) -> Result<f64> {
     item.check(value, holds, "friction", "must be from 0 to 2", "Give a coefficient, such as 0.5")
 }
 
-fn law(item: &Item, raw: &Spanned<keys::Law>) -> Result<NormalLaw> {
+fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {
     let example = "Give law = { linear = 2e13 } in N/m3, or { cubic = [k1, k3] } in N/m3 and N/m5";
     match (&raw.get_ref().linear, &raw.get_ref().cubic) {
         (Some(k), None) => Ok(NormalLaw::Linear { stiffness: item.positive(k, "linear", example)? }),
@@ -79,7 +79,7 @@ fn law(item: &Item, raw: &Spanned<keys::Law>) -> Result<NormalLaw> {
 }
 
 /// The connectors; `unit` is metres per unit of the mesh.
-pub fn connectors(source: Source, raw: &[Spanned<keys::Connector>], unit: f64) -> Result<Vec<Connector>> {
+pub fn connectors(source: ModelText, raw: &[Spanned<keys::ConnectorTable>], unit: f64) -> Result<Vec<Connector>> {
     let mut seen = HashMap::new();
     let mut connectors = Vec::new();
     for connector in raw {
@@ -93,7 +93,7 @@ pub fn connectors(source: Source, raw: &[Spanned<keys::Connector>], unit: f64) -
     Ok(connectors)
 }
 
-fn connector(item: &Item, name: String, raw: &keys::Connector, unit: f64) -> Result<Connector> {
+fn connector(item: &Item, name: String, raw: &keys::ConnectorTable, unit: f64) -> Result<Connector> {
     let [a, b] = raw.between.get_ref();
     if a == b {
         let what = format_args!("both ends are {a:?}");

@@ -1,6 +1,6 @@
 //! One table of the model file while its values are checked: what it is called in messages, and the checks of single values.
 
-use super::source::{Source, Span};
+use super::source::{ModelText, Span};
 use crate::{Error, Result};
 use std::fmt::Display;
 use toml::Spanned;
@@ -12,7 +12,7 @@ pub type Vector = Spanned<[f64; 3]>;
 
 /// A table of the file.
 pub struct Item<'a> {
-    source: Source<'a>,
+    source: ModelText<'a>,
     /// What messages call it: `material "iron"`.
     name: String,
     /// Where it begins.
@@ -21,7 +21,7 @@ pub struct Item<'a> {
 
 impl<'a> Item<'a> {
     /// The table at `span`, called `name` in messages.
-    pub fn new(source: Source<'a>, name: String, span: Span) -> Self {
+    pub fn new(source: ModelText<'a>, name: String, span: Span) -> Self {
         Item { source, name, span }
     }
 

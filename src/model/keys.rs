@@ -11,32 +11,32 @@ pub type Text = Spanned<String>;
 pub type Named<T> = BTreeMap<Text, T>;
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct File {
     pub title: Option<String>,
-    pub mesh: Spanned<Mesh>,
+    pub mesh: Spanned<MeshTable>,
     #[serde(default)]
-    pub material: Named<Material>,
+    pub material: Named<MaterialTable>,
     #[serde(default)]
-    pub part: Named<Part>,
+    pub part: Named<PartTable>,
     #[serde(default)]
-    pub fix: Vec<Spanned<Fix>>,
+    pub fix: Vec<Spanned<FixTable>>,
     #[serde(default)]
-    pub rotation: Vec<Spanned<Rotation>>,
+    pub rotation: Vec<Spanned<RotationTable>>,
     #[serde(default)]
-    pub contact: Vec<Spanned<Contact>>,
+    pub contact: Vec<Spanned<ContactTable>>,
     #[serde(default)]
-    pub connector: Vec<Spanned<Connector>>,
+    pub connector: Vec<Spanned<ConnectorTable>>,
     #[serde(default)]
-    pub load: Vec<Spanned<Load>>,
-    pub stability: Spanned<Stability>,
-    pub sweep: Option<Spanned<Sweep>>,
-    pub reduction: Option<Spanned<Reduction>>,
+    pub load: Vec<Spanned<LoadTable>>,
+    pub stability: Spanned<StabilityTable>,
+    pub sweep: Option<Spanned<SweepTable>>,
+    pub reduction: Option<Spanned<ReductionTable>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Mesh {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct MeshTable {
     pub file: Text,
     pub unit: Text,
 }
@@ -51,8 +51,8 @@ pub enum OneOrThree {
 
 /// All kinds of material together; `materials` knows which keys belong to which kind.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Material {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct MaterialTable {
     pub kind: Option<Text>,
     pub density: Number,
     pub young: Option<Spanned<OneOrThree>>,
@@ -68,30 +68,30 @@ pub struct Material {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Part {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct PartTable {
     pub material: Text,
     #[serde(default)]
-    pub rayleigh: Rayleigh,
+    pub rayleigh: RayleighTable,
 }
 
 #[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub struct Rayleigh {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct RayleighTable {
     pub alpha: Option<Number>,
     pub beta: Option<Number>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Fix {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct FixTable {
     pub nodes: String,
     pub axes: Text,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Rotation {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct RotationTable {
     pub part: Text,
     pub axis: Vector,
     pub through: Option<Vector>,
@@ -99,12 +99,12 @@ pub struct Rotation {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct ContactTable {
     pub name: Option<String>,
     pub slave: String,
     pub master: String,
-    pub law: Spanned<Law>,
+    pub law: Spanned<LawTable>,
     pub friction: Number,
     pub stick: Option<Number>,
     pub separation: Option<bool>,
@@ -112,15 +112,15 @@ pub struct Contact {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Law {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct LawTable {
     pub linear: Option<Number>,
     pub cubic: Option<Spanned<[f64; 2]>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Connector {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct ConnectorTable {
     pub name: Option<String>,
     pub between: Spanned<[String; 2]>,
     pub at: Option<Vector>,
@@ -130,8 +130,8 @@ pub struct Connector {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Load {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct LoadTable {
     pub name: Option<String>,
     pub on: String,
     pub force: Option<Vector>,
@@ -140,22 +140,22 @@ pub struct Load {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Stability {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct StabilityTable {
     pub band: Spanned<[f64; 2]>,
     #[serde(default)]
     pub friction_damping: bool,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Sweep {
-    pub friction: Spanned<FrictionSweep>,
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct SweepTable {
+    pub friction: Spanned<FrictionSweepTable>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FrictionSweep {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct FrictionSweepTable {
     pub contacts: Option<Vec<Text>>,
     pub values: Option<Vec<Number>>,
     pub from: Option<Number>,
@@ -164,8 +164,8 @@ pub struct FrictionSweep {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Reduction {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct ReductionTable {
     pub contacts: Spanned<usize>,
     pub band: Spanned<[f64; 2]>,
 }

@@ -3,14 +3,14 @@
 use super::contacts::unused;
 use super::item::{Item, Vector};
 use super::keys::{self, Text};
-use super::source::Source;
+use super::source::ModelText;
 use super::{Load, LoadKind, names};
 use crate::Result;
 use std::collections::HashMap;
 use toml::Spanned;
 
 /// The loads.
-pub fn loads(source: Source, raw: &[Spanned<keys::Load>]) -> Result<Vec<Load>> {
+pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>]) -> Result<Vec<Load>> {
     let mut seen = HashMap::new();
     let mut loads = Vec::new();
     for load in raw {
@@ -23,7 +23,7 @@ pub fn loads(source: Source, raw: &[Spanned<keys::Load>]) -> Result<Vec<Load>> {
     Ok(loads)
 }
 
-fn kind(item: &Item, raw: &keys::Load) -> Result<LoadKind> {
+fn kind(item: &Item, raw: &keys::LoadTable) -> Result<LoadKind> {
     let advice = "Give one of force = [x, y, z] in N, or pressure in Pa";
     match (&raw.force, &raw.pressure, &raw.spread) {
         (Some(force), None, spread) => spread_force(item, force, spread.as_ref()),

@@ -5,7 +5,7 @@
 use super::elasticity::{self, Transverse};
 use super::item::{Item, Number, Vector};
 use super::keys::{self, OneOrThree, Text};
-use super::source::{Source, Span};
+use super::source::{ModelText, Span};
 use super::{Material, names};
 use crate::Result;
 use nalgebra::{Matrix3, Matrix6};
@@ -28,20 +28,20 @@ const SHEAR: &str = "Give a shear modulus in Pa, such as 2e9";
 ///
 /// # Errors
 /// Input errors for keys of another kind and for constants that no material can have.
-pub fn materials(source: Source, raw: &keys::Named<keys::Material>) -> Result<Vec<Material>> {
-    raw.iter().map(|(name, material)| Reader::new(source, name, material).read()).collect()
+pub fn materials(source: ModelText, raw: &keys::Named<keys::MaterialTable>) -> Result<Vec<Material>> {
+    raw.iter().map(|(name, material)| MaterialReader::new(source, name, material).read()).collect()
 }
 
-struct Reader<'a> {
+struct MaterialReader<'a> {
     item: Item<'a>,
     name: &'a str,
-    raw: &'a keys::Material,
+    raw: &'a keys::MaterialTable,
 }
 
-impl<'a> Reader<'a> {
-    fn new(source: Source<'a>, name: &'a Text, raw: &'a keys::Material) -> Self {
+impl<'a> MaterialReader<'a> {
+    fn new(source: ModelText<'a>, name: &'a Text, raw: &'a keys::MaterialTable) -> Self {
         let item = Item::new(source, format!("material {:?}", name.get_ref()), name.span());
-        Reader { item, name: name.get_ref(), raw }
+        MaterialReader { item, name: name.get_ref(), raw }
     }
 
     fn read(&self) -> Result<Material> {

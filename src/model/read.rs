@@ -1,7 +1,7 @@
 //! From the file to the model: one step a table, in an order in which names are known before they are used.
 
 use super::item::Item;
-use super::source::{Source, located};
+use super::source::{ModelText, located};
 use super::{Model, analysis, bodies, contacts, keys, loads, materials, names};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ pub fn read(path: &Path) -> Result<Model> {
 /// # Errors
 /// As [`read`].
 pub fn parse(text: &str, file: &Path) -> Result<Model> {
-    let source = Source { file, text };
+    let source = ModelText { file, text };
     let raw: keys::File = source.deserialize()?;
     let mesh_unit = unit(source, raw.mesh.get_ref())?;
     let materials = materials::materials(source, &raw.material)?;
@@ -67,7 +67,7 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
 }
 
 /// Metres per unit of the mesh.
-fn unit(source: Source, mesh: &keys::Mesh) -> Result<f64> {
+fn unit(source: ModelText, mesh: &keys::MeshTable) -> Result<f64> {
     let wanted = mesh.unit.get_ref();
     if let Some((_, metres)) = UNITS.iter().find(|(name, _)| name == wanted) {
         return Ok(*metres);

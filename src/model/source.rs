@@ -12,7 +12,7 @@ pub type Span = Range<usize>;
 
 /// The text of a model file.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct ModelText<'a> {
     /// The file, as messages name it.
     pub file: &'a Path,
     /// Its whole text.
@@ -24,7 +24,7 @@ pub fn located(file: &Path, line: usize, message: impl Display) -> String {
     format!("{}:{line}: {message}", file.display())
 }
 
-impl Source<'_> {
+impl ModelText<'_> {
     /// Line of an offset, from 1.
     pub fn line(&self, offset: usize) -> usize {
         let before = &self.text.as_bytes()[..offset.min(self.text.len())];

@@ -2,16 +2,16 @@
 
 use std::io::Write;
 
-use crate::comparison::{AtFriction, Comparison, Lone, Pair};
+use crate::comparison::{Comparison, ComparisonAtValue, ModePair, UnpairedMode};
 
 /// The largest, by modulus, of some numbers of pairs, and the mean modulus.
 struct Spread<'c> {
-    worst: Option<(f64, &'c Pair)>,
+    worst: Option<(f64, &'c ModePair)>,
     mean: f64,
 }
 
 impl<'c> Spread<'c> {
-    fn new(pairs: &'c [Pair], of: impl Fn(&Pair) -> f64) -> Spread<'c> {
+    fn new(pairs: &'c [ModePair], of: impl Fn(&ModePair) -> f64) -> Spread<'c> {
         let worst = pairs.iter().map(|pair| (of(pair), pair)).max_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
         let sum: f64 = pairs.iter().map(|pair| of(pair).abs()).sum();
         Spread { worst, mean: sum / pairs.len().max(1) as f64 }
@@ -57,7 +57,7 @@ pub fn text(comparison: &Comparison, names: [&str; 2]) -> String {
         "B"
     );
     text += &frictions.iter().map(line).collect::<String>();
-    let unstable = |pair: &&Pair| pair.unstable.contains(&true);
+    let unstable = |pair: &&ModePair| pair.unstable.contains(&true);
     if frictions.iter().any(|at| at.pairs.iter().any(|pair| unstable(&pair))) {
         text += "\nmodes that grow in A or in B\n friction       A: Hz       1/s      B: Hz       1/s  frequency, %  growth rate, %     MAC\n";
         for at in frictions {
@@ -67,7 +67,7 @@ pub fn text(comparison: &Comparison, names: [&str; 2]) -> String {
     text + &lone_text(frictions)
 }
 
-fn line(at: &AtFriction) -> String {
+fn line(at: &ComparisonAtValue) -> String {
     let least = at.pairs.iter().min_by(|a, b| a.mac.total_cmp(&b.mac));
     let mac =
         least.map_or(format!("{:>18}", "-"), |pair| format!("{:>6.4} ({:>6.0} Hz)", pair.mac, pair.frequencies[0]));
@@ -82,18 +82,18 @@ fn line(at: &AtFriction) -> String {
     )
 }
 
-fn unstable_line(friction: f64, pair: &Pair) -> String {
+fn unstable_line(friction: f64, pair: &ModePair) -> String {
     let [f, g] = pair.frequencies;
     let [a, b] = pair.growth_rates;
     let (df, da, mac) = (100.0 * pair.frequency_error, 100.0 * pair.growth_error, pair.mac);
     format!("{friction:>9.4} {f:>11.2} {a:>+9.2} {g:>10.2} {b:>+9.2} {df:>+13.4} {da:>+15.3} {mac:>7.4}\n")
 }
 
-fn lone_text(frictions: &[AtFriction]) -> String {
+fn lone_text(frictions: &[ComparisonAtValue]) -> String {
     let mut text = String::new();
     for (side, name) in ["A", "B"].iter().enumerate() {
         for at in frictions.iter().filter(|at| !at.unmatched[side].is_empty()) {
-            let one = |lone: &Lone| {
+            let one = |lone: &UnpairedMode| {
                 let mark = if lone.unstable { ", unstable" } else { "" };
                 format!("{:.1} Hz ({:+.1} /s{mark})", lone.frequency, lone.growth_rate)
             };

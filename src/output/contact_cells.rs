@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use crate::contact::Interface;
-use crate::contact::interface::Pair;
+use crate::contact::interface::ContactPair;
 use crate::element::tri6::{self, EDGES};
 use crate::mesh::Mesh;
 
@@ -31,7 +31,7 @@ impl ContactCells {
         picture
     }
 
-    fn add(&mut self, mesh: &Mesh, interface: &Interface, pair: &Pair) {
+    fn add(&mut self, mesh: &Mesh, interface: &Interface, pair: &ContactPair) {
         let own = pair.points.clone().map(|a| (a, &interface.points[a]));
         let cell_of: HashMap<u32, usize> =
             own.flat_map(|(a, point)| point.nodes.iter().map(move |&n| (n, a))).collect();

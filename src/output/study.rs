@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::comparison::{CurvePoint, Errors, Model, Study};
+use crate::comparison::{CurvePoint, Errors, StudiedModel, Study};
 
 /// Sizes and times, errors, and the instabilities over friction.
 pub fn text(study: &Study) -> String {
@@ -16,7 +16,7 @@ pub fn text(study: &Study) -> String {
     head + "\n" + &sizes_text(study) + "\n" + &errors_text(study) + &curves + &spurious_text(study)
 }
 
-fn models(study: &Study) -> impl Iterator<Item = &Model> {
+fn models(study: &Study) -> impl Iterator<Item = &StudiedModel> {
     [&study.reference].into_iter().chain(&study.models)
 }
 
@@ -165,7 +165,7 @@ pub fn sizes(out: &mut dyn Write, study: &Study) -> csv::Result<()> {
         "seconds_per_friction",
         "seconds_to_make",
     ])?;
-    for Model { name, sizes, seconds, making_seconds, .. } in models(study) {
+    for StudiedModel { name, sizes, seconds, making_seconds, .. } in models(study) {
         table.write_record([
             name.clone(),
             sizes.n_contacts.to_string(),

@@ -11,9 +11,9 @@
 
 use std::collections::HashMap;
 
-use crate::contact::interface::Pair;
+use crate::contact::interface::ContactPair;
 use crate::contact::search::{Landing, land};
-use crate::contact::{ContactPoint, Interface, Point, Statistics, sliding};
+use crate::contact::{ContactPoint, Interface, PointLaw, Statistics, sliding};
 use crate::element::coupling::{self, Cloud, mean_motion};
 use crate::mesh::{Mesh, Surface};
 use crate::model::{Model, located};
@@ -51,7 +51,7 @@ pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -
         }
         let touching = reduced.points[first..].iter().filter(|point| point.law.touching).count();
         let statistics = Statistics { touching, ..pair.statistics.clone() };
-        reduced.pairs.push(Pair { points: first..reduced.points.len(), statistics, ..pair.clone() });
+        reduced.pairs.push(ContactPair { points: first..reduced.points.len(), statistics, ..pair.clone() });
     }
     Ok(reduced)
 }
@@ -61,7 +61,7 @@ struct Site<'a> {
     model: &'a Model,
     mesh: &'a Mesh,
     full: &'a Interface,
-    pair: &'a Pair,
+    pair: &'a ContactPair,
     line: usize,
 }
 
@@ -112,11 +112,11 @@ impl Site<'_> {
     }
 
     /// The cell's law with its whole area, at the reference node.
-    fn law(&self, cell: &[&ContactPoint], x: [f64; 3], landing: &Landing) -> Point {
+    fn law(&self, cell: &[&ContactPoint], x: [f64; 3], landing: &Landing) -> PointLaw {
         let weight: f64 = cell.iter().map(|point| point.law.weight).sum();
         let rotation = self.model.sliding(&self.model.contacts[cell[0].pair], self.mesh);
         let rotation = rotation.expect("a sliding pair has a rotation");
-        Point {
+        PointLaw {
             weight,
             normal: landing.normal,
             gap: landing.gap,

@@ -23,8 +23,8 @@ use hdf5::{File, Group};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
-use crate::contact::interface::{Kind, Pair, Statistics};
-use crate::contact::{ContactPoint, Point, Tangential};
+use crate::contact::interface::{ContactPair, Statistics, TangentialKind};
+use crate::contact::{ContactPoint, PointLaw, Tangential};
 use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
 use crate::model::NormalLaw;
 
@@ -110,7 +110,7 @@ fn write_contacts(group: &Group, contacts: &[NodeContact]) -> hdf5::Result<()> {
 }
 
 fn pair_texts(element: &SuperElement) -> Vec<PairText> {
-    let of = |pair: &Pair| PairText {
+    let of = |pair: &ContactPair| PairText {
         name: pair.name.clone(),
         slave: pair.slave.clone(),
         master: pair.master.clone(),
@@ -167,12 +167,12 @@ fn read_body(file: &File) -> hdf5::Result<(SuperElement, OuterSurface)> {
     Ok((element, surface))
 }
 
-fn pairs(texts: &[PairText]) -> Vec<Pair> {
+fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
     let mut first = 0;
     let of = |text: &PairText| {
         let points = first..first + text.n_contacts;
         first = points.end;
-        Pair {
+        ContactPair {
             name: text.name.clone(),
             slave: text.slave.clone(),
             master: text.master.clone(),
@@ -181,7 +181,7 @@ fn pairs(texts: &[PairText]) -> Vec<Pair> {
                 _ => NormalLaw::Linear { stiffness: text.law.first().copied().unwrap_or(f64::NAN) },
             },
             friction: text.friction,
-            kind: Kind::Sliding,
+            kind: TangentialKind::Sliding,
             separation: text.separation,
             swept: text.swept,
             points,
@@ -191,7 +191,7 @@ fn pairs(texts: &[PairText]) -> Vec<Pair> {
     texts.iter().map(of).collect()
 }
 
-fn read_contacts(group: &Group, pairs: &[Pair]) -> hdf5::Result<Vec<NodeContact>> {
+fn read_contacts(group: &Group, pairs: &[ContactPair]) -> hdf5::Result<Vec<NodeContact>> {
     let pair: Vec<u32> = values(group, "pair")?;
     let [position, normal, direction, displacement] =
         ["position", "normal", "direction", "displacement"].map(|name| triples::<f64>(group, name));
@@ -204,7 +204,7 @@ fn read_contacts(group: &Group, pairs: &[Pair]) -> hdf5::Result<Vec<NodeContact>
     }
     let of = |i: usize| {
         let own = pairs.get(pair[i] as usize).ok_or_else(|| hdf5::Error::from("a contact of no pair"))?;
-        let law = Point {
+        let law = PointLaw {
             weight: weight[i],
             normal: normal[i],
             gap: gap[i],

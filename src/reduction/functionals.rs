@@ -63,7 +63,7 @@ fn point_rows(gap_operator: &GapOperator, a: usize, dofs: &DofMap) -> [Vec<(usiz
     let owned = dofs.owned();
     let (nodes, blocks) = gap_operator.point(a);
     std::array::from_fn(|i| {
-        let entries = nodes.iter().zip(blocks).flat_map(|(&n, block)| dofs.equations(n).into_iter().zip(block[i]));
+        let entries = nodes.iter().zip(blocks).flat_map(|(&n, block)| dofs.node_dofs(n).into_iter().zip(block[i]));
         let own = entries.filter(|(equation, b)| owned.contains(equation) && *b != 0.0);
         own.map(|(equation, b)| ((equation - owned.start) as usize, b)).collect()
     })

@@ -11,7 +11,7 @@
 //! at the full model's equilibrium it gives the full model's force: `p(d + xi) = p_full` (Fazio, Nacivet, Sinou, eq. 11 and 12).
 
 use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
-use crate::contact::interface::Pair;
+use crate::contact::interface::ContactPair;
 use crate::contact::{ContactPoint, GapOperator, Interface};
 use crate::mesh::Numbering;
 use crate::model::NormalLaw;
@@ -76,7 +76,7 @@ pub struct SuperElement {
     /// Generalised forces of the contacts that were linearised.
     pub preload: Vec<f64>,
     /// The sliding pairs.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<ContactPair>,
     /// Their contacts, pair by pair.
     pub contacts: Vec<NodeContact>,
 }
@@ -89,7 +89,7 @@ impl SuperElement {
     pub fn new(origin: Origin, structure: &Structure, reduced: &Reduced, loaded: &[[f64; 3]]) -> Result<SuperElement> {
         let interface = structure.interface;
         let gaps = crate::equilibrium::Contacts::new(interface, structure.system)?.gaps(&structure.equilibrium.u)?;
-        let mut pairs: Vec<Pair> = Vec::new();
+        let mut pairs: Vec<ContactPair> = Vec::new();
         let mut contacts: Vec<NodeContact> = Vec::new();
         for pair in interface.pairs.iter().filter(|pair| pair.is_sliding()) {
             let first = contacts.len();
@@ -99,7 +99,7 @@ impl SuperElement {
                 let normal_force = structure.equilibrium.responses[a].normal_force;
                 contacts.push(NodeContact { point, displacement: gaps[a], normal_force });
             }
-            pairs.push(Pair { points: first..contacts.len(), ..pair.clone() });
+            pairs.push(ContactPair { points: first..contacts.len(), ..pair.clone() });
         }
         let slaves = contacts.iter().map(|contact| contact.point.position);
         // The partner is where the reference node projects: a gap away.
@@ -139,7 +139,8 @@ impl SuperElement {
         for i in 0..n {
             gap_operator.push(&[i, n + i], &[identity(1.0), identity(-1.0)]);
         }
-        let pairs = self.pairs.iter().map(|pair| Pair { law: law.unwrap_or(pair.law), ..pair.clone() }).collect();
+        let pairs =
+            self.pairs.iter().map(|pair| ContactPair { law: law.unwrap_or(pair.law), ..pair.clone() }).collect();
         Interface { pairs, points: self.contacts.iter().map(|contact| contact.under(law)).collect(), gap_operator }
     }
 

@@ -1,13 +1,13 @@
 //! Two results side by side, as a figure.
 
 use super::svg::{Anchor, INK, PALE, Panel, Scale, Sheet, colour};
-use crate::comparison::{Comparison, Pair};
+use crate::comparison::{Comparison, ModePair};
 
 /// Frequency error, growth-rate error and MAC of all pairs against A's frequency; pairs that grow are in colour.
 pub fn errors(comparison: &Comparison) -> String {
     let mut sheet = Sheet::new([720.0, 620.0]);
     let band = comparison.band.map(|f| f / 1000.0);
-    type Quantity = fn(&Pair) -> f64;
+    type Quantity = fn(&ModePair) -> f64;
     let rows: [(&str, Quantity); 3] = [
         ("frequency error, %", |pair| 100.0 * pair.frequency_error),
         ("growth rate error, %", |pair| 100.0 * pair.growth_error),
@@ -34,11 +34,11 @@ pub fn errors(comparison: &Comparison) -> String {
     sheet.finish("Errors of frequencies and growth rates and MAC of all modes against frequency")
 }
 
-fn pairs(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
+fn pairs(comparison: &Comparison) -> impl Iterator<Item = &ModePair> {
     comparison.frictions.iter().flat_map(|at| &at.pairs)
 }
 
-fn grows(pair: &Pair) -> bool {
+fn grows(pair: &ModePair) -> bool {
     pair.unstable.contains(&true)
 }
 

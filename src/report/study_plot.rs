@@ -1,17 +1,17 @@
 //! A brake in several models: frequencies and growth rates of its instabilities over friction (figures 7 and 8 of the paper).
 
 use super::svg::{Anchor, INK, Panel, Scale, Sheet, colour};
-use crate::comparison::{CurvePoint, Model, Study};
+use crate::comparison::{CurvePoint, StudiedModel, Study};
 
 /// The reference and some of the models: a column an instability, frequency above growth rate. None where nothing grows.
-pub fn instabilities(study: &Study, models: &[&Model], title: &str) -> Option<String> {
+pub fn instabilities(study: &Study, models: &[&StudiedModel], title: &str) -> Option<String> {
     const COLUMN: f64 = 430.0;
     let (n, frictions) = (study.reference.curves.len(), &study.frictions);
     let (Some(first), Some(last)) = (frictions.first(), frictions.last()) else { return None };
     let x = Scale::with_margin([*first, *last], 0.03);
     let mut sheet = Sheet::new([COLUMN * n as f64 + 20.0, 520.0 + 20.0 * models.len().div_ceil(2) as f64]);
     for i in 0..n {
-        let all: Vec<&Model> = [&study.reference].into_iter().chain(models.iter().copied()).collect();
+        let all: Vec<&StudiedModel> = [&study.reference].into_iter().chain(models.iter().copied()).collect();
         let left = 80.0 + COLUMN * i as f64;
         let upper = Panel { area: [left, 50.0, 330.0, 185.0], x, y: scale(&all, i, |point| point.frequency) };
         upper.draw(&mut sheet, None, "frequency, Hz");
@@ -41,7 +41,7 @@ fn growth_rate(point: &CurvePoint) -> f64 {
     point.growth_rate
 }
 
-fn scale(models: &[&Model], i: usize, of: fn(&CurvePoint) -> f64) -> Scale {
+fn scale(models: &[&StudiedModel], i: usize, of: fn(&CurvePoint) -> f64) -> Scale {
     let values = models.iter().flat_map(|model| &model.curves[i]).map(of);
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
     Scale::with_margin([low, high], 0.06)

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use crate::assembly::{self, Boundary, Connectivity, Elements, Link, System, Tets};
+use crate::assembly::{self, Boundary, Connectivity, ConnectorElement, Elements, System, Tets};
 use crate::contact::Interface;
 use crate::contact::search::Team;
 use crate::element::tet10::{MassProperties, mass_properties};
@@ -32,7 +32,7 @@ pub struct Brake {
     /// Which displacements of each node are zero.
     pub held: Vec<[bool; 3]>,
     /// Connectors.
-    pub links: Vec<Link>,
+    pub links: Vec<ConnectorElement>,
 }
 
 /// The families of elements of a brake.
@@ -40,7 +40,7 @@ pub struct Families<'a> {
     /// The tetrahedra.
     pub tets: Tets<'a>,
     /// The connectors.
-    pub links: &'a Vec<Link>,
+    pub links: &'a Vec<ConnectorElement>,
 }
 
 impl Families<'_> {
@@ -91,8 +91,8 @@ impl Brake {
         model.check_against(&mesh)?;
         let interface = Interface::build(&model, &mesh, team)?;
         let loads = assembly::loads(&model, &mesh)?;
-        let held = assembly::held(&model, &mesh)?;
-        let links = assembly::links(&model, &mesh)?;
+        let held = assembly::constraints(&model, &mesh)?;
+        let links = assembly::connector_elements(&model, &mesh)?;
         Ok(Brake { model, mesh, nodes, interface, loads, held, links })
     }
 

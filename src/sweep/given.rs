@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 
 use super::friction::{Friction, Snapshot, Vectors, wider};
-use crate::matrices::{Given, Sums};
+use crate::matrices::{ExternalMatrices, Sums};
 use crate::native::{Factor, FactorKind};
 use crate::stability::{self, Band, Evidence, Pencil, Problem, Solver, condition};
 use crate::tracking::{Diagram, Options, track};
@@ -13,14 +13,14 @@ use crate::{Error, Result};
 
 /// Given matrices under analysis at one value after the other.
 pub struct GivenSweep<'a> {
-    given: &'a Given,
+    given: &'a ExternalMatrices,
     solver: Solver,
     lu: Factor,
     band: [f64; 2],
     evidence: Evidence,
 }
 
-/// The modes at one value of the parameter. Their vectors are those of the scaled problem, [`Given::scale`].
+/// The modes at one value of the parameter. Their vectors are those of the scaled problem, [`ExternalMatrices::scale`].
 pub struct GivenModes {
     /// The modes of the band.
     pub band: Band,
@@ -53,7 +53,7 @@ fn threshold(n: usize) -> fn(Complex64) -> f64 {
 
 impl<'a> GivenSweep<'a> {
     /// An analysis of a band, Hz.
-    pub fn new(given: &'a Given, band: [f64; 2]) -> GivenSweep<'a> {
+    pub fn new(given: &'a ExternalMatrices, band: [f64; 2]) -> GivenSweep<'a> {
         let symmetry = given.symmetry;
         let evidence = match (symmetry.mass, symmetry.damping && symmetry.stiffness) {
             (true, true) => Evidence::Inertia,

@@ -6,8 +6,8 @@ use std::time::Instant;
 use num_complex::Complex64;
 use serde_json::{Value as Json, json};
 
-use crate::matrices::family::Family;
-use crate::matrices::{Dof, Given};
+use crate::matrices::family::MatrixFamily;
+use crate::matrices::{Dof, ExternalMatrices};
 use crate::native::Vector;
 use crate::output::branches;
 use crate::output::eigenvalues::{self, Row};
@@ -25,7 +25,7 @@ use super::{Modes, folder};
 /// From this condition number on a warning is given: of sixteen digits four are left.
 const ILL_CONDITIONED: f64 = 1e12;
 
-pub fn run(shell: &Shell, arguments: &Modes, family: &Family) -> Result<()> {
+pub fn run(shell: &Shell, arguments: &Modes, family: &MatrixFamily) -> Result<()> {
     let comm = shell.comm;
     let start = Instant::now();
     let band = arguments.band.ok_or_else(|| Error::input("which band? Give --band FROM:TO in Hz"))?;
@@ -34,7 +34,7 @@ pub fn run(shell: &Shell, arguments: &Modes, family: &Family) -> Result<()> {
     let mut values = arguments.parameter.as_ref().map_or_else(|| vec![0.0], |values| values.0.clone());
     let progress = Progress::new(comm, values.len(), arguments.verbose);
     progress.say("reading");
-    let given = Given::read(comm, &family.terms, TAU * band[1])?;
+    let given = ExternalMatrices::read(comm, &family.terms, TAU * band[1])?;
     let mut sweep = GivenSweep::new(&given, band);
     let mut found =
         Found { band, given: &given, shapes: arguments.shapes, notes: Vec::new(), values: Vec::new(), diagram: None };
@@ -101,7 +101,7 @@ impl Value {
 /// What was found so far.
 struct Found<'a> {
     band: [f64; 2],
-    given: &'a Given,
+    given: &'a ExternalMatrices,
     shapes: bool,
     notes: Vec<String>,
     values: Vec<Value>,
@@ -175,7 +175,7 @@ impl Found<'_> {
         json!({"equations": self.given.n, "band_hz": self.band, "values": self.values.iter().map(value).collect::<Vec<_>>()})
     }
 
-    fn summary(&self, family: &Family, evidence: Evidence, place: &str, seconds: f64, ranks: usize) -> String {
+    fn summary(&self, family: &MatrixFamily, evidence: Evidence, place: &str, seconds: f64, ranks: usize) -> String {
         let [from, to] = self.band;
         let mut text = format!("{}: modes {from}-{to} Hz of {} equations\n\n", family.title, self.given.n);
         text += &self.structure();
@@ -239,7 +239,7 @@ impl Found<'_> {
         format!("\nresults in {place}:\n{lines}")
     }
 
-    fn write(&self, family: &Family, evidence: Evidence, folder: Folder, summary: &str) -> Result<()> {
+    fn write(&self, family: &MatrixFamily, evidence: Evidence, folder: Folder, summary: &str) -> Result<()> {
         let varies = family.terms.iter().any(|term| term.factor.varies());
         let parameter = varies.then_some(family.parameter.as_str());
         folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::matrices::family::{self, Coefficient, Family};
+use crate::matrices::family::{self, Coefficient, MatrixFamily};
 use crate::matrices::{Role, Term};
 use crate::native::Comm;
 use crate::output::folder::Folder;
@@ -73,7 +73,7 @@ pub fn run(shell: &Shell, arguments: &Modes) -> Result<()> {
 
 impl Modes {
     /// The matrices: those of the command line are a family that does not vary.
-    fn family(&self) -> Result<Family> {
+    fn family(&self) -> Result<MatrixFamily> {
         let (Some(mass), Some(stiffness)) = (&self.mass, &self.stiffness) else {
             let path = self.subject.as_deref().expect("clap has asked for one");
             let family = family::read(path)?;
@@ -89,7 +89,7 @@ impl Modes {
         let mut terms = vec![term(Role::Mass, mass)];
         terms.extend(self.damping.iter().map(|file| term(Role::Damping, file)));
         terms.push(term(Role::Stiffness, stiffness));
-        Ok(Family { title: stem(stiffness), parameter: "parameter".into(), terms })
+        Ok(MatrixFamily { title: stem(stiffness), parameter: "parameter".into(), terms })
     }
 
     /// What results are called after.

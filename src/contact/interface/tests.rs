@@ -41,7 +41,7 @@ fn pads_on_a_disc_slide_along_the_circles_of_the_disc() {
     assert_eq!(interface.pairs[1].points, 118..236);
     for pair in &interface.pairs {
         let found = &pair.statistics;
-        assert_eq!((pair.kind, pair.swept), (Kind::Sliding, true));
+        assert_eq!((pair.kind, pair.swept), (TangentialKind::Sliding, true));
         assert_eq!((found.dropped.len(), found.touching), (0, 118));
         assert!((found.weight / 4.495969950628393e-3 - 1.0).abs() < 1e-12);
     }
@@ -124,7 +124,7 @@ fn pairs_at_rest_stick_and_each_pair_has_its_own_friction() {
     let mut other = stuck.clone();
     other.name = "other".into();
     let interface = Interface::build(&model(vec![stuck, other], false), &plates(0.0), &Alone).unwrap();
-    assert!(interface.pairs.iter().all(|p| p.kind == Kind::StickSlip && !p.swept));
+    assert!(interface.pairs.iter().all(|p| p.kind == TangentialKind::StickSlip && !p.swept));
     assert_eq!(interface.frictions(), [0.5, 0.5]);
     let stage = Stage::Solve { friction: vec![0.5, 0.1] };
     // trial w k_t 1e-8 against mu w k_n 2e-8: sticks at 0.5, slips at 0.1
@@ -191,5 +191,5 @@ fn merged_surfaces_are_refused() {
 fn a_pair_at_rest_without_stick_has_no_friction() {
     let free = Contact { friction: 0.0, ..pad() };
     let interface = Interface::build(&model(vec![free], false), &plates(0.0), &Alone).unwrap();
-    assert_eq!(interface.pairs[0].kind, Kind::Frictionless);
+    assert_eq!(interface.pairs[0].kind, TangentialKind::Frictionless);
 }

@@ -2,7 +2,7 @@
 
 use super::normal::two_sided;
 use super::tangential::{frictionless, sliding, sticking};
-use super::{Point, Status, Tangential, rows};
+use super::{PointLaw, Status, Tangential, rows};
 use nalgebra::{Matrix3, Vector3};
 
 /// Tangent D (N/m, by rows) of a point whose status is frozen, at the equilibrium's relative displacement `g`.
@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 /// closed, frictionless D = p' n n^T
 /// closed, other        D = p' n n^T + w k_t P      also where the equilibrium slips
 /// ```
-pub fn linearise(point: &Point, friction: f64, g: [f64; 3], status: Status) -> [[f64; 3]; 3] {
+pub fn linearise(point: &PointLaw, friction: f64, g: [f64; 3], status: Status) -> [[f64; 3]; 3] {
     if status == Status::Open {
         return [[0.0; 3]; 3];
     }
@@ -31,7 +31,7 @@ pub fn linearise(point: &Point, friction: f64, g: [f64; 3], status: Status) -> [
 ///
 /// A motion across the sliding direction turns the velocity, and friction with it; what that takes out of the motion is linear
 /// in its velocity.
-pub fn friction_damping(point: &Point, friction: f64, normal_force: f64) -> [[f64; 3]; 3] {
+pub fn friction_damping(point: &PointLaw, friction: f64, normal_force: f64) -> [[f64; 3]; 3] {
     let Tangential::Sliding { direction, speed } = point.tangential else {
         return [[0.0; 3]; 3];
     };

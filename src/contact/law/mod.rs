@@ -1,6 +1,6 @@
 //! What acts at a contact point.
 //!
-//! A law is three choices that do not know of each other, kept in a [`Point`]: the normal law, whether the point may open,
+//! A law is three choices that do not know of each other, kept in a [`PointLaw`]: the normal law, whether the point may open,
 //! and the tangential law. With the unit normal n of the master, the initial gap, and the relative displacement g of the
 //! slave against the master,
 //!
@@ -30,7 +30,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// A contact point as its law sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct PointLaw {
     /// Weight w of the point, m2 (1 on node-to-node elements).
     pub weight: f64,
     /// Outward unit normal n of the master.
@@ -79,7 +79,7 @@ impl Response {
         Response { force: [0.0; 3], tangent: [[0.0; 3]; 3], normal_force: 0.0, status: Status::Open };
 }
 
-impl Point {
+impl PointLaw {
     /// n as a vector.
     fn n(&self) -> Vector3<f64> {
         self.normal.into()
@@ -125,7 +125,7 @@ mod testing {
     }
 
     /// Points of every law.
-    pub fn point() -> impl Strategy<Value = Point> {
+    pub fn point() -> impl Strategy<Value = PointLaw> {
         prop_oneof![Just(Tangential::Frictionless), Just(SLIDING), stick_slip(),].prop_flat_map(point_with)
     }
 
@@ -138,14 +138,14 @@ mod testing {
     }
 
     /// Points with one tangential law; sliding ones get a direction in their tangent plane.
-    pub fn point_with(tangential: Tangential) -> impl Strategy<Value = Point> {
+    pub fn point_with(tangential: Tangential) -> impl Strategy<Value = PointLaw> {
         let numbers = (0.5..2.0, -0.3..0.3);
         (frame(), law(), numbers, any::<bool>()).prop_map(move |([n, t], law, (weight, gap), separation)| {
             let mut tangential = tangential;
             if let Tangential::Sliding { direction, .. } = &mut tangential {
                 *direction = t;
             }
-            Point {
+            PointLaw {
                 weight,
                 normal: n,
                 gap,
@@ -159,7 +159,7 @@ mod testing {
     }
 
     /// `g` moved along the normal so that the penetration is `d`.
-    pub fn at_penetration(point: &Point, g: [f64; 3], d: f64) -> [f64; 3] {
+    pub fn at_penetration(point: &PointLaw, g: [f64; 3], d: f64) -> [f64; 3] {
         (Vector3::from(g) + (point.penetration(g) - d) * point.n()).into()
     }
 

@@ -1,6 +1,6 @@
 //! The normal laws: force by penetration.
 
-use super::Point;
+use super::PointLaw;
 use crate::model::NormalLaw;
 
 /// Normal force and its derivative.
@@ -16,7 +16,7 @@ pub(super) struct Normal {
 ///
 /// - linear: `p = w k d`
 /// - cubic: `p = w (k1 d + k3 d^3)`
-pub(super) fn two_sided(point: &Point, d: f64) -> Normal {
+pub(super) fn two_sided(point: &PointLaw, d: f64) -> Normal {
     let w = point.weight;
     match point.normal_law {
         NormalLaw::Linear { stiffness: k } => Normal { force: w * k * d, stiffness: w * k },
@@ -26,7 +26,7 @@ pub(super) fn two_sided(point: &Point, d: f64) -> Normal {
     }
 }
 
-impl Point {
+impl PointLaw {
     /// Slope `dp/dd` of the normal law at the penetration d, N/m, whether or not the point is closed there.
     pub fn stiffness(&self, d: f64) -> f64 {
         two_sided(self, d).stiffness
@@ -49,7 +49,7 @@ impl Point {
 }
 
 /// The law as the point has it: none where it is open, that is where it may open and `d <= 0`.
-pub(super) fn normal(point: &Point, d: f64) -> Option<Normal> {
+pub(super) fn normal(point: &PointLaw, d: f64) -> Option<Normal> {
     (d > 0.0 || !point.separation).then(|| two_sided(point, d))
 }
 
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn laws_have_their_closed_forms() {
-        let mut point = Point {
+        let mut point = PointLaw {
             weight: 2.0,
             normal: [0.0, 0.0, 1.0],
             gap: 0.0,

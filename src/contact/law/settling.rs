@@ -5,13 +5,13 @@
 
 use super::normal::{Normal, two_sided};
 use super::tangential::{frictionless, sticking};
-use super::{Point, Response, Tangential};
+use super::{PointLaw, Response, Tangential};
 
 /// Force and tangent of a point while the brake settles.
 ///
 /// A point that may open and does not touch is open. All others are closed in both directions: sliding points
 /// without friction, stick-slip points with `-w k_t g_t` whatever the pressure.
-pub fn settle(point: &Point, g: [f64; 3]) -> Response {
+pub fn settle(point: &PointLaw, g: [f64; 3]) -> Response {
     if point.separation && !point.touching {
         return Response::OPEN;
     }

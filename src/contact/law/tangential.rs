@@ -1,7 +1,7 @@
 //! The true laws: normal force with sliding, sticking or slipping in the tangent plane.
 
 use super::normal::{Normal, normal};
-use super::{Point, Response, Status, rows};
+use super::{PointLaw, Response, Status, rows};
 use nalgebra::{Matrix3, Vector3};
 
 /// What acts in the tangent plane of a closed point.
@@ -37,8 +37,8 @@ pub enum Tangential {
 ///
 /// A stick-slip point sticks while `w k_t |g_t| <= mu p`. Where p <= 0 (a point that may not open, in tension) the bound is
 /// zero: it slips without a tangential force. A sliding point keeps `mu p t` in tension too, so that a
-/// pair that may neither open nor stick is linear. Point forces are continuous everywhere; D jumps where the status changes.
-pub fn respond(point: &Point, friction: f64, g: [f64; 3]) -> Response {
+/// pair that may neither open nor stick is linear. PointLaw forces are continuous everywhere; D jumps where the status changes.
+pub fn respond(point: &PointLaw, friction: f64, g: [f64; 3]) -> Response {
     match normal(point, point.penetration(g)) {
         None => Response::OPEN,
         Some(normal) => closed(point, friction, &normal, &g.into()),
@@ -46,7 +46,7 @@ pub fn respond(point: &Point, friction: f64, g: [f64; 3]) -> Response {
 }
 
 /// The response of a closed point.
-fn closed(point: &Point, mu: f64, normal: &Normal, g: &Vector3<f64>) -> Response {
+fn closed(point: &PointLaw, mu: f64, normal: &Normal, g: &Vector3<f64>) -> Response {
     match point.tangential {
         Tangential::Frictionless => frictionless(point, normal),
         Tangential::Sliding { direction, .. } => sliding(point, normal, mu, &direction.into()),
@@ -65,24 +65,24 @@ fn closed(point: &Point, mu: f64, normal: &Normal, g: &Vector3<f64>) -> Response
 }
 
 /// `f = p n`, `D = p' n n^T`.
-pub(super) fn frictionless(point: &Point, normal: &Normal) -> Response {
+pub(super) fn frictionless(point: &PointLaw, normal: &Normal) -> Response {
     sliding(point, normal, 0.0, &Vector3::zeros())
 }
 
 /// `f = p (n + mu t)`, `D = p' (n + mu t) n^T`.
-pub(super) fn sliding(point: &Point, normal: &Normal, mu: f64, t: &Vector3<f64>) -> Response {
+pub(super) fn sliding(point: &PointLaw, normal: &Normal, mu: f64, t: &Vector3<f64>) -> Response {
     dragged(point, normal, mu, t, Matrix3::zeros())
 }
 
 /// `f = p (n + mu s)`, `D = p' (n + mu s) n^T + (mu p/|g_t|) (P - s s^T)`, with `s = -g_t/|g_t|`.
-fn slipping(point: &Point, normal: &Normal, mu: f64, g_t: &Vector3<f64>) -> Response {
+fn slipping(point: &PointLaw, normal: &Normal, mu: f64, g_t: &Vector3<f64>) -> Response {
     let s = -g_t.normalize();
     let turning = mu * normal.force / g_t.norm() * (point.tangent_plane() - s * s.transpose());
     dragged(point, normal, mu, &s, turning)
 }
 
 /// Full friction along `s`; `turning` is what the change of direction adds to the tangent.
-fn dragged(point: &Point, normal: &Normal, mu: f64, s: &Vector3<f64>, turning: Matrix3<f64>) -> Response {
+fn dragged(point: &PointLaw, normal: &Normal, mu: f64, s: &Vector3<f64>, turning: Matrix3<f64>) -> Response {
     let n = point.n();
     let along = n + mu * s;
     Response {
@@ -94,7 +94,7 @@ fn dragged(point: &Point, normal: &Normal, mu: f64, s: &Vector3<f64>, turning: M
 }
 
 /// `f = p n - w k_t g_t`, `D = p' n n^T + w k_t P`.
-pub(super) fn sticking(point: &Point, normal: &Normal, stick: f64, g: &Vector3<f64>) -> Response {
+pub(super) fn sticking(point: &PointLaw, normal: &Normal, stick: f64, g: &Vector3<f64>) -> Response {
     let n = point.n();
     let elastic = point.weight * stick * point.tangent_plane();
     Response {
@@ -115,7 +115,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Distances from the two kinks, opening and the onset of slip: `|d|` and `| w k_t |g_t| - mu p |`.
-    fn kinks(point: &Point, mu: f64, g: [f64; 3]) -> [f64; 2] {
+    fn kinks(point: &PointLaw, mu: f64, g: [f64; 3]) -> [f64; 2] {
         let d = point.penetration(g);
         let Tangential::StickSlip { stick } = point.tangential else {
             return [d.abs(), f64::INFINITY];
@@ -126,7 +126,7 @@ mod tests {
     }
 
     /// `g` changed to the penetration `d` and, in the tangent plane, to a trial force of `ratio` times the bound.
-    fn at_ratio(point: &Point, mu: f64, g: [f64; 3], d: f64, ratio: f64) -> [f64; 3] {
+    fn at_ratio(point: &PointLaw, mu: f64, g: [f64; 3], d: f64, ratio: f64) -> [f64; 3] {
         let Tangential::StickSlip { stick } = point.tangential else {
             panic!("a stick-slip point is wanted");
         };
@@ -138,7 +138,7 @@ mod tests {
     }
 
     /// Points of every law whose tangential force has a bound.
-    fn bounded() -> impl Strategy<Value = Point> {
+    fn bounded() -> impl Strategy<Value = PointLaw> {
         let free = Just(Tangential::Frictionless);
         prop_oneof![free, Just(SLIDING), stick_slip()].prop_flat_map(point_with)
     }
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn sliding_drags_the_slave_along_the_master() {
-        let point = Point {
+        let point = PointLaw {
             weight: 1e-5,
             normal: [0.0, 0.0, -1.0],
             gap: 0.0,

@@ -23,7 +23,7 @@ pub use tables::{TETRAHEDRON_4, TETRAHEDRON_14, TRIANGLE_7};
 
 /// A quadrature point on a reference element of dimension `D`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point<const D: usize> {
+pub struct QuadraturePoint<const D: usize> {
     /// Reference coordinates: the barycentric coordinates of corners 1..=D.
     pub at: [f64; D],
     /// Weight.
@@ -40,7 +40,7 @@ mod tests {
 
     /// Largest relative error over all monomials of a degree:
     /// `integral x^a y^b z^c = a! b! c! / (a + b + c + D)!` over the reference simplex.
-    fn monomial_error<const D: usize>(rule: &[Point<D>], degree: u32) -> f64 {
+    fn monomial_error<const D: usize>(rule: &[QuadraturePoint<D>], degree: u32) -> f64 {
         let mut worst = 0.0_f64;
         for code in 0..(degree + 1).pow(D as u32) {
             let power: [u32; D] = std::array::from_fn(|i| code / (degree + 1).pow(i as u32) % (degree + 1));
@@ -48,14 +48,14 @@ mod tests {
                 continue;
             }
             let exact = power.iter().map(|&p| factorial(p)).product::<f64>() / factorial(degree + D as u32);
-            let value = |q: &Point<D>| (0..D).map(|i| q.at[i].powi(power[i] as i32)).product::<f64>();
+            let value = |q: &QuadraturePoint<D>| (0..D).map(|i| q.at[i].powi(power[i] as i32)).product::<f64>();
             let sum: f64 = rule.iter().map(|q| q.weight * value(q)).sum();
             worst = worst.max((sum / exact - 1.0).abs());
         }
         worst
     }
 
-    fn assert_degree<const D: usize>(rule: &[Point<D>], exact_to: u32) {
+    fn assert_degree<const D: usize>(rule: &[QuadraturePoint<D>], exact_to: u32) {
         for degree in 0..=exact_to {
             let error = monomial_error(rule, degree);
             assert!(error < 2e-14, "degree {degree}: {error:e}");
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn all_points_lie_inside_and_all_weights_are_positive() {
-        fn check<const D: usize>(rule: &[Point<D>]) {
+        fn check<const D: usize>(rule: &[QuadraturePoint<D>]) {
             for q in rule {
                 assert!(q.weight > 0.0 && q.at.iter().all(|&x| x > 0.0) && q.at.iter().sum::<f64>() < 1.0);
             }

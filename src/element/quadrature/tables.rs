@@ -3,19 +3,19 @@
 //! An orbit is one point together with all its images under permutation of the corners; one parameter and one weight
 //! describe it. Parameters are the double nearest to the source's 20 digits.
 
-use super::Point;
+use super::QuadraturePoint;
 
 /// Four points on the lines from the corners to the centroid, degree 2.
 ///
 /// Barycentric `(b, a, a, a)` with `a = (5 - sqrt 5)/20`, `b = 1 - 3 a`; point `c` is the one nearest to corner `c`.
 /// Source: Hammer, Marlowe and Stroud, *Numerical integration over simplexes and cones*, MTAC 10 (1956), p. 136.
-pub const TETRAHEDRON_4: [Point<3>; 4] = corner_orbit(0.1381966011250105, 1.0 / 24.0);
+pub const TETRAHEDRON_4: [QuadraturePoint<3>; 4] = corner_orbit(0.1381966011250105, 1.0 / 24.0);
 
 /// Fourteen points, degree 5: two corner orbits of four points and one edge orbit of six.
 ///
 /// Source: Walkington, *Quadrature on simplices of arbitrary dimension*, Carnegie Mellon University report 00-CNA-023 (2000), degree 5 on
 /// the tetrahedron.
-pub const TETRAHEDRON_14: [Point<3>; 14] = {
+pub const TETRAHEDRON_14: [QuadraturePoint<3>; 14] = {
     let near = corner_orbit(0.09273525031089122, 0.012248840519393659);
     let far = corner_orbit(0.3108859192633006, 0.018781320953002643);
     let edge = edge_orbit(0.04550370412564965, 0.007091003462846911);
@@ -28,39 +28,43 @@ pub const TETRAHEDRON_14: [Point<3>; 14] = {
 /// Seven points, degree 5: the centroid and two corner orbits, `a = (6 -+ sqrt 15)/21`, `w = (155 -+ sqrt 15)/2400`.
 ///
 /// Source: Radon, *Zur mechanischen Kubatur*, Monatshefte fuer Mathematik 52 (1948), p. 286.
-pub const TRIANGLE_7: [Point<2>; 7] = {
+pub const TRIANGLE_7: [QuadraturePoint<2>; 7] = {
     let near = triangle_orbit(0.10128650732345634, 0.06296959027241357);
     let far = triangle_orbit(0.4701420641051151, 0.0661970763942531);
-    let centre = Point { at: [1.0 / 3.0, 1.0 / 3.0], weight: 9.0 / 80.0 };
+    let centre = QuadraturePoint { at: [1.0 / 3.0, 1.0 / 3.0], weight: 9.0 / 80.0 };
     [near[0], near[1], near[2], far[0], far[1], far[2], centre]
 };
 
 /// The four images of barycentric `(1 - 3a, a, a, a)`.
-const fn corner_orbit(a: f64, weight: f64) -> [Point<3>; 4] {
+const fn corner_orbit(a: f64, weight: f64) -> [QuadraturePoint<3>; 4] {
     let b = 1.0 - 3.0 * a;
     [
-        Point { at: [a, a, a], weight },
-        Point { at: [b, a, a], weight },
-        Point { at: [a, b, a], weight },
-        Point { at: [a, a, b], weight },
+        QuadraturePoint { at: [a, a, a], weight },
+        QuadraturePoint { at: [b, a, a], weight },
+        QuadraturePoint { at: [a, b, a], weight },
+        QuadraturePoint { at: [a, a, b], weight },
     ]
 }
 
 /// The six images of barycentric `(a, a, b, b)`, `b = 1/2 - a`.
-const fn edge_orbit(a: f64, weight: f64) -> [Point<3>; 6] {
+const fn edge_orbit(a: f64, weight: f64) -> [QuadraturePoint<3>; 6] {
     let b = 0.5 - a;
     [
-        Point { at: [a, b, b], weight },
-        Point { at: [b, a, b], weight },
-        Point { at: [b, b, a], weight },
-        Point { at: [b, a, a], weight },
-        Point { at: [a, b, a], weight },
-        Point { at: [a, a, b], weight },
+        QuadraturePoint { at: [a, b, b], weight },
+        QuadraturePoint { at: [b, a, b], weight },
+        QuadraturePoint { at: [b, b, a], weight },
+        QuadraturePoint { at: [b, a, a], weight },
+        QuadraturePoint { at: [a, b, a], weight },
+        QuadraturePoint { at: [a, a, b], weight },
     ]
 }
 
 /// The three images of barycentric `(1 - 2a, a, a)`.
-const fn triangle_orbit(a: f64, weight: f64) -> [Point<2>; 3] {
+const fn triangle_orbit(a: f64, weight: f64) -> [QuadraturePoint<2>; 3] {
     let b = 1.0 - 2.0 * a;
-    [Point { at: [a, a], weight }, Point { at: [b, a], weight }, Point { at: [a, b], weight }]
+    [
+        QuadraturePoint { at: [a, a], weight },
+        QuadraturePoint { at: [b, a], weight },
+        QuadraturePoint { at: [a, b], weight },
+    ]
 }

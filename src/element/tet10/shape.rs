@@ -1,7 +1,7 @@
 //! Shape functions, their gradients and the Jacobian.
 
 use crate::algebra::cofactor_columns;
-use crate::element::quadrature::{Point, TETRAHEDRON_4, TETRAHEDRON_14};
+use crate::element::quadrature::{QuadraturePoint, TETRAHEDRON_4, TETRAHEDRON_14};
 
 /// Reference coordinates of the ten nodes.
 pub const NODES: [[f64; 3]; 10] = [
@@ -66,7 +66,7 @@ pub const fn gradients(at: [f64; 3]) -> [[f64; 3]; 10] {
 }
 
 /// Shape functions at the points of a rule, one row a point; made at compile time.
-pub(super) const fn shapes_at<const Q: usize>(rule: &[Point<3>; Q]) -> [[f64; 10]; Q] {
+pub(super) const fn shapes_at<const Q: usize>(rule: &[QuadraturePoint<3>; Q]) -> [[f64; 10]; Q] {
     let mut table = [[0.0; 10]; Q];
     let mut q = 0;
     while q < Q {
@@ -77,7 +77,7 @@ pub(super) const fn shapes_at<const Q: usize>(rule: &[Point<3>; Q]) -> [[f64; 10
 }
 
 /// Reference gradients at the points of a rule; made at compile time.
-pub(super) const fn gradients_at<const Q: usize>(rule: &[Point<3>; Q]) -> [[[f64; 3]; 10]; Q] {
+pub(super) const fn gradients_at<const Q: usize>(rule: &[QuadraturePoint<3>; Q]) -> [[[f64; 3]; 10]; Q] {
     let mut table = [[[0.0; 3]; 10]; Q];
     let mut q = 0;
     while q < Q {

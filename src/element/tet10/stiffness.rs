@@ -14,7 +14,7 @@
 
 use super::shape::{GRADIENTS_4, GRADIENTS_14, jacobian};
 use crate::algebra::{cofactor_columns, dot};
-use crate::element::quadrature::{Point, TETRAHEDRON_4, TETRAHEDRON_14};
+use crate::element::quadrature::{QuadraturePoint, TETRAHEDRON_4, TETRAHEDRON_14};
 use crate::element::voigt;
 
 /// Fills `k` (30x30, row-major, dof `3a + i`, N/m) with the stiffness of a tetrahedron by the 4-point rule.
@@ -44,7 +44,7 @@ pub fn stiffness_14(x: &[[f64; 3]; 10], elasticity: &[[f64; 6]; 6], k: &mut [f64
 fn integrate<const Q: usize>(
     x: &[[f64; 3]; 10],
     elasticity: &[[f64; 6]; 6],
-    rule: &[Point<3>; Q],
+    rule: &[QuadraturePoint<3>; Q],
     reference: &[[[f64; 3]; 10]; Q],
     k: &mut [f64],
 ) {
@@ -119,7 +119,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     /// `K = sum_q w detJ B^T D B` written as plain matrix products on any list of points.
-    fn plain_stiffness(x: &[[f64; 3]; 10], elasticity: &[[f64; 6]; 6], rule: &[Point<3>]) -> DMatrix<f64> {
+    fn plain_stiffness(x: &[[f64; 3]; 10], elasticity: &[[f64; 6]; 6], rule: &[QuadraturePoint<3>]) -> DMatrix<f64> {
         let d = DMatrix::from_fn(6, 6, |i, j| elasticity[i][j]);
         let mut k = DMatrix::zeros(30, 30);
         for q in rule {

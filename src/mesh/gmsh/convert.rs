@@ -2,7 +2,7 @@
 
 use super::groups::{Groups, noun};
 use super::kinds::{TET10, TRI6};
-use super::sections::{Block, Sections};
+use super::sections::{ElementBlock, Sections};
 use crate::element::tet10;
 use crate::mesh::skin::Skin;
 use crate::mesh::{Mesh, Surface};
@@ -49,7 +49,7 @@ impl Tags {
     }
 
     /// The elements of a block as places of nodes, N each.
-    fn elements<const N: usize>(&self, block: &Block) -> Result<Vec<[u32; N]>, String> {
+    fn elements<const N: usize>(&self, block: &ElementBlock) -> Result<Vec<[u32; N]>, String> {
         let mut elements = Vec::with_capacity(block.elements.len());
         for (&element, tags) in block.elements.iter().zip(block.nodes.chunks_exact(N)) {
             let mut places = [0; N];

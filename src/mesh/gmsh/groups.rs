@@ -1,6 +1,6 @@
 //! Physical groups: which name an entity goes by, each name with one meaning.
 
-use super::sections::{Block, Sections};
+use super::sections::{ElementBlock, Sections};
 use std::collections::{HashMap, HashSet};
 
 /// What Gmsh calls a group of a dimension.
@@ -46,13 +46,13 @@ impl<'a> Groups<'a> {
     }
 
     /// The named groups that a block of elements is in.
-    pub fn of_block(&self, block: &Block) -> Vec<&'a str> {
+    pub fn of_block(&self, block: &ElementBlock) -> Vec<&'a str> {
         let tags = self.tags(block);
         tags.iter().filter_map(|&tag| self.names.get(&(block.dimension, tag)).copied()).collect()
     }
 
     /// The one part that a block of volume elements is in.
-    pub fn part_of_block(&self, block: &Block) -> Result<&'a str, String> {
+    pub fn part_of_block(&self, block: &ElementBlock) -> Result<&'a str, String> {
         let (entity, tags) = (block.entity, self.tags(block));
         match (&self.of_block(block)[..], tags) {
             ([part], [_]) => Ok(part),
@@ -66,7 +66,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    fn tags(&self, block: &Block) -> &'a [i32] {
+    fn tags(&self, block: &ElementBlock) -> &'a [i32] {
         self.sections.entities.get(&(block.dimension, block.entity)).map_or(&[], Vec::as_slice)
     }
 

@@ -2,7 +2,7 @@
 
 /// A kind of element.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Kind {
+pub struct ElementKind {
     /// Gmsh's number.
     pub number: i32,
     /// What messages call it, in the plural.
@@ -18,11 +18,11 @@ pub const TET10: i32 = 11;
 /// The only facet that is analysed.
 pub const TRI6: i32 = 9;
 
-const fn kind(number: i32, name: &'static str, dimension: i32, n_nodes: usize) -> Kind {
-    Kind { number, name, dimension, n_nodes }
+const fn kind(number: i32, name: &'static str, dimension: i32, n_nodes: usize) -> ElementKind {
+    ElementKind { number, name, dimension, n_nodes }
 }
 
-static KINDS: [Kind; 26] = [
+static KINDS: [ElementKind; 26] = [
     kind(1, "2-node lines", 1, 2),
     kind(2, "3-node triangles", 2, 3),
     kind(3, "4-node quadrangles", 2, 4),
@@ -52,11 +52,11 @@ static KINDS: [Kind; 26] = [
 ];
 
 /// The kind with Gmsh's number.
-pub fn by_number(number: i32) -> Option<&'static Kind> {
+pub fn by_number(number: i32) -> Option<&'static ElementKind> {
     KINDS.iter().find(|kind| kind.number == number)
 }
 
-impl Kind {
+impl ElementKind {
     /// What to do about elements of this kind where 10-node tetrahedra or 6-node triangles are needed.
     pub fn advice(&self) -> &'static str {
         match self.number {

@@ -1,6 +1,6 @@
 //! The sections of a Gmsh 4.1 file, as they stand: tags are Gmsh's, nothing is related to anything yet.
 
-use super::kinds::{self, Kind};
+use super::kinds::{self, ElementKind};
 use super::scan::Scan;
 use crate::Result;
 use std::collections::HashMap;
@@ -16,13 +16,13 @@ pub struct Group {
 }
 
 /// Elements of one kind on one geometric entity.
-pub struct Block {
+pub struct ElementBlock {
     /// Dimension of the entity.
     pub dimension: i32,
     /// Tag of the entity.
     pub entity: i32,
-    /// Kind of the elements.
-    pub kind: &'static Kind,
+    /// ElementKind of the elements.
+    pub kind: &'static ElementKind,
     /// Tags of the elements.
     pub elements: Vec<u64>,
     /// Tags of their nodes, in Gmsh's order, one element after another.
@@ -41,7 +41,7 @@ pub struct Sections {
     /// Their coordinates, in the file's unit.
     pub coordinates: Vec<[f64; 3]>,
     /// The elements.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<ElementBlock>,
 }
 
 /// Reads all sections that matter.
@@ -174,7 +174,7 @@ fn nodes(scan: &mut Scan, sections: &mut Sections) -> Result<()> {
     scan.close_section()
 }
 
-fn elements(scan: &mut Scan, blocks: &mut Vec<Block>) -> Result<()> {
+fn elements(scan: &mut Scan, blocks: &mut Vec<ElementBlock>) -> Result<()> {
     let (n_blocks, _) = block_header(scan)?;
     for _ in 0..n_blocks {
         let (dimension, entity, number) = (scan.int()?, scan.int()?, scan.int()?);
@@ -183,7 +183,7 @@ fn elements(scan: &mut Scan, blocks: &mut Vec<Block>) -> Result<()> {
             return Err(scan.error(format_args!("unknown Gmsh element type {number}. {advice}")));
         };
         let count = scan.count()?;
-        let mut block = Block { dimension, entity, kind, elements: Vec::new(), nodes: Vec::new() };
+        let mut block = ElementBlock { dimension, entity, kind, elements: Vec::new(), nodes: Vec::new() };
         for _ in 0..count {
             block.elements.push(scan.size()?);
             for _ in 0..kind.n_nodes {

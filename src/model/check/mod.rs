@@ -11,7 +11,7 @@ impl Model {
     /// # Errors
     /// [`Error::Input`] with a line `file:line: what (item). what to do` for each thing that is wrong.
     pub fn check_against(&self, mesh: &Mesh) -> Result<()> {
-        let mut check = Check { model: self, mesh, messages: Vec::new() };
+        let mut check = ModelCheck { model: self, mesh, messages: Vec::new() };
         check.parts();
         check.names();
         check.loads();
@@ -21,13 +21,13 @@ impl Model {
     }
 }
 
-struct Check<'a> {
+struct ModelCheck<'a> {
     model: &'a Model,
     mesh: &'a Mesh,
     messages: Vec<String>,
 }
 
-impl Check<'_> {
+impl ModelCheck<'_> {
     fn complain(&mut self, line: usize, message: String) {
         self.messages.push(located(&self.model.file, line, message));
     }

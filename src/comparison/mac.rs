@@ -19,16 +19,16 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// ```
 ///
 /// For groups of one that is `|x^H y|^2 / ((x^H x) (y^H y))`.
-pub struct Likeness {
+pub struct MacTable {
     table: DMatrix<f64>,
 }
 
-impl Likeness {
+impl MacTable {
     /// Compares all modes of A and B, given by eigenvalues and shapes at the same places.
     ///
     /// # Panics
     /// Where a result has not as many eigenvalues as shapes, or shapes have not the same length.
-    pub fn new([lambdas_a, lambdas_b]: [&[Complex64]; 2], [a, b]: [&[Vec<Complex64>]; 2]) -> Likeness {
+    pub fn new([lambdas_a, lambdas_b]: [&[Complex64]; 2], [a, b]: [&[Vec<Complex64>]; 2]) -> MacTable {
         assert_eq!((lambdas_a.len(), lambdas_b.len()), (a.len(), b.len()));
         let mut table = DMatrix::zeros(a.len(), b.len());
         for group in groups(lambdas_a) {
@@ -45,7 +45,7 @@ impl Likeness {
                 group.iter().for_each(|&j| table[(i, j)] = share.max(table[(i, j)]));
             }
         }
-        Likeness { table }
+        MacTable { table }
     }
 
     /// Of mode i of A and mode j of B: between 0 and 1.
@@ -117,7 +117,7 @@ mod tests {
 
     fn alone(x: &[Complex64], y: &[Complex64]) -> f64 {
         let lambda = [c(0.0, 1.0)];
-        Likeness::new([&lambda, &lambda], [&[x.to_vec()], &[y.to_vec()]]).mac(0, 0)
+        MacTable::new([&lambda, &lambda], [&[x.to_vec()], &[y.to_vec()]]).mac(0, 0)
     }
 
     fn vector() -> impl Strategy<Value = Vec<Complex64>> {
@@ -151,8 +151,8 @@ mod tests {
             let split = [c(0.0, 1.0), c(0.0, 1.004)];
             let (own, other) = ([x.clone(), y.clone()], [turned(cos, sin), turned(-sin, cos)]);
             for others in [lambdas, split] {
-                let likeness = Likeness::new([&lambdas, &others], [&own, &other]);
-                let all = (0..4).map(|k| likeness.mac(k / 2, k % 2));
+                let mac_table = MacTable::new([&lambdas, &others], [&own, &other]);
+                let all = (0..4).map(|k| mac_table.mac(k / 2, k % 2));
                 prop_assert!(all.into_iter().all(|mac| (mac - 1.0).abs() < 1e-9));
             }
         }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::entries::{Dof, Entries, Naming, Storage};
 use super::family::Coefficient;
-use super::sparse::{Pattern, Sparse};
+use super::sparse::{Sparse, SparsityPattern};
 use super::{Role, read};
 use crate::{Error, Result};
 
@@ -21,9 +21,9 @@ pub struct Term {
 }
 
 /// All terms on one pattern.
-pub struct Problem {
+pub struct CombinedTerms {
     /// The pattern: that of all terms and their transposes.
-    pub pattern: Pattern,
+    pub pattern: SparsityPattern,
     /// `D A_i D` of each term, in the order of the terms.
     pub values: Vec<Vec<f64>>,
     /// The diagonal of D: powers of two.
@@ -41,12 +41,12 @@ const HELD: f64 = 1e30;
 /// Rounds of scaling; three decades become a factor of two in two.
 const ROUNDS: usize = 8;
 
-impl Problem {
+impl CombinedTerms {
     /// Reads the files of all terms. The scaling takes `omega` (rad/s) for a typical frequency.
     ///
     /// # Errors
     /// [`Error::Input`] where a file is wrong, files do not go together, or a row is empty in all of them.
-    pub fn read(terms: &[Term], omega: f64) -> Result<Problem> {
+    pub fn read(terms: &[Term], omega: f64) -> Result<CombinedTerms> {
         let mut files = terms.iter().map(|term| read(&term.file, term.role)).collect::<Result<Vec<_>>>()?;
         let (n, dofs) = common_numbering(terms, &mut files)?;
         let may_be_held = files.iter().any(|file| file.storage == Storage::Triangle);
@@ -61,9 +61,10 @@ impl Problem {
         let dofs = dofs.map(|dofs| rows.iter().map(|&i| dofs[i]).collect::<Vec<_>>());
         require_filled(terms, &matrices, &rows, dofs.as_deref())?;
         let scale = scaling(terms, &matrices, omega);
-        let pattern = Pattern::symmetric_union(rows.len(), &matrices.iter().map(|a| &a.pattern).collect::<Vec<_>>());
+        let pattern =
+            SparsityPattern::symmetric_union(rows.len(), &matrices.iter().map(|a| &a.pattern).collect::<Vec<_>>());
         let values = matrices.into_iter().map(|matrix| scaled(matrix, &scale).on(&pattern)).collect();
-        Ok(Problem { pattern, values, scale, n_held: n - rows.len(), rows, dofs })
+        Ok(CombinedTerms { pattern, values, scale, n_held: n - rows.len(), rows, dofs })
     }
 }
 

@@ -21,11 +21,11 @@ const FLAT: f64 = 1e-3;
 /// Samples of A that may lie off B's surface: none but for slips of a mesh.
 const ASTRAY: f64 = 0.01;
 
-/// Places of A, and how B's displacements there come from its samples.
+/// CommonPoints of A, and how B's displacements there come from its samples.
 ///
 /// On one mesh samples are places of both. Else B is interpolated to the samples of A, part by part, by moving least squares: the linear field
 /// that fits the nearest samples best, weighted by the inverse square of their distances, so that rigid motions are exact.
-pub struct Places {
+pub struct CommonPoints {
     /// Samples of A.
     of_a: Vec<usize>,
     /// For each a sum over samples of B.
@@ -39,26 +39,26 @@ type Sample = GeomWithData<[f64; 3], usize>;
 /// The samples of a result, part by part.
 type Parts = BTreeMap<String, Vec<Sample>>;
 
-impl Places {
+impl CommonPoints {
     /// The places that two results have in common.
     ///
     /// # Errors
     /// [`Error::Input`] where one has no samples, parts that the other has not, or another surface.
-    pub fn new(a: &Results, b: &Results) -> Result<Places> {
+    pub fn new(a: &Results, b: &Results) -> Result<CommonPoints> {
         let (of_a, of_b) = (samples(a), samples(b));
         require_same_parts(&of_a, &of_b)?;
         require_same_surface(a, b)?;
         require_same_surface(b, a)?;
-        let places = Places::of_both(&of_a, &of_b, SAME_PLACE * extent(&a.surface));
+        let points = CommonPoints::of_both(&of_a, &of_b, SAME_PLACE * extent(&a.surface));
         let n_fewer = a.surface.samples.len().min(b.surface.samples.len());
-        if places.len() as f64 >= ENOUGH * n_fewer as f64 {
-            return Ok(places);
+        if points.len() as f64 >= ENOUGH * n_fewer as f64 {
+            return Ok(points);
         }
-        Ok(Places::interpolating(&of_a, &of_b))
+        Ok(CommonPoints::interpolating(&of_a, &of_b))
     }
 
     /// Samples of A that are within a distance of one of B.
-    fn of_both(a: &Parts, b: &Parts, distance: f64) -> Places {
+    fn of_both(a: &Parts, b: &Parts, distance: f64) -> CommonPoints {
         let (mut of_a, mut of_b) = (Vec::new(), Vec::new());
         for (part, own) in a {
             let tree = RTree::bulk_load(b[part].clone());
@@ -70,10 +70,10 @@ impl Places {
                 }
             }
         }
-        Places { of_a, of_b, interpolated: false }
+        CommonPoints { of_a, of_b, interpolated: false }
     }
 
-    fn interpolating(a: &Parts, b: &Parts) -> Places {
+    fn interpolating(a: &Parts, b: &Parts) -> CommonPoints {
         let (mut of_a, mut of_b) = (Vec::new(), Vec::new());
         for (part, own) in a {
             let tree = RTree::bulk_load(b[part].clone());
@@ -84,7 +84,7 @@ impl Places {
                 of_b.push(near.iter().map(|sample| sample.data).zip(weights(*sample.geom(), &positions)).collect());
             }
         }
-        Places { of_a, of_b, interpolated: true }
+        CommonPoints { of_a, of_b, interpolated: true }
     }
 
     /// Number of places.
