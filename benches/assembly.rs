@@ -12,7 +12,7 @@ use std::time::Instant;
 use squeal::assembly::{Connectivity, ElementMatrices, Elements};
 use squeal::equilibrium::Contacts;
 use squeal::native::{Comm, Session};
-use squeal::sweep::Brake;
+use squeal::structure::FullModel;
 use squeal::{Result, mesh, model};
 
 fn main() -> Result<()> {
@@ -22,7 +22,7 @@ fn main() -> Result<()> {
     // Before our own session: what it leaves in the environment would confuse another MPI program's.
     let others = if launched { None } else { Some(dolfinx(&path)?) };
     let comm = Session::start(&[])?;
-    let brake = Brake::read(&comm, &path)?;
+    let brake = FullModel::read(&comm, &path)?;
     let n_tets = comm.sum(brake.own_tets().count() as f64);
     if comm.is_root() {
         println!("{}: {n_tets} tetrahedra on {} ranks", path.display(), comm.size());
@@ -47,7 +47,7 @@ fn main() -> Result<()> {
 }
 
 /// The first assembly and the best of the others.
-fn measure(comm: &Comm, brake: &Brake, damped: bool) -> Result<[[f64; 2]; 2]> {
+fn measure(comm: &Comm, brake: &FullModel, damped: bool) -> Result<[[f64; 2]; 2]> {
     let runs: Vec<[f64; 2]> = (0..5).map(|_| assemble(comm, brake, damped)).collect::<Result<_>>()?;
     let all = |run: &[f64; 2]| run[0] + run[1];
     let best = runs[1..].iter().min_by(|a, b| all(a).total_cmp(&all(b))).expect("several runs");
@@ -55,7 +55,7 @@ fn measure(comm: &Comm, brake: &Brake, damped: bool) -> Result<[[f64; 2]; 2]> {
 }
 
 /// Seconds of one tangent: a copy of K and the blocks of all contact points, as if all were closed.
-fn contact(comm: &Comm, brake: &Brake) -> Result<()> {
+fn contact(comm: &Comm, brake: &FullModel) -> Result<()> {
     let system = brake.assemble(comm, &brake.families()?)?;
     let (contacts, mut tangent) = (Contacts::new(&brake.interface, &system)?, system.k.duplicate()?);
     let n = brake.interface.points.len();
@@ -74,7 +74,7 @@ fn contact(comm: &Comm, brake: &Brake) -> Result<()> {
 }
 
 /// Seconds of the pattern and of the values, those of the slowest rank.
-fn assemble(comm: &Comm, brake: &Brake, damped: bool) -> Result<[f64; 2]> {
+fn assemble(comm: &Comm, brake: &FullModel, damped: bool) -> Result<[f64; 2]> {
     let families = brake.families()?;
     let families = families.list().map(|family| Chosen { family, damped });
     let families = families.each_ref().map(|family| family as &dyn Elements);

@@ -9,9 +9,10 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use squeal::analysis::Sweep;
 use squeal::native::{Block, Factor, FactorKind, Matrix, Precision, Session, Vector};
 use squeal::stability::Pencil;
-use squeal::sweep::{Brake, Sweep};
+use squeal::structure::FullModel;
 
 /// Friction of the equilibrium whose matrices are factorised.
 const FRICTION: f64 = 0.5;
@@ -26,7 +27,7 @@ fn main() -> squeal::Result<()> {
         }
     };
     let start = Instant::now();
-    let brake = Brake::read(&comm, &path)?;
+    let brake = FullModel::read(&comm, &path)?;
     let (nodes, tets) = (brake.nodes.n_global(), comm.sum(brake.own_tets().count() as f64));
     tell(format!("{}: {nodes} nodes, {tets} tetrahedra, {} ranks", path.display(), comm.size()));
     tell(format!("read, checked, contact found    {:8.2} s", start.elapsed().as_secs_f64()));
@@ -49,9 +50,8 @@ fn main() -> squeal::Result<()> {
         tell(format!("{name} times 32 columns            {:8.3} s", start.elapsed().as_secs_f64()));
     }
 
-    let mut sweep = Sweep::new(&system, &brake.interface)?;
-    let mut ignore = |_: squeal::sweep::Event| ();
-    let equilibrium = sweep.equilibrium(FRICTION, &mut ignore)?;
+    let mut sweep = Sweep::new(&system, &brake.interface, false)?;
+    let equilibrium = sweep.equilibrium(FRICTION, &mut ())?;
     sweep.linearise(&equilibrium, |pencil| {
         let (double, single) = (Precision::Double, Precision::Single);
         for (kind, precision) in
@@ -65,8 +65,8 @@ fn main() -> squeal::Result<()> {
         return Ok(());
     }
 
-    let next = sweep.equilibrium(FRICTION + 0.1, &mut ignore)?;
-    let band = sweep.modes(&next, brake.model.band, &mut ignore)?;
+    let next = sweep.equilibrium(FRICTION + 0.1, &mut ())?;
+    let band = sweep.modes(&next, brake.model.band, &mut ())?;
     let costs = sweep.costs();
     let iterations = |steps: &[squeal::equilibrium::Step]| steps.iter().map(|s| s.iterations.len() - 1).sum::<usize>();
     tell(format!(

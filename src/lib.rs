@@ -5,56 +5,58 @@
 //! it; and a sweep of the friction coefficient. Source of the formulation: Fazio, Nacivet and Sinou, *A finite element
 //! model reduction based on super-elements for brake squeal study*, ISMA 2014.
 //!
-//! # The house
+//! # Modules
 //!
 //! ```text
-//!  model file -> model --> mesh --> assembly: elements (tetrahedra, connectors) -> System { M, C, K, load }
-//!                  \        \                                                          |
-//!                   `--------`--> contact: search -> gap operator B, laws -> Interface |
-//!                                                        \                             |
-//!                                    System + Interface --equilibrium (SNES)--> Equilibrium
-//!                                                                                |
-//!                         Modes <--stability (PEP)-- Pencil { M, C, K } <--linearise
+//!  model file + mesh --> FullModel ---\
+//!                                      Structure --assemble--> System { M, C, K, load } + Interface { B, laws }
+//!  super-element file -> ReducedModel /                                      |
+//!                                                        equilibrium (SNES) --> Equilibrium
+//!                                                                            |
+//!                         Modes <--stability (PEP, MUMPS)-- { M, C, K } <--linearise
 //!                           |
-//!             sweep over friction <--> tracking: branches, Hopf points
+//!      analysis: Modes over the friction coefficient <--> tracking: branches, Hopf points
 //!                           |
-//!                     cli --> results --> output: tables, CSV, JSON, VTU --> report
+//!                        Results --> output: results folder, tables, VTU --> report: HTML page
 //! ```
 //!
-//! Every stage is one room with one main function from typed input to typed output:
+//! Each module may import the modules above it in this table, and no other:
 //!
-//! | room | what it does | main entry |
+//! | module | what it does | main entry |
 //! |---|---|---|
-//! | [`model`] | the user's file, checked, in SI units | [`model::read`] |
-//! | [`mesh`] | Gmsh meshes of 10-node tetrahedra, checked | [`mesh::read`] |
-//! | [`element`] | tetrahedron, facet, quadrature, couplings: pure functions | [`element::tet10`] |
-//! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
-//! | [`assembly`] | equations, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
-//! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
-//! | [`stability`] | linearisation, modes of a band, none missed; what explains them | [`stability::solve`] |
-//! | [`reduction`] | reference nodes for contacts, super-elements and their files | [`reduction::craig_bampton::reduce`] |
+//! | [`error`] | typed errors and exit codes | [`Error`] |
+//! | `hdf` | what all HDF5 files of the program share | |
+//! | `algebra` | vectors of three and matrices of 3 x 3 | |
+//! | [`native`] | the only `unsafe`: MPI, LAPACK, PETSc, SLEPc, MUMPS, METIS | [`native::Session::start`] |
 //! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
-//! | [`sweep`] | one friction after the other | [`sweep::Sweep`] |
-//! | [`results`] | what a study found, as plain data, and its file | [`results::Results`], [`results::file`] |
+//! | [`element`] | tetrahedron, facet, quadrature, couplings: pure functions | [`element::tet10`] |
+//! | [`mesh`] | nodes, elements by part, surfaces; Gmsh meshes | [`mesh::read`] |
+//! | [`model`] | what is analysed, from the user's file, checked, in SI units | [`model::read`] |
+//! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
+//! | [`matrices`] | external M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |
+//! | [`assembly`] | dofs, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
+//! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
+//! | [`stability`] | linearisation, modes of a band, none missed; energies and sensitivities | [`stability::solve`] |
+//! | [`reduction`] | reference nodes for contacts, super-elements and their files | [`reduction::craig_bampton::reduce`] |
+//! | [`results`] | what an analysis found, as plain data, and its file | [`results::Results`], [`results::file`] |
+//! | [`structure`] | a brake, full or reduced: reading, distribution, assembly, surface | [`structure::Structure::read`] |
 //! | [`comparison`] | which modes of two results are the same, and by how much they differ | [`comparison::compare`] |
-//! | [`output`] | a run's folder, tables, CSV, JSON, VTU | [`output::results_folder::write`] |
-//! | [`report`] | findings, wording, figures, the HTML page | [`report::page`] |
-//! | [`cli`] | commands, progress, exit codes | [`cli::main`] |
-//! | [`matrices`] | given M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |
-//! | [`native`] | the only `unsafe`: MPI, LAPACK, PETSc, SLEPc, MUMPS, METIS | |
+//! | [`output`] | results folders, tables, JSON, VTU | [`output::results_folder::write`] |
+//! | [`analysis`] | the jobs: statics, stability, reduction, external matrices, free modes, study | [`analysis::stability`] |
+//! | [`report`] | the HTML page: findings, wording, figures | [`report::page::page`] |
+//! | [`cli`] | arguments, progress, exit codes | [`cli::main`] |
 //!
-//! Imports run one way, from the bottom of this table to its top (`tests/architecture.rs` holds the exact order). To change a
-//! friction law, change `contact/law/`; nothing else knows it.
+//! To change a friction law, change `contact/law/`; nothing else depends on it.
 //!
 //! # The one idea
 //!
-//! Whatever adds to M, C or K is an *element* with a list of nodes; one assembly layer scatters them all. Contact sees a body
-//! only through its *gap operator* `g = B u`; so contact, equilibrium and stability know nothing of the mesh, and a reduced
-//! model is another B and another u.
+//! Whatever contributes to M, C or K is an *element* with a list of nodes; one assembly layer scatters them all. Contact laws see a body
+//! only through its *gap operator* `g = B u`; so a reduced model is another B and another u, and equilibrium, stability and analysis exist
+//! once.
 //!
 //! # Ranks
 //!
-//! Nothing that grows with the model's volume is on one rank alone, but for the seconds in which the first reads the mesh. It cuts the mesh
+//! The first rank reads the mesh and cuts it
 //! by METIS, numbers the nodes rank by rank, and sends each rank its piece: the nodes that the rank owns, all tetrahedra that
 //! touch them, and everything that has a name ([`mesh::Piece`]). So each rank owns a range of rows, computes the elements that touch
 //! them without any communication, and writes its own piece of the results. Surfaces are on every rank, and so are the contact points and
@@ -84,6 +86,7 @@
 //! | alpha, beta | `rayleigh` | `C = alpha M + beta K` of a part |
 
 mod algebra;
+pub mod analysis;
 pub mod assembly;
 pub mod cli;
 pub mod comparison;
@@ -101,7 +104,7 @@ pub mod reduction;
 pub mod report;
 pub mod results;
 pub mod stability;
-pub mod sweep;
+pub mod structure;
 pub mod tracking;
 
 pub use error::{Error, Result};

@@ -4,9 +4,10 @@
 
 use std::path::Path;
 
+use squeal::analysis::Sweep;
 use squeal::equilibrium::Balance;
 use squeal::native::Session;
-use squeal::sweep::{Brake, Sweep};
+use squeal::structure::FullModel;
 
 /// Hydraulic force, N.
 const CLAMP: f64 = 12000.0;
@@ -16,14 +17,14 @@ const CLAMP: f64 = 12000.0;
 #[test]
 fn equilibria_balance_at_every_friction() {
     let comm = Session::start(&[]).unwrap();
-    let brake = Brake::read(&comm, Path::new("meshes/brake-small.toml")).unwrap();
-    brake.require_held(&comm).unwrap();
+    let brake = FullModel::read(&comm, Path::new("meshes/brake-small.toml")).unwrap();
+    brake.require_constrained(&comm).unwrap();
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     for tenths in 1..=9 {
         let friction = f64::from(tenths) / 10.0;
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
         let last = equilibrium.steps.last().unwrap().iterations.last().unwrap();
         assert!(last.residual <= 1e-9);
         let u = system.nodal(&[&equilibrium.u]).unwrap().remove(0);
@@ -57,13 +58,13 @@ fn equilibria_balance_at_every_friction() {
 #[test]
 fn modes_couple_as_friction_rises() {
     let comm = Session::start(&[]).unwrap();
-    let brake = Brake::read(&comm, Path::new("meshes/brake-small.toml")).unwrap();
+    let brake = FullModel::read(&comm, Path::new("meshes/brake-small.toml")).unwrap();
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let mut unstable = |friction: f64| {
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
-        let band = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
+        let band = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
         assert!(band.count.agrees(), "{:?}", band.count);
         assert!(band.modes.iter().all(|mode| mode.backward_error <= 1e-10));
         band.modes.iter().filter(|mode| mode.is_unstable()).map(|mode| mode.frequency()).collect::<Vec<_>>()

@@ -10,20 +10,21 @@ use std::f64::consts::TAU;
 
 use common::data;
 use program::{Place, Said};
+use squeal::analysis::{FrictionFamily, Snapshot, Sweep, tracking_options, widened};
 use squeal::native::{Comm, Session};
-use squeal::sweep::{Brake, Friction, Snapshot, Sweep, tracking_options, wider};
+use squeal::structure::FullModel;
 use squeal::tracking::{Diagram, track};
 
 fn followed(comm: &Comm, values: &[f64], band: [f64; 2]) -> Diagram {
-    let brake = Brake::read(comm, &data("pads_on_disc.toml")).unwrap();
+    let brake = FullModel::read(comm, &data("pads_on_disc.toml")).unwrap();
     let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let mut solve = |friction: f64| {
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ())?;
-        let modes = sweep.modes(&equilibrium, wider(band), &mut |_| ())?;
+        let equilibrium = sweep.equilibrium(friction, &mut ())?;
+        let modes = sweep.modes(&equilibrium, widened(band), &mut ())?;
         Snapshot::new(&mut sweep, &modes, band[1])
     };
-    let mut family = Friction { solutions: &mut solve, m: &system.m, c: &system.c };
+    let mut family = FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c };
     let (diagram, outcome) = track(&mut family, values, &tracking_options(band));
     outcome.unwrap();
     assert_eq!(diagram.doubtful, Vec::<[f64; 2]>::new());

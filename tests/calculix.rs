@@ -25,6 +25,7 @@ use std::process::Command;
 
 use common::data;
 use nalgebra::Matrix3;
+use squeal::analysis::Sweep;
 use squeal::assembly::{Connectivity, ElementMatrices, Elements, System, Tets};
 use squeal::contact::{Response, Status};
 use squeal::element::quadrature::TETRAHEDRON_4;
@@ -32,7 +33,7 @@ use squeal::element::tet10;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
-use squeal::sweep::{Brake, Sweep};
+use squeal::structure::FullModel;
 
 /// Largest relative difference of a frequency with the same mass: what seven digits of an eigenvalue leave.
 const SAME: f64 = 1e-6;
@@ -43,7 +44,7 @@ const LOW: f64 = 4000.0;
 const N_MODES: usize = 30;
 
 /// The deck: the brake as it is about an equilibrium, without friction.
-fn deck(brake: &Brake, responses: &[Response]) -> String {
+fn deck(brake: &FullModel, responses: &[Response]) -> String {
     let mut out = String::from("*NODE\n");
     for (i, [x, y, z]) in brake.mesh.nodes.iter().enumerate() {
         writeln!(out, "{},{x:.12e},{y:.12e},{z:.12e}", i + 1).unwrap();
@@ -61,7 +62,7 @@ fn deck(brake: &Brake, responses: &[Response]) -> String {
 }
 
 /// Tetrahedra, materials and sections. An element's nodes are in our order.
-fn parts(out: &mut String, brake: &Brake) {
+fn parts(out: &mut String, brake: &FullModel) {
     *out += "*NSET,NSET=FIRST\n1\n";
     for (p, name) in brake.mesh.parts.iter().enumerate() {
         writeln!(out, "*ELEMENT,TYPE=C3D10,ELSET=PART{p}").unwrap();
@@ -82,7 +83,7 @@ fn parts(out: &mut String, brake: &Brake) {
 }
 
 /// Closed points as springs: `q = sqrt(n^T D n) n.(B u)` is the displacement along x of a node of its own.
-fn contacts(out: &mut String, brake: &Brake, responses: &[Response]) {
+fn contacts(out: &mut String, brake: &FullModel, responses: &[Response]) {
     let interface = &brake.interface;
     let closed: Vec<usize> = (0..responses.len()).filter(|&a| responses[a].status != Status::Open).collect();
     let (n_nodes, n_tets) = (brake.mesh.nodes.len(), brake.mesh.tets.len());
@@ -166,16 +167,16 @@ impl Elements for FourPointMass<'_> {
 }
 
 /// Frequencies (Hz) of a system's modes about its equilibrium without friction, and what the contact points answer there.
-fn ours(brake: &Brake, system: &System) -> (Vec<f64>, Vec<Response>) {
-    let mut sweep = Sweep::new(system, &brake.interface).unwrap();
-    let equilibrium = sweep.equilibrium(0.0, &mut |_| ()).unwrap();
-    let band = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
+fn ours(brake: &FullModel, system: &System) -> (Vec<f64>, Vec<Response>) {
+    let mut sweep = Sweep::new(system, &brake.interface, false).unwrap();
+    let equilibrium = sweep.equilibrium(0.0, &mut ()).unwrap();
+    let band = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
     assert!(band.count.agrees() && band.modes.len() >= N_MODES, "{:?}", band.count);
     (band.modes.iter().map(Mode::frequency).collect(), equilibrium.responses)
 }
 
 /// Compares the modes about the equilibrium at friction 0.
-fn compare(comm: &Comm, brake: &Brake) {
+fn compare(comm: &Comm, brake: &FullModel) {
     let families = brake.families().unwrap();
     let (exact, responses) = ours(brake, &brake.assemble(comm, &families).unwrap());
     let tets = FourPointMass { tets: Tets::new(&brake.model, &brake.mesh).unwrap(), mesh: &brake.mesh };
@@ -195,7 +196,7 @@ fn compare(comm: &Comm, brake: &Brake) {
 #[test]
 fn calculix_finds_the_modes_of_a_brake_in_contact() {
     let comm = Session::start(&[]).unwrap();
-    let mut brake = Brake::read(&comm, &data("pads_on_disc.toml")).unwrap();
+    let mut brake = FullModel::read(&comm, &data("pads_on_disc.toml")).unwrap();
     brake.model.band = [0.0, 11000.0];
     compare(&comm, &brake);
 }
@@ -217,7 +218,7 @@ fn calculix_finds_the_modes_of_parts_of_any_elasticity() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("parts.toml");
     std::fs::write(&file, text).unwrap();
-    let mut brake = Brake::read(&comm, Path::new(&file)).unwrap();
+    let mut brake = FullModel::read(&comm, Path::new(&file)).unwrap();
     brake.model.band = [0.0, 14000.0];
     compare(&comm, &brake);
 }

@@ -13,21 +13,22 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::data;
+use squeal::analysis::Sweep;
 use squeal::native::{Comm, Session};
 use squeal::stability::{Band, Mode};
-use squeal::sweep::{Brake, Sweep};
+use squeal::structure::FullModel;
 
 /// Modes of a model at one friction by TOAR and by blocks.
 fn both(model: &Path, friction: f64) -> [Vec<Mode>; 2] {
     let comm = Session::start(&[]).unwrap();
-    let brake = Brake::read(&comm, model).unwrap();
+    let brake = FullModel::read(&comm, model).unwrap();
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
-    let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
-    let one_by_one = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
+    let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
+    let one_by_one = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
     sweep.solve_as_large();
-    let in_blocks = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
+    let in_blocks = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
     assert!(one_by_one.count.agrees() && in_blocks.count.agrees());
     [one_by_one.modes, in_blocks.modes]
 }
@@ -56,14 +57,14 @@ fn eigensolvers_agree_on_a_damped_brake() {
 
 /// The modes at the last of some frictions, found in blocks after those at the others.
 fn in_blocks_along(comm: &Comm, frictions: &[f64]) -> Band {
-    let brake = Brake::read(comm, &small_brake()).unwrap();
+    let brake = FullModel::read(comm, &small_brake()).unwrap();
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     sweep.solve_as_large();
     let mut modes_at = |&friction: &f64| {
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
-        sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap()
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
+        sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap()
     };
     frictions.iter().map(&mut modes_at).last().unwrap()
 }

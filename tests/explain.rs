@@ -9,19 +9,21 @@ mod common;
 
 use common::{assert_close, data};
 use num_complex::Complex64;
+use squeal::analysis::{Snapshot, Sweep, explain_full};
 use squeal::assembly::System;
 use squeal::contact::Tangential;
 use squeal::equilibrium::Equilibrium;
 use squeal::model::Rayleigh;
 use squeal::native::{Comm, Session};
+use squeal::results::{Kind, Source};
 use squeal::stability::{Band, Complex, Mode};
-use squeal::sweep::{Brake, Kind, Snapshot, Source, Sweep};
+use squeal::structure::FullModel;
 
 const BAND: [f64; 2] = [0.0, 1500.0];
 const FRICTION: f64 = 0.4;
 
-fn damped(comm: &Comm) -> Brake {
-    let mut brake = Brake::read(comm, &data("pads_on_disc.toml")).unwrap();
+fn damped(comm: &Comm) -> FullModel {
+    let mut brake = FullModel::read(comm, &data("pads_on_disc.toml")).unwrap();
     for (i, part) in brake.model.parts.iter_mut().enumerate() {
         let (is_disc, is_lining) = (part.name == "disc", part.name.starts_with("lining"));
         let alpha = if is_lining { 100.0 } else { 4.0 + i as f64 };
@@ -35,7 +37,7 @@ fn damped(comm: &Comm) -> Brake {
     brake
 }
 
-fn assembled(comm: &Comm, brake: &Brake) -> System {
+fn assembled(comm: &Comm, brake: &FullModel) -> System {
     brake.assemble(comm, &brake.families().unwrap()).unwrap()
 }
 
@@ -46,11 +48,10 @@ fn worst(band: &Band) -> usize {
 }
 
 /// That mode's eigenvalue of a changed brake at an equilibrium that is given.
-fn eigenvalue(comm: &Comm, brake: &Brake, equilibrium: &Equilibrium) -> Complex64 {
+fn eigenvalue(comm: &Comm, brake: &FullModel, equilibrium: &Equilibrium) -> Complex64 {
     let system = assembled(comm, brake);
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
-    sweep.friction_damping = true;
-    let band = sweep.modes(equilibrium, BAND, &mut |_| ()).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, true).unwrap();
+    let band = sweep.modes(equilibrium, BAND, &mut ()).unwrap();
     band.modes[worst(&band)].lambda
 }
 
@@ -63,16 +64,14 @@ fn energies_balance_and_sensitivities_are_derivatives() {
     let comm = Session::start(&[]).unwrap();
     let brake = damped(&comm);
     let system = assembled(&comm, &brake);
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
-    sweep.friction_damping = true;
-    let equilibrium = sweep.equilibrium(FRICTION, &mut |_| ()).unwrap();
-    let band = sweep.modes(&equilibrium, BAND, &mut |_| ()).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, true).unwrap();
+    let equilibrium = sweep.equilibrium(FRICTION, &mut ()).unwrap();
+    let band = sweep.modes(&equilibrium, BAND, &mut ()).unwrap();
     let snapshot = Snapshot::new(&mut sweep, &band, BAND[1]).unwrap();
     for (i, mode) in band.modes.iter().enumerate() {
         let [re, im] = snapshot.left(i).unwrap();
-        let right = Complex { re: &mode.re, im: &mode.im };
         let left = Complex { re: &re, im: &im };
-        let sources = brake.explain(&mut sweep, &equilibrium, (mode.lambda, right), Some(left)).unwrap();
+        let sources = explain_full(&brake, &mut sweep, &equilibrium, mode, Some(left)).unwrap();
         balance(mode, &sources);
         if i == worst(&band) {
             differences(&sources, equilibrium.friction, |change| {
@@ -117,9 +116,9 @@ fn balance(mode: &Mode, sources: &[Source]) {
 fn differences(
     sources: &[Source],
     friction: f64,
-    solve: impl Fn(&mut dyn FnMut(&mut Brake, &mut Equilibrium)) -> Complex64,
+    solve: impl Fn(&mut dyn FnMut(&mut FullModel, &mut Equilibrium)) -> Complex64,
 ) {
-    let check = |what: &str, exact: Complex64, h: f64, change: &dyn Fn(f64, &mut Brake, &mut Equilibrium)| {
+    let check = |what: &str, exact: Complex64, h: f64, change: &dyn Fn(f64, &mut FullModel, &mut Equilibrium)| {
         let [plus, minus] = [h, -h].map(|h| solve(&mut |brake, equilibrium| change(h, brake, equilibrium)));
         let found = (plus - minus) / (2.0 * h);
         let error = (found - exact).norm() / exact.norm();
@@ -128,7 +127,7 @@ fn differences(
     };
     let by_friction = sources.iter().filter_map(|source| source.friction).sum();
     check("friction", by_friction, 4e-4, &|h, _, equilibrium| equilibrium.friction = friction + h);
-    let part = |brake: &mut Brake, name: &str| brake.model.parts.iter().position(|part| part.name == name).unwrap();
+    let part = |brake: &mut FullModel, name: &str| brake.model.parts.iter().position(|part| part.name == name).unwrap();
     for name in ["disc", "lining_inner"] {
         let exact = source(sources, name).sensitivity.unwrap();
         check(&format!("damping of {name}"), exact.damping, 0.05, &|h, brake, _| {

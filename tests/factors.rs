@@ -3,8 +3,9 @@
 mod program;
 
 use program::{Place, mpirun};
+use squeal::analysis::Sweep;
 use squeal::native::{Block, Comm, Factor, FactorKind, Matrix, Precision, Session};
-use squeal::sweep::{Brake, Sweep};
+use squeal::structure::FullModel;
 
 /// Columns to solve for.
 const N_COLUMNS: usize = 5;
@@ -30,11 +31,11 @@ fn residuals(a: &Matrix, factor: &Factor) -> [f64; 2] {
 /// A brake's unsymmetric tangent under friction, factorised and solved with.
 fn solve(comm: &Comm) {
     let place = Place::pads();
-    let brake = Brake::read(comm, &place.path("brake.toml")).unwrap();
+    let brake = FullModel::read(comm, &place.path("brake.toml")).unwrap();
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
-    let equilibrium = sweep.equilibrium(0.5, &mut |_| ()).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
+    let equilibrium = sweep.equilibrium(0.5, &mut ()).unwrap();
     let look = |pencil: &squeal::stability::Pencil| {
         let mut factor = Factor::new(FactorKind::Unsymmetric);
         factor.factorise(pencil.k)?;

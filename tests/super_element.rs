@@ -16,6 +16,7 @@ mod common;
 use common::{Block, assert_close, brake};
 use num_complex::Complex64;
 use squeal::Result;
+use squeal::analysis::Sweep;
 use squeal::assembly::System;
 use squeal::contact::{Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
@@ -26,7 +27,7 @@ use squeal::reduction::craig_bampton::{self, Structure};
 use squeal::reduction::super_element::{Origin, SuperElement};
 use squeal::reduction::{contacts, craig_bampton::Reduced};
 use squeal::stability::{self, Pencil, Solver};
-use squeal::sweep::{Brake, Sweep};
+use squeal::structure::FullModel;
 
 const MODEL: &str = r#"
 [material.iron]
@@ -89,7 +90,7 @@ fn block(mesh: &mut Mesh, part: &str, cells: [usize; 3], corner: [f64; 3], size:
 }
 
 /// The brake with its reduced contacts.
-fn blocks(text: &str) -> Brake {
+fn blocks(text: &str) -> FullModel {
     let mut mesh = Mesh::default();
     block(&mut mesh, "disc", [3, 3, 1], [0.0, 0.0, 0.0], [30.0, 31.0, 10.0]);
     block(&mut mesh, "pad", [2, 2, 1], [5.0, 5.0, 10.0], [20.0, 21.0, 5.0]);
@@ -101,14 +102,14 @@ fn blocks(text: &str) -> Brake {
 
 /// The full model at its equilibrium.
 struct Full {
-    brake: Brake,
+    brake: FullModel,
     system: System,
     equilibrium: Equilibrium,
     eigenvalues: Vec<Complex64>,
 }
 
 fn eigenvalues(sweep: &mut Sweep, equilibrium: &Equilibrium) -> Vec<Complex64> {
-    let band = sweep.modes(equilibrium, BAND, &mut |_| ()).unwrap();
+    let band = sweep.modes(equilibrium, BAND, &mut ()).unwrap();
     assert!(band.count.agrees());
     band.modes.iter().map(|mode| mode.lambda).collect()
 }
@@ -117,8 +118,8 @@ impl Full {
     fn new(comm: &Comm, text: &str, friction: f64) -> Full {
         let brake = blocks(text);
         let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
-        let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
+        let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
         let eigenvalues = eigenvalues(&mut sweep, &equilibrium);
         drop(sweep);
         Full { brake, system, equilibrium, eigenvalues }
@@ -155,8 +156,8 @@ fn analyse(
 ) -> (Interface, Equilibrium, Vec<Complex64>) {
     let interface = element.interface(law);
     let system = element.assemble(comm, &interface, 1.0).unwrap();
-    let mut sweep = Sweep::new(&system, &interface).unwrap();
-    let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
+    let mut sweep = Sweep::new(&system, &interface, false).unwrap();
+    let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
     let eigenvalues = eigenvalues(&mut sweep, &equilibrium);
     drop(sweep);
     (interface, equilibrium, eigenvalues)
@@ -191,10 +192,10 @@ fn modal_coordinates_of_one_friction_serve_the_others() {
     let (_, element) = Full::new(&comm, MODEL, FRICTION).reduce(2.0 * WIDE[1]);
     let interface = element.interface(Some(NormalLaw::Cubic { k1: 2e13, k3: 1e25 }));
     let system = element.assemble(&comm, &interface, 1.0).unwrap();
-    let mut sweep = Sweep::new(&system, &interface).unwrap();
+    let mut sweep = Sweep::new(&system, &interface, false).unwrap();
     for friction in [FRICTION, 0.2] {
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
-        let modes = sweep.modes(&equilibrium, WIDE, &mut |_| ()).unwrap().modes;
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
+        let modes = sweep.modes(&equilibrium, WIDE, &mut ()).unwrap().modes;
         let (left, _) = sweep.left_vectors(&modes, |_| 1e-7).unwrap();
         let look = |pencil: &Pencil| {
             let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(1.0));

@@ -14,9 +14,8 @@ use crate::output::contact_cells::ContactCells;
 use crate::output::files::write_whole;
 use crate::output::overwrite::may_write_file;
 use crate::output::vtu;
-use crate::sweep::Brake;
+use crate::structure::{FullModel, Ranked};
 
-use super::ranked::Ranked;
 use super::{Check, Shell};
 
 pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
@@ -25,7 +24,7 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     let (picture, n_contacts) = (output.as_deref(), *n_contacts);
     let may_draw = || picture.map_or(Ok(()), |file| may_write_file(file, &vtu::KIND, *force));
     comm.agree(if comm.is_root() { may_draw() } else { Ok(()) })?;
-    let brake = Brake::read_reduced(comm, path, n_contacts)?;
+    let brake = FullModel::read_with_contacts(comm, path, n_contacts)?;
     let mut told = Told { text: format!("{}\n\n", brake.model.title), json: json!({"title": brake.model.title}) };
     parts(&mut told, comm, &brake);
     pairs(&mut told, &brake);
@@ -40,7 +39,7 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     if let Some(file) = picture {
         comm.agree(if comm.is_root() { draw(file, &brake) } else { Ok(()) })?;
     }
-    brake.require_held(comm)?;
+    brake.require_constrained(comm)?;
     memory(&mut told, comm, &brake)?;
     shell.tell(&told.text, || told.json.clone())
 }
@@ -52,7 +51,7 @@ struct Told {
 }
 
 /// Parts with tetrahedra, mass, centre and moments of inertia, and mesh quality. Collective.
-fn parts(told: &mut Told, comm: &Comm, brake: &Brake) {
+fn parts(told: &mut Told, comm: &Comm, brake: &FullModel) {
     let (text, mut rows) = (&mut told.text, Vec::new());
     let mesh = &brake.mesh;
     let ends = |sign: f64| {
@@ -103,7 +102,7 @@ fn parts(told: &mut Told, comm: &Comm, brake: &Brake) {
 }
 
 /// Contact pairs with points, areas, gaps.
-fn pairs(told: &mut Told, brake: &Brake) {
+fn pairs(told: &mut Told, brake: &FullModel) {
     let (text, mut rows) = (&mut told.text, Vec::new());
     let pairs = &brake.interface.pairs;
     let width = pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
@@ -144,7 +143,7 @@ fn pairs(told: &mut Told, brake: &Brake) {
 }
 
 /// The reference nodes of the sliding pairs: how many, and how even their cells are.
-fn layouts(told: &mut Told, brake: &Brake) {
+fn layouts(told: &mut Told, brake: &FullModel) {
     let (text, mut rows) = (&mut told.text, Vec::new());
     for pair in brake.interface.pairs.iter().filter(|pair| pair.is_sliding()) {
         let own = &brake.interface.points[pair.points.clone()];
@@ -179,12 +178,12 @@ fn layouts(told: &mut Told, brake: &Brake) {
 }
 
 /// Writes the cells of the reference nodes.
-fn draw(file: &Path, brake: &Brake) -> Result<()> {
+fn draw(file: &Path, brake: &FullModel) -> Result<()> {
     let picture = ContactCells::new(&brake.mesh, &brake.interface);
     write_whole(file, |mut out| picture.grid().write(&mut out))
 }
 
-fn supports(told: &mut Told, brake: &Brake) {
+fn supports(told: &mut Told, brake: &FullModel) {
     let (text, mut rows) = (&mut told.text, Vec::new());
     let held = brake.held.as_flattened().iter().filter(|&&h| h).count();
     let total = brake.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i]));
@@ -207,7 +206,7 @@ fn supports(told: &mut Told, brake: &Brake) {
 }
 
 /// Analyses the matrix without factorising it.
-fn memory(told: &mut Told, comm: &Comm, brake: &Brake) -> Result<()> {
+fn memory(told: &mut Told, comm: &Comm, brake: &FullModel) -> Result<()> {
     let families = brake.families()?;
     let system = brake.assemble(comm, &families)?;
     let mut factor = Factor::new(FactorKind::Unsymmetric);

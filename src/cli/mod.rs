@@ -1,41 +1,38 @@
 //! The command line: arguments, one file a command, exit codes.
 
 mod check;
-mod checkpoint;
 mod compare;
 mod export;
-mod friction;
-mod full;
 mod interrupt;
-mod models;
 mod modes;
-mod motion;
 mod progress;
-mod ranked;
 mod reduce;
-mod reduced;
 mod report;
 mod stability;
-mod state;
-mod statics;
+mod r#static;
 mod study;
-mod subject;
-mod volume;
+mod values;
+mod watch;
 
+use std::env;
 use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use serde_json::{Value as Json, json};
 
+use crate::analysis::Output;
 use crate::hdf;
 use crate::model::NormalLaw;
 use crate::native::{Comm, Session};
+use crate::output::json;
+use crate::results::Results;
+use crate::structure::StructureOptions;
 use crate::{Error, Result};
-use friction::Frictions;
+use values::FrictionValues;
 
 /// Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake.
 ///
@@ -83,6 +80,22 @@ impl Shell<'_> {
     }
 }
 
+impl Shell<'_> {
+    /// Prints results as text or JSON; an analysis that did not converge ends with its reason.
+    ///
+    /// # Errors
+    /// The system's; [`Error::NotConverged`].
+    fn print_results(&self, results: &Results, place: &Path, summary: fn(&Results, &str) -> String) -> Result<()> {
+        let place = place.display().to_string();
+        self.tell(&summary(results, &place), || json::document(results, &place))?;
+        let failure = self.comm.agree(match &results.failure {
+            Some(failure) => Err(Error::NotConverged(failure.reason.clone())),
+            None => Ok(()),
+        });
+        failure
+    }
+}
+
 #[derive(Subcommand)]
 enum Command {
     /// Tell what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
@@ -116,19 +129,10 @@ enum Command {
         #[command(flatten)]
         modes: modes::Modes,
     },
-    /// Find the complex modes of the band, and which of them squeal, for one friction or a sweep
+    /// Find the complex modes of the band, and which of them squeal, for one friction coefficient or a sweep
     Stability {
         #[command(flatten)]
-        run: Run,
-        /// Frequency band in Hz, instead of the model file's
-        #[arg(long, value_name = "FROM:TO", value_parser = friction::band, allow_hyphen_values = true)]
-        band: Option<[f64; 2]>,
-        /// Reduce the model to a super-element at each friction, and find the modes of that
-        #[arg(long)]
-        anew: bool,
-        /// Do not follow the modes over friction, which solves at more values to find where they become unstable
-        #[arg(long)]
-        no_branches: bool,
+        stability: stability::Stability,
     },
     /// Make a page of a stability run's results: does it squeal, where, why, what would help; figures, moving shapes, tables
     Report {
@@ -140,7 +144,7 @@ enum Command {
     /// Each model has a folder of its own, as `squeal stability` makes it. Run again, a study makes only what is missing or out of date.
     Study {
         #[command(flatten)]
-        models: Models,
+        study: Study,
     },
     /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
     Compare {
@@ -184,10 +188,10 @@ struct Reduce {
     #[arg(long, value_name = "N")]
     contacts: Option<usize>,
     /// Friction at which the other contacts are linearised (default: the swept contacts' own)
-    #[arg(long, value_name = "MU", value_parser = friction::single, allow_hyphen_values = true)]
+    #[arg(long, value_name = "MU", value_parser = values::single, allow_hyphen_values = true)]
     friction: Option<f64>,
     /// Keep fixed-interface modes up to this frequency in Hz (default: the model file's reduction, else twice its band)
-    #[arg(long, value_name = "HZ", value_parser = friction::frequency, allow_hyphen_values = true)]
+    #[arg(long, value_name = "HZ", value_parser = values::frequency, allow_hyphen_values = true)]
     limit: Option<f64>,
     /// The super-element's file (default: the model file's name with .se.h5)
     #[arg(short, long, value_name = "FILE")]
@@ -199,12 +203,13 @@ struct Reduce {
 
 /// What `study` takes.
 #[derive(Args)]
-struct Models {
+#[group(skip)]
+struct Study {
     /// The model file
     model: PathBuf,
     /// Friction of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the model file's)
-    #[arg(long, value_name = "MU", value_parser = friction::parse, allow_hyphen_values = true)]
-    friction: Option<Frictions>,
+    #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
+    friction: Option<FrictionValues>,
     /// Contact layouts: so many reference pairs over the sliding contacts
     #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "12,44,104,212")]
     layouts: Vec<usize>,
@@ -212,7 +217,7 @@ struct Models {
     #[arg(long, value_name = "N", default_value = "104")]
     super_element: usize,
     /// Friction at which the super-element for all frictions is made (default: the swept contacts' own)
-    #[arg(long, value_name = "MU", value_parser = friction::single, allow_hyphen_values = true)]
+    #[arg(long, value_name = "MU", value_parser = values::single, allow_hyphen_values = true)]
     reduced_at: Option<f64>,
     /// Folder of the study (default: the model file's name with -study)
     #[arg(short, long, value_name = "FOLDER")]
@@ -223,7 +228,7 @@ struct Models {
     verbose: bool,
 }
 
-impl Models {
+impl Study {
     fn place(&self) -> PathBuf {
         let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
         self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-study")))
@@ -232,20 +237,21 @@ impl Models {
 
 /// What all computing commands take.
 #[derive(Args)]
+#[group(skip)]
 struct Run {
     /// The model file, or the file of a super-element
     model: PathBuf,
     /// Friction of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the model file's)
-    #[arg(long, value_name = "MU", value_parser = friction::parse, allow_hyphen_values = true)]
-    friction: Option<Frictions>,
+    #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
+    friction: Option<FrictionValues>,
     /// So many reference pairs in place of the contact points of the sliding contacts, e.g. 104
     #[arg(long, value_name = "N")]
     contacts: Option<usize>,
     /// Of a super-element: the normal law of its contacts, linear:K or cubic:K1,K3 in N/m and N/m3
-    #[arg(long, value_name = "LAW", value_parser = subject::law)]
+    #[arg(long, value_name = "LAW", value_parser = values::law)]
     law: Option<NormalLaw>,
     /// Of a super-element: the loads as a multiple of the model's
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = subject::pressure, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::pressure, allow_hyphen_values = true)]
     pressure: f64,
     /// Folder of the results (default: the model file's name with the command's)
     #[arg(short, long, value_name = "FOLDER")]
@@ -260,15 +266,26 @@ struct Run {
 }
 
 impl Run {
-    /// The options that the numbers depend on, but for friction.
-    fn options(&self) -> String {
-        let contacts = self.contacts.map(|n| format!(" --contacts {n}"));
-        let law = self.law.map(|law| match law {
-            NormalLaw::Linear { stiffness } => format!(" --law linear:{stiffness}"),
-            NormalLaw::Cubic { k1, k3 } => format!(" --law cubic:{k1},{k3}"),
-        });
-        let pressure = (self.pressure != 1.0).then(|| format!(" --pressure {}", self.pressure));
-        [contacts, law, pressure].into_iter().flatten().collect()
+    fn structure_options(&self) -> StructureOptions {
+        StructureOptions { contacts: self.contacts, law: self.law, load_factor: self.pressure }
+    }
+
+    fn friction_values(&self) -> Option<Vec<f64>> {
+        self.friction.as_ref().map(|values| values.0.clone())
+    }
+
+    /// Where a command writes, and what its numbers depend on beside structure and options.
+    fn output(&self, shell: &Shell, command: &str) -> Output {
+        let words: Vec<_> = env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+        Output {
+            folder: self.folder(command),
+            force: self.force,
+            command: words.join(" "),
+            identity: vec![
+                ("structure", format!("{:?}", self.structure_options())),
+                ("options for PETSc", shell.petsc.join(" ")),
+            ],
+        }
     }
 
     fn folder(&self, command: &str) -> PathBuf {
@@ -323,13 +340,13 @@ fn tell_usage(usage: &clap::Error) -> i32 {
 fn run(command: &Command, shell: &Shell) -> Result<()> {
     match command {
         Command::Check { check } => check::run(shell, check),
-        Command::Static { run } => statics::run(shell, run),
+        Command::Static { run } => r#static::run(shell, run),
         Command::Export { run, format, part } => export::run(shell, run, *format, part.as_deref()),
         Command::Modes { modes } => modes::run(shell, modes),
         Command::Reduce { reduce } => reduce::run(shell, reduce),
         Command::Report { report } => report::run(shell, report),
-        Command::Stability { run, band, anew, no_branches } => stability::run(shell, run, *band, *anew, !no_branches),
-        Command::Study { models } => models::run(shell, models),
+        Command::Stability { stability } => stability::run(shell, stability),
+        Command::Study { study } => study::run(shell, study),
         Command::Compare { a, b, output, force } => compare::run(shell, [a, b], output.as_deref(), *force),
     }
 }

@@ -7,21 +7,21 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::native::Comm;
 
-/// A line that tells stage, detail and elapsed time, with a bar over the values of a sweep.
+/// A line with stage, detail and elapsed time, and a bar over the values of a sweep.
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,
     /// Values that took no time.
-    skipped: Cell<u64>,
+    n_skipped: Cell<u64>,
     is_root: bool,
-    /// Whether finished values are told on lines of their own.
-    lines: bool,
-    /// When the last line was written.
-    told: Cell<Instant>,
+    /// Whether finished values get lines of their own.
+    has_lines: bool,
+    /// When the last line was printed.
+    printed: Cell<Instant>,
 }
 
-/// Within a value that takes long, a line tells what is being done no more often than this.
-const STILL_AT_WORK: Duration = Duration::from_secs(30);
+/// Within a value that takes long, a line says what is being done no more often than this.
+const LINE_INTERVAL: Duration = Duration::from_secs(30);
 
 impl Progress {
     /// Shows `n` values to come; on the first rank only.
@@ -34,33 +34,40 @@ impl Progress {
         Progress {
             bar,
             start,
-            told: Cell::new(start),
-            skipped: Cell::new(0),
+            printed: Cell::new(start),
+            n_skipped: Cell::new(0),
             is_root: comm.is_root(),
-            lines: verbose && comm.is_root(),
+            has_lines: verbose && comm.is_root(),
         }
     }
 
-    /// Says what is being done.
-    pub fn say(&self, message: impl Into<String>) {
+    /// Shows what is being done.
+    pub fn show(&self, message: impl Into<String>) {
         let message = message.into();
-        if self.told.get().elapsed() >= STILL_AT_WORK {
-            self.tell(&message);
+        if self.printed.get().elapsed() >= LINE_INTERVAL {
+            self.line(&message);
         }
         self.bar.set_message(message);
     }
 
     /// A line for those who asked for lines.
-    fn tell(&self, line: &str) {
-        self.told.set(Instant::now());
-        if self.lines {
+    fn line(&self, text: &str) {
+        self.printed.set(Instant::now());
+        if self.has_lines {
             let elapsed = self.start.elapsed().as_secs_f64();
-            self.bar.suspend(|| eprintln!("[{elapsed:.0} s] {line}"));
+            self.bar.suspend(|| eprintln!("[{elapsed:.0} s] {text}"));
         }
     }
 
-    /// Something that writes a line whenever it is called, from any thread; nothing but on the first rank.
-    pub fn teller(&self, line: &'static str) -> impl Fn() + Send + 'static {
+    /// Prints a line for everybody, on the first rank.
+    pub fn print(&self, line: &str) {
+        if self.is_root {
+            self.bar.suspend(|| eprintln!("{line}"));
+        }
+    }
+
+    /// Something that prints a line whenever it is called, from any thread; nothing but on the first rank.
+    pub fn notice(&self, line: &'static str) -> impl Fn() + Send + 'static {
         let (bar, is_root) = (self.bar.clone(), self.is_root);
         move || {
             if is_root {
@@ -69,7 +76,12 @@ impl Progress {
         }
     }
 
-    /// One more value is to come than was said.
+    /// So many values are to come.
+    pub fn set_length(&self, n: usize) {
+        self.bar.set_length(n as u64);
+    }
+
+    /// One more value is to come.
     pub fn lengthen(&self) {
         self.bar.inc_length(1);
     }
@@ -79,7 +91,7 @@ impl Progress {
         if !was_to_come {
             self.lengthen();
         }
-        self.skipped.set(self.skipped.get() + 1);
+        self.n_skipped.set(self.n_skipped.get() + 1);
         self.bar.inc(1);
         self.bar.reset_eta();
     }
@@ -89,9 +101,9 @@ impl Progress {
         self.bar.inc(1);
         let (position, length) = (self.bar.position(), self.bar.length().unwrap_or(0));
         let elapsed = self.start.elapsed().as_secs_f64();
-        let computed = (position - self.skipped.get()) as f64;
-        let left = elapsed / computed * length.saturating_sub(position) as f64;
-        self.tell(&format!("{position}/{length} {done}; about {left:.0} s left"));
+        let n_computed = (position - self.n_skipped.get()) as f64;
+        let left = elapsed / n_computed * length.saturating_sub(position) as f64;
+        self.line(&format!("{position}/{length} {done}; about {left:.0} s left"));
     }
 
     /// Removes the bar.

@@ -1,67 +1,35 @@
 //! `squeal reduce`: a super-element.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use serde_json::{Value as Json, json};
 
-use crate::native::{Comm, FactorStats};
-use crate::output::overwrite::{FileKind, may_write_file};
-use crate::reduction::craig_bampton::{Costs, Event};
-use crate::reduction::file;
+use crate::Result;
+use crate::analysis::{ReduceOptions, Reduction, reduce, with_reference_contacts};
+use crate::native::FactorStats;
+use crate::reduction::craig_bampton::Costs;
 use crate::reduction::super_element::SuperElement;
-use crate::sweep::{Brake, Sweep};
-use crate::{Error, Result};
+use crate::structure::FullModel;
 
-use super::progress::Progress;
+use super::watch::Watch;
 use super::{Reduce, Shell};
 
-/// What `reduce` writes.
-const SUPER_ELEMENT: FileKind = FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
-
 pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
-    let (comm, start) = (shell.comm, Instant::now());
-    let brake = read(comm, arguments)?;
-    brake.require_held(comm)?;
-    let friction = match arguments.friction {
-        Some(friction) => friction,
-        None => brake.interface.pairs.iter().find(|pair| pair.swept).map_or(0.0, |pair| pair.friction),
+    let comm = shell.comm;
+    let model = with_reference_contacts(FullModel::read(comm, &arguments.model)?, arguments.contacts)?;
+    let options = ReduceOptions {
+        friction: arguments.friction,
+        limit: arguments.limit,
+        file: arguments.file(),
+        force: arguments.force,
     };
-    let limit = arguments.limit.unwrap_or_else(|| brake.reduction_limit());
-    let place = arguments.file();
-    comm.agree(if comm.is_root() { may_write_file(&place, &SUPER_ELEMENT, arguments.force) } else { Ok(()) })?;
-    let progress = Progress::new(comm, 1, false);
-    progress.say("assembling");
-    let system = brake.assemble(comm, &brake.families()?)?;
-    let mut sweep = Sweep::new(&system, &brake.interface)?;
-    let equilibrium =
-        sweep.equilibrium(friction, &mut |_| progress.say(format!("equilibrium at friction {friction}")))?;
-    let (_, seconds) = (drop(sweep), start.elapsed().as_secs_f64());
-    let (element, surface, costs) =
-        brake.reduce(comm, &system, &equilibrium, limit, &mut |event| say(&progress, event))?;
-    let write = || {
-        // Something may have come to that place since.
-        may_write_file(&place, &SUPER_ELEMENT, arguments.force)?;
-        file::write(&place, &element, &surface)
-    };
-    comm.agree(if comm.is_root() { write() } else { Ok(()) })?;
-    progress.finish();
-    let in_all = start.elapsed().as_secs_f64();
-    shell.tell(&text(&element, &costs, seconds, in_all, &place), || document(&element, &costs, in_all, &place))
-}
-
-/// The brake with its reference nodes: as many as the command line says, else the model.
-fn read(comm: &Comm, arguments: &Reduce) -> Result<Brake> {
-    let mut brake = Brake::read(comm, &arguments.model)?;
-    let n = arguments.contacts.or(brake.model.reduction.as_ref().map(|reduction| reduction.contacts));
-    let n = n.ok_or_else(|| {
-        let file = arguments.model.display();
-        Error::input(format!(
-            "{file}: how many contacts? Give --contacts, such as 104, or [reduction] contacts in the model"
-        ))
-    })?;
-    brake.reduce_contacts(n)?;
-    Ok(brake)
+    let mut watch = Watch::new(comm, false);
+    let Reduction { element, costs, equilibrium_seconds, seconds } = reduce(comm, &model, &options, &mut watch)?;
+    watch.finish();
+    let place = &options.file;
+    shell.tell(&text(&element, &costs, equilibrium_seconds, seconds, place), || {
+        document(&element, &costs, seconds, place)
+    })
 }
 
 impl Reduce {
@@ -69,15 +37,6 @@ impl Reduce {
         let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
         self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.se.h5")))
     }
-}
-
-fn say(progress: &Progress, event: Event) {
-    progress.say(match event {
-        Event::Factor => "factorising the structure without its sliding contacts".into(),
-        Event::Constraint(done, all) => format!("constraint modes: {done} of {all}"),
-        Event::Fixed(size) => format!("fixed-interface modes: a space of {size} vectors"),
-        Event::Project => "projecting".into(),
-    });
 }
 
 /// The same as JSON: what was made, and the seconds that its steps took.

@@ -11,10 +11,8 @@ mod contacts;
 mod newton;
 mod path;
 mod step_factor;
-mod support;
 
 pub use balance::{Balance, PairForces, Wrench};
 pub use contacts::{Contacts, Counts};
 pub use newton::{Iteration, Step};
 pub use path::{Equilibrium, Path, tangent_precision};
-pub use support::{FreeMotion, free_motions};

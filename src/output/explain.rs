@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::io::Write;
 
+use crate::results::{Kind, Source};
 use crate::results::{ModeData, Results};
-use crate::sweep::{Kind, Source};
 
 /// The word for a kind.
 pub fn kind(kind: Kind) -> &'static str {

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use super::files::{PARTIAL, behind_link, write_file, write_whole};
 pub use super::overwrite::RESUME;
 use super::overwrite::{MARK, entries, foreign_entry, is_free, listed, may_write_folder, remove_results};
+use crate::native::Comm;
 use crate::{Error, Result};
 
 /// A results folder under construction, whose hidden neighbour takes its name at the end.
@@ -55,6 +56,19 @@ impl Folder {
         let lock = lock(&resume.join(LOCK), place)?;
         let target = behind_link(place);
         Ok(Folder { place: place.to_owned(), target, draft, force, keeps: Cell::new(false), done: false, _lock: lock })
+    }
+
+    /// The folder on the root, without what an earlier run has left; the refusal on all ranks alike. Collective.
+    ///
+    /// # Errors
+    /// See [`Folder::open`].
+    pub fn open_empty(comm: &Comm, target: &Path, force: bool) -> Result<Option<Folder>> {
+        let open = || {
+            let folder = Folder::open(target, force)?;
+            folder.clear()?;
+            Ok(Some(folder))
+        };
+        comm.agree(if comm.is_root() { open() } else { Ok(None) })
     }
 
     /// Where files are until the folder has its name.

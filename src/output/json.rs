@@ -6,8 +6,8 @@ use serde_json::{Value as Json, json};
 
 use super::branches::becomes;
 use super::tables;
+use crate::results::Source;
 use crate::results::{ModeData, Results, Value};
-use crate::sweep::Source;
 use crate::tracking::{Branch, Diagram, Hopf, Point};
 
 /// What was analysed (`about`), each friction with its contact pairs and modes (`frictions`), `branches` and `hopf` points where modes were

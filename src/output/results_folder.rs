@@ -1,10 +1,10 @@
 //! From results to the files of a run's folder.
 
 use std::f64::consts::TAU;
-use std::io::Write;
 
 use crate::Result;
 use crate::output::folder::Folder;
+use crate::output::tables::csv_file;
 use crate::output::{branches, details, explain, tables};
 use crate::results::{Results, file};
 
@@ -18,8 +18,8 @@ pub const RESULTS: &str = "results.h5";
 /// The system's and HDF5's, with the file's path.
 pub fn write(folder: &Folder, results: &Results, summary: &str) -> Result<()> {
     file::write(&folder.draft().join(RESULTS), results)?;
-    table(folder, "contact.csv", |out| tables::pairs(out, results))?;
-    table(folder, "convergence.csv", |out| tables::convergence(out, results))?;
+    csv_file(folder, "contact.csv", |out| tables::pairs(out, results))?;
+    csv_file(folder, "convergence.csv", |out| tables::convergence(out, results))?;
     if results.about.band[1] > 0.0 {
         modes(folder, results)?;
     }
@@ -31,15 +31,10 @@ fn modes(folder: &Folder, results: &Results) -> Result<()> {
     folder.write("modes.csv", |out| tables::modes(out, results))?;
     folder.write("details.txt", |out| out.write_all(details::text(results).as_bytes()))?;
     if results.modes().any(|(_, _, mode)| !mode.sources.is_empty()) {
-        table(folder, "explained.csv", |out| explain::sources(out, results))?;
+        csv_file(folder, "explained.csv", |out| explain::sources(out, results))?;
     }
     let Some(diagram) = &results.diagram else { return Ok(()) };
     let band = results.about.band.map(|f| TAU * f);
     folder.write("branches.csv", |out| branches::points(out, diagram, band, "friction"))?;
     folder.write("hopf.csv", |out| branches::hopf(out, diagram, "friction"))
-}
-
-/// Turns a CSV error into one of ours.
-fn table(folder: &Folder, name: &str, body: impl FnOnce(&mut dyn Write) -> csv::Result<()>) -> Result<()> {
-    folder.write(name, |out| body(out).map_err(std::io::Error::other))
 }

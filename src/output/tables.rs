@@ -2,7 +2,18 @@
 
 use std::io::Write;
 
+use crate::Result;
 use crate::results::{ModeData, Results};
+
+use super::folder::Folder;
+
+/// Writes a CSV file of a folder.
+///
+/// # Errors
+/// The system's, with the file's path.
+pub fn csv_file(folder: &Folder, name: &str, body: impl FnOnce(&mut dyn Write) -> csv::Result<()>) -> Result<()> {
+    folder.write(name, |out| body(out).map_err(std::io::Error::other))
+}
 
 /// All modes as CSV: `friction, mode, frequency_hz, growth_rate_per_s, damping_ratio, backward_error, unstable`.
 ///

@@ -8,8 +8,8 @@ use super::drawing::{self, Face, Outer, Shapes};
 use super::findings::{Findings, Instability, Place};
 use super::words;
 use crate::output::explain;
+use crate::results::Source;
 use crate::results::{ModeData, Value};
-use crate::sweep::Source;
 
 /// Everything that the page shows on demand.
 #[derive(Serialize)]

@@ -14,6 +14,7 @@ pub mod page;
 pub mod paraview;
 pub mod plots;
 pub mod raster;
+pub mod study_folder;
 pub mod study_plot;
 pub mod svg;
 #[cfg(test)]

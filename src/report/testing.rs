@@ -6,8 +6,8 @@ use num_complex::Complex64;
 
 use crate::equilibrium::{Counts, Iteration, PairForces, Step};
 use crate::results::{About, ContactFaces, ModeData, Pair, Part, Results, Shape, Surface, Value};
+use crate::results::{Kind, Source};
 use crate::stability::{Count, Sensitivity, Share};
-use crate::sweep::{Kind, Source};
 use crate::tracking::{Branch, Diagram, Hopf, Partner, Point};
 
 /// A title that means mischief.

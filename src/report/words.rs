@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::findings::{End, Findings, Instability, Range};
 use crate::output::explain::largest;
-use crate::sweep::{Kind, Source};
+use crate::results::{Kind, Source};
 
 /// What is said of one instability.
 pub struct Answer {

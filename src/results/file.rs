@@ -40,12 +40,12 @@ use num_complex::Complex64;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use super::Source;
 use super::{About, ContactFaces, ModeData, Results, Shape, Surface, Value};
 use crate::Result;
 use crate::equilibrium::{PairForces, Step};
 use crate::hdf::{self, Format, array, list, read_text, table, text, triples, values};
 use crate::stability::Count;
-use crate::sweep::Source;
 use crate::tracking::{Branch, Diagram, Hopf, Point};
 
 const FORMAT: Format =

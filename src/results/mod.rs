@@ -1,19 +1,24 @@
 //! What a study found, as plain data: no PETSc, no ranks, whole on the root. A run fills it value by value, the results file keeps it
 //! between runs, and everything that a person sees (tables, plots, report, comparisons) is made of it alone.
 
+mod external;
 pub mod file;
+mod free_modes;
 mod samples;
 mod shape;
+mod source;
 
+pub use external::{ExternalMode, ExternalResults, ExternalValue};
+pub use free_modes::{FreeMode, FreeModes, MeasuredComparison};
 pub use samples::spread;
 pub use shape::largest;
+pub use source::{Kind, Source};
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 use crate::equilibrium::{PairForces, Step};
 use crate::stability::Count;
-use crate::sweep::Source;
 use crate::tracking::Diagram;
 
 /// A study and what it found.

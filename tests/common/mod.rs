@@ -8,7 +8,7 @@ use squeal::contact::search::Alone;
 use squeal::element::tet10::{self, FACES};
 use squeal::mesh::{Mesh, Numbering, Piece, Surface};
 use squeal::model;
-use squeal::sweep::Brake;
+use squeal::structure::FullModel;
 
 /// A file of tests/data.
 pub fn data(name: &str) -> PathBuf {
@@ -24,11 +24,11 @@ pub fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
 }
 
 /// A brake of a model's text and a mesh that needs no file.
-pub fn brake(text: &str, mesh: Mesh) -> Brake {
+pub fn brake(text: &str, mesh: Mesh) -> FullModel {
     let text = format!("[mesh]\nfile = \"none.msh\"\nunit = \"m\"\n{text}");
     let model = model::parse(&text, Path::new("test.toml")).unwrap();
     let nodes = Numbering::even(mesh.nodes.len(), 0, 1);
-    Brake::new(model, Piece { mesh, nodes }, &Alone).unwrap()
+    FullModel::new(model, Piece { mesh, nodes }, &Alone).unwrap()
 }
 
 /// A block of `cells` cells of six tetrahedra each (Kuhn's), the unit cube mapped by `map`.

@@ -21,10 +21,10 @@
 
 use super::common::{Block, assert_close, brake, graded};
 use super::table::{Case, Row};
+use squeal::analysis::Sweep;
 use squeal::contact::Status;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
-use squeal::sweep::Sweep;
 
 const RADIUS: f64 = 0.05;
 const CONTACT_RADIUS: f64 = 0.687534e-3;
@@ -95,7 +95,7 @@ pub fn cases(comm: &Comm) -> Vec<Case> {
     let brake = brake(MODEL, mesh());
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
-    let equilibrium = Sweep::new(&system, &brake.interface).unwrap().equilibrium(0.0, &mut |_| ()).unwrap();
+    let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(0.0, &mut ()).unwrap();
     let (mut normal, mut normal_moment, mut off_centre) = (0.0, 0.0, 0.0);
     let (mut pull, mut pull_moment) = (0.0, 0.0);
     let (mut sticking, mut closed) = (0.0, 0.0);

@@ -36,9 +36,9 @@
 
 use super::common::{Block, assert_close, brake};
 use super::table::{Case, Row};
+use squeal::analysis::Sweep;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
-use squeal::sweep::Sweep;
 
 const MODEL: &str = r#"
 [material.steel]
@@ -90,7 +90,7 @@ fn deviation(comm: &Comm, [lower, upper]: Cells, penalty: f64, slave: &str) -> [
     let brake = brake(&format!("{MODEL}{contact}"), mesh);
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
-    let equilibrium = Sweep::new(&system, &brake.interface).unwrap().equilibrium(0.0, &mut |_| ()).unwrap();
+    let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(0.0, &mut ()).unwrap();
     let (mut force, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
     for (point, response) in brake.interface.points.iter().zip(&equilibrium.responses) {
         let (weight, p) = (point.law.weight, response.normal_force);

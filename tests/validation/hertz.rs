@@ -24,9 +24,10 @@ use std::f64::consts::PI;
 
 use super::common::{Block, assert_close, brake, graded};
 use super::table::{Case, Row};
+use squeal::analysis::Sweep;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
-use squeal::sweep::{Brake, Sweep};
+use squeal::structure::FullModel;
 
 const RADIUS: f64 = 0.05;
 /// E* = E / (2 (1 - nu^2)).
@@ -107,7 +108,7 @@ fn hertz_displacement(r: f64) -> f64 {
 }
 
 /// What a body's surface node at about 3 a, on the x axis, says of the body's motion far away, along its displacement.
-fn far_motion(brake: &Brake, u: &[[f64; 3]], surface: &str, sign: f64) -> f64 {
+fn far_motion(brake: &FullModel, u: &[[f64; 3]], surface: &str, sign: f64) -> f64 {
     let nodes = brake.mesh.node_set(surface).unwrap();
     let place = |n: u32| brake.mesh.nodes[n as usize];
     let on_axis = nodes.into_iter().filter(|&n| place(n)[1] == 0.0);
@@ -121,7 +122,7 @@ pub fn cases(comm: &Comm) -> Vec<Case> {
     let brake = brake(MODEL, mesh());
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
-    let equilibrium = Sweep::new(&system, &brake.interface).unwrap().equilibrium(0.0, &mut |_| ()).unwrap();
+    let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(0.0, &mut ()).unwrap();
     let u = system.nodal(&[&equilibrium.u]).unwrap().remove(0);
     let (mut force, mut moment, mut projection, mut norm, mut scatter) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (point, response) in brake.interface.points.iter().zip(&equilibrium.responses) {

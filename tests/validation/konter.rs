@@ -22,10 +22,10 @@
 //!
 //! Goal and, in brackets, measured: half-width and pressure without friction 0.5 % [0.1 %, 0.04 %], pressure with friction 2.5 % [1.9 %].
 
+use squeal::analysis::Sweep;
 use squeal::contact::Status;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
-use squeal::sweep::Sweep;
 
 use super::common::{Block, assert_close, brake, graded, nodes_where};
 use super::table::{Case, Row};
@@ -101,7 +101,7 @@ fn contact(comm: &Comm, law: &str) -> [f64; 3] {
     let brake = brake(&format!("{MODEL}{law}[stability]\nband = [0, 1]\n"), mesh());
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
-    let equilibrium = Sweep::new(&system, &brake.interface).unwrap().equilibrium(0.0, &mut |_| ()).unwrap();
+    let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(0.0, &mut ()).unwrap();
     let (mut force, mut moment, mut projection, mut norm, mut sticking, mut closed) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (point, response) in brake.interface.points.iter().zip(&equilibrium.responses) {
         let (weight, p, square) = (point.law.weight, response.normal_force, point.position[0].powi(2));

@@ -22,12 +22,13 @@ use std::f64::consts::TAU;
 use super::common::{assert_close, data};
 use super::table::{Case, Row};
 use serde_json::Value;
+use squeal::analysis::Sweep;
 use squeal::assembly::System;
 use squeal::element::tet10;
 use squeal::equilibrium::{Balance, Equilibrium};
 use squeal::native::{Comm, Session};
 use squeal::stability::{Band, Mode};
-use squeal::sweep::{Brake, Families, Sweep};
+use squeal::structure::{Families, FullModel};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -36,19 +37,19 @@ fn number(value: &Value) -> f64 {
 pub fn cases(comm: &Comm) -> Vec<Case> {
     let text = std::fs::read_to_string(data("pads_on_disc.json")).unwrap();
     let reference: Value = serde_json::from_str(&text).unwrap();
-    let brake = Brake::read(comm, &data("pads_on_disc.toml")).unwrap();
+    let brake = FullModel::read(comm, &data("pads_on_disc.toml")).unwrap();
     compare_model(&brake, &reference);
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
     assert_eq!(system.dofs.n_global() as u64, reference["free_dofs"].as_u64().unwrap());
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let mut rows = Vec::new();
     for friction in [0.0, 0.2, 0.4, 0.6, 0.8] {
         println!("friction {friction}");
         let expected = &reference["results"][format!("{friction:.1}")];
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ()).unwrap();
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
         compare_equilibrium(&brake, &families, &system, &equilibrium, expected);
-        let band = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
+        let band = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
         let expected = expected["eigenvalues"].as_array().unwrap();
         compare_modes(&band, expected);
         rows.extend(unstable(friction, &band, expected));
@@ -87,7 +88,7 @@ fn an_independent_implementation_agrees_at_every_friction() {
     cases(&Session::start(&[]).unwrap()).iter().for_each(Case::verify);
 }
 
-fn compare_model(brake: &Brake, reference: &Value) {
+fn compare_model(brake: &FullModel, reference: &Value) {
     let mesh = &brake.mesh;
     assert_eq!(mesh.nodes.len() as u64, reference["nodes"].as_u64().unwrap());
     assert_eq!(mesh.tets.len() as u64, reference["tets"].as_u64().unwrap());
@@ -104,7 +105,7 @@ fn compare_model(brake: &Brake, reference: &Value) {
 }
 
 fn compare_equilibrium(
-    brake: &Brake,
+    brake: &FullModel,
     families: &Families,
     system: &System,
     equilibrium: &Equilibrium,
@@ -155,15 +156,14 @@ fn compare_modes(band: &Band, expected: &[Value]) {
 #[test]
 fn friction_damping_takes_energy_out() {
     let comm = Session::start(&[]).unwrap();
-    let mut brake = Brake::read(&comm, &data("pads_on_disc.toml")).unwrap();
+    let mut brake = FullModel::read(&comm, &data("pads_on_disc.toml")).unwrap();
     brake.model.band = [0.0, 2000.0];
     let families = brake.families().unwrap();
     let system = brake.assemble(&comm, &families).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
-    let equilibrium = sweep.equilibrium(0.4, &mut |_| ()).unwrap();
-    let mut growths = |damped: bool| {
-        sweep.friction_damping = damped;
-        let band = sweep.modes(&equilibrium, brake.model.band, &mut |_| ()).unwrap();
+    let growths = |damped: bool| {
+        let mut sweep = Sweep::new(&system, &brake.interface, damped).unwrap();
+        let equilibrium = sweep.equilibrium(0.4, &mut ()).unwrap();
+        let band = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
         assert!(band.count.agrees());
         band.modes.iter().map(|mode| mode.growth_rate()).collect::<Vec<f64>>()
     };

@@ -8,7 +8,7 @@
 //!    |_________|_|_____________|     flange, hat, held at its bore and five holes: meshes/td1.geo
 //! ```
 //!
-//! Source: Ansys Technology Showcase, Brake-Squeal Analysis, table 1.2, linear non-prestressed modal analysis: 60 thousand nodes of
+//! Source: Ansys Technology Showcase, FullModel-Squeal Analysis, table 1.2, linear non-prestressed modal analysis: 60 thousand nodes of
 //! hexahedra with reduced integration; 26 bodies (hat, its cylinder, flange, two cheeks, 21 vanes) *bonded* to one another by constraints
 //! between meshes that do not match; contact at Gauss points, its stiffness by a rule of the program. Its frequencies are omega / 2 pi, and so are its
 //! real parts: ours, divided by 2 pi, are of that size. Density 7850 kg/m3 is the scripts'; the text says 7800.
@@ -24,9 +24,10 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
+use squeal::analysis::{FrictionFamily, Snapshot, Sweep, tracking_options, widened};
 use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
-use squeal::sweep::{Brake, Friction, Snapshot, Sweep, tracking_options, wider};
+use squeal::structure::FullModel;
 use squeal::tracking::{Diagram, track};
 
 use super::common::assert_close;
@@ -49,7 +50,7 @@ const BAND: [f64; 2] = [0.0, 9800.0];
 const TITLE: &str = "TD-1, a whole brake";
 
 /// The model on one of the meshes, with some text of the model file in place of other.
-fn brake(comm: &Comm, size: &str, changes: &[(&str, &str)]) -> Brake {
+fn brake(comm: &Comm, size: &str, changes: &[(&str, &str)]) -> FullModel {
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
     let mut text = std::fs::read_to_string(meshes.join("td1.toml")).unwrap();
     let mesh = meshes.join(format!("build/td1-{size}.msh"));
@@ -60,16 +61,16 @@ fn brake(comm: &Comm, size: &str, changes: &[(&str, &str)]) -> Brake {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("td1.toml");
     std::fs::write(&file, text).unwrap();
-    Brake::read(comm, &file).unwrap()
+    FullModel::read(comm, &file).unwrap()
 }
 
 /// Eigenvalues at friction 0.3 as (frequency, growth), both in Hz, by rising frequency; and the number of nodes.
 fn modes(comm: &Comm, size: &str, changes: &[(&str, &str)]) -> (Vec<[f64; 2]>, usize) {
     let brake = brake(comm, size, changes);
     let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
-    let equilibrium = sweep.equilibrium(0.3, &mut |_| ()).unwrap();
-    let band = sweep.modes(&equilibrium, BAND, &mut |_| ()).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
+    let equilibrium = sweep.equilibrium(0.3, &mut ()).unwrap();
+    let band = sweep.modes(&equilibrium, BAND, &mut ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);
     assert!(band.modes.iter().all(|mode| mode.backward_error < 1e-10));
     let hertz = |mode: &Mode| [mode.frequency(), mode.growth_rate() / TAU];
@@ -125,14 +126,14 @@ fn the_published_pair_flutters_on_the_coarse_mesh() {
 fn followed(comm: &Comm, size: &str) -> Diagram {
     let brake = brake(comm, size, &[]);
     let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
-    let mut sweep = Sweep::new(&system, &brake.interface).unwrap();
+    let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let band = brake.model.band;
     let mut solve = |friction: f64| {
-        let equilibrium = sweep.equilibrium(friction, &mut |_| ())?;
-        let modes = sweep.modes(&equilibrium, wider(band), &mut |_| ())?;
+        let equilibrium = sweep.equilibrium(friction, &mut ())?;
+        let modes = sweep.modes(&equilibrium, widened(band), &mut ())?;
         Snapshot::new(&mut sweep, &modes, band[1])
     };
-    let mut family = Friction { solutions: &mut solve, m: &system.m, c: &system.c };
+    let mut family = FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c };
     let (diagram, outcome) = track(&mut family, &brake.model.frictions, &tracking_options(band));
     outcome.unwrap();
     diagram
@@ -194,7 +195,7 @@ fn tried(comm: &Comm) -> String {
     out
 }
 
-const TEXT: &str = "Ansys Technology Showcase, Brake-Squeal Analysis (TD-1): a ventilated disc on its hat and two pads, all steel, friction 0.3, undamped, \
+const TEXT: &str = "Ansys Technology Showcase, FullModel-Squeal Analysis (TD-1): a ventilated disc on its hat and two pads, all steel, friction 0.3, undamped, \
 linear without prestress; 29 frequencies and a pair that flutters. Geometry: `meshes/td1.geo`, model: `meshes/td1.toml`.";
 
 const WHY: &str = "Where we differ, and why, as far as trying has told:

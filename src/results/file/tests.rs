@@ -1,8 +1,8 @@
 use super::*;
 use crate::equilibrium::{Counts, Iteration, Wrench};
+use crate::results::Kind;
 use crate::results::{Failure, Pair, Part};
 use crate::stability::{Sensitivity, Share};
-use crate::sweep::Kind;
 use crate::tracking::Partner;
 
 fn shape(n: usize, seed: f32) -> Shape {

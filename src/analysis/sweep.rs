@@ -3,39 +3,24 @@
 //! [`Sweep`] owns what all values share: the system, its contact evaluation, the factors' analysis, the last equilibrium. Each
 //! call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
 
-mod brake;
-mod digest;
-mod distribution;
-mod explain;
-mod friction;
-mod given;
-mod part;
-mod reduced;
-
-pub use brake::{Brake, Families, frictions_of};
-pub use digest::digest;
-pub use explain::{Kind, Source};
-pub use friction::{Friction, Snapshot, Solutions, Spectrum, Vectors, tracking_options, wider};
-pub use given::{GivenModes, GivenSweep};
-pub use part::RigidMotions;
-
 use std::time::Instant;
 
+use super::observer::{Event, Observer};
 use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
-use crate::equilibrium::{Equilibrium, Iteration, Path};
+use crate::equilibrium::{Equilibrium, Path};
 use crate::native::{Block, FactorStats, Matrix, Precision, Vector};
 use crate::stability::{self, Band, Count, Linearised, Mode, Pencil, Problem, Solver};
 
 /// A structure under analysis at one friction after the other.
 pub struct Sweep<'a> {
-    system: &'a System,
-    path: Path<'a>,
+    pub(super) system: &'a System,
+    pub(super) path: Path<'a>,
     solver: Solver,
     linearised: Linearised,
     /// Whether friction that turns with the velocity damps the modes.
-    pub friction_damping: bool,
+    pub(super) friction_damping: bool,
     /// Spent on equilibria, modes and left vectors.
     seconds: [f64; 3],
 }
@@ -57,26 +42,18 @@ pub struct Costs {
     pub symmetric: FactorStats,
 }
 
-/// What a sweep is busy with.
-pub enum Event<'a> {
-    /// A Newton iterate of the step named.
-    Newton(&'a str, usize, &'a Iteration),
-    /// The eigensolver has (converged, wanted, solves).
-    Modes(usize, usize, usize),
-}
-
 impl<'a> Sweep<'a> {
-    /// A sweep that starts from rest. Collective.
+    /// A sweep that starts from rest; with `friction_damping` the friction that turns with the velocity damps the modes. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn new(system: &'a System, interface: &'a Interface) -> Result<Sweep<'a>> {
+    pub fn new(system: &'a System, interface: &'a Interface, friction_damping: bool) -> Result<Sweep<'a>> {
         Ok(Sweep {
             system,
             path: Path::new(system, interface)?,
             solver: Solver::for_system(system),
             linearised: Linearised::default(),
-            friction_damping: false,
+            friction_damping,
             seconds: [0.0; 3],
         })
     }
@@ -85,11 +62,13 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// See [`Path::advance`].
-    pub fn equilibrium(&mut self, friction: f64, hear: &mut dyn FnMut(Event)) -> Result<Equilibrium> {
+    pub fn equilibrium(&mut self, friction: f64, observer: &mut dyn Observer) -> Result<Equilibrium> {
         let start = Instant::now();
         // Its memory is needed.
         self.solver.forget();
-        let outcome = self.path.advance(friction, &mut |label, i, it| hear(Event::Newton(label, i, it)));
+        let outcome = self.path.advance(friction, &mut |label, iteration, iterate| {
+            observer.event(Event::Newton { label, iteration, iterate });
+        });
         self.seconds[0] += start.elapsed().as_secs_f64();
         outcome
     }
@@ -98,14 +77,14 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// See [`stability::solve`].
-    pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], hear: &mut dyn FnMut(Event)) -> Result<Band> {
+    pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], observer: &mut dyn Observer) -> Result<Band> {
         let start = Instant::now();
         let linearised = &mut self.linearised;
         linearised.update(self.system, self.path.lend_tangent(), equilibrium, self.friction_damping)?;
         let (contacts, k, lu) = self.path.lend_factor(linearised.frozen().to_vec());
         let pencil = linearised.pencil(self.system, contacts, k);
-        let outcome = stability::solve(&pencil, lu, &mut self.solver, band, &mut |converged, wanted, solves| {
-            hear(Event::Modes(converged, wanted, solves));
+        let outcome = stability::solve(&pencil, lu, &mut self.solver, band, &mut |n_converged, n_wanted, n_solves| {
+            observer.event(Event::Modes { n_converged, n_wanted, n_solves });
         });
         self.seconds[1] += start.elapsed().as_secs_f64();
         outcome

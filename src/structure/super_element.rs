@@ -8,10 +8,9 @@ use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Origin, SuperElement};
 
-use super::Brake;
-use super::digest::digest;
+use super::{FullModel, digest};
 
-impl Brake {
+impl FullModel {
     /// Reduces the brake about an equilibrium to its sliding contacts, the mean motions of its loaded sets and its fixed-interface modes
     /// below `limit` (Hz). The surface's basis is on the root alone. Collective.
     ///

@@ -1,18 +1,18 @@
-//! Friction values and bands as people type them.
+//! Values, bands and laws as people type them.
 
-use crate::model::{LARGEST_FRICTION, spaced};
+use crate::model::{LARGEST_FRICTION, NormalLaw, spaced};
 
 /// A list of friction values.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Frictions(pub Vec<f64>);
+pub struct FrictionValues(pub Vec<f64>);
 
 /// `0.5`, `0.2,0.5` or `FROM:TO:STEP`, the end included.
-pub fn parse(text: &str) -> Result<Frictions, String> {
+pub fn parse(text: &str) -> Result<FrictionValues, String> {
     let Values(values) = values(text)?;
     if let Some(mu) = values.iter().find(|mu| !(0.0..=LARGEST_FRICTION).contains(*mu)) {
         return Err(format!("friction {mu} is out of range: 0 to {LARGEST_FRICTION}"));
     }
-    Ok(Frictions(values))
+    Ok(FrictionValues(values))
 }
 
 /// Values of any parameter, no two of them the same.
@@ -64,13 +64,36 @@ fn number(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }
 }
 
+/// `linear:K` or `cubic:K1,K3`, of node-to-node contacts, in N/m and N/m3.
+pub fn law(text: &str) -> Result<NormalLaw, String> {
+    let wanted = "give linear:K in N/m, or cubic:K1,K3 in N/m and N/m3";
+    let (kind, numbers) = text.split_once(':').ok_or_else(|| format!("the law has no coefficients: {wanted}"))?;
+    let values: Vec<f64> = numbers.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+    let are_good = values.len() == numbers.split(',').count() && values.iter().all(|k| *k > 0.0 && k.is_finite());
+    match (kind, &values[..]) {
+        ("linear", &[stiffness]) if are_good => Ok(NormalLaw::Linear { stiffness }),
+        ("cubic", &[k1, k3]) if are_good => Ok(NormalLaw::Cubic { k1, k3 }),
+        ("linear", _) => Err(format!("a linear law needs one coefficient above 0: {wanted}")),
+        ("cubic", _) => Err(format!("a cubic law needs two coefficients above 0: {wanted}")),
+        _ => Err(format!("unknown law {kind:?}: {wanted}")),
+    }
+}
+
+/// A factor on the loads.
+pub fn pressure(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(factor),
+        _ => Err(format!("{text:?} is not a number above 0: give the loads as a multiple of the model's")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn ranges_include_their_end() {
-        let Frictions(values) = parse("0.1:0.9:0.1").unwrap();
+        let FrictionValues(values) = parse("0.1:0.9:0.1").unwrap();
         assert_eq!(values, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]);
         assert_eq!(parse("0.5").unwrap().0, [0.5]);
         assert_eq!(parse("0.9:0.1:-0.4").unwrap().0, [0.9, 0.5, 0.1]);
@@ -83,5 +106,23 @@ mod tests {
         }
         assert!(band("6000:0").is_err() && band("0:0").is_err() && band("5").is_err());
         assert_eq!(band("0:6000").unwrap(), [0.0, 6000.0]);
+    }
+
+    #[test]
+    fn laws_need_their_coefficients() {
+        assert_eq!(law("cubic:1e8,2e18").unwrap(), NormalLaw::Cubic { k1: 1e8, k3: 2e18 });
+        assert_eq!(law("linear:3").unwrap(), NormalLaw::Linear { stiffness: 3.0 });
+        for (text, reason) in [
+            ("cubic", "no coefficients"),
+            ("cubic:1e8", "two coefficients"),
+            ("cubic:1e8,x", "two coefficients"),
+            ("cubic:1e8,-1", "two coefficients"),
+            ("linear:1,2", "one coefficient"),
+            ("square:1", "unknown law"),
+        ] {
+            assert!(law(text).unwrap_err().contains(reason), "{text}");
+        }
+        assert!(pressure("0").is_err() && pressure("nan").is_err());
+        assert_eq!(pressure("1.5"), Ok(1.5));
     }
 }

@@ -26,15 +26,17 @@ use crate::native::{Block, Comm, Vector};
 use crate::output::files::write_file;
 use crate::output::folder::{self, Folder, RESUME};
 use crate::results::{Value, file};
-use crate::sweep::{Snapshot, Spectrum, Sweep};
 use crate::{Error, Result};
 
-const FORMAT: Format = Format { name: "squeal checkpoint", version: 1, advice: "Start anew with --force" };
+use super::family::{Snapshot, Spectrum};
+use super::sweep::Sweep;
+
+const FORMAT: Format = Format { name: "squeal checkpoint", version: 1, advice: "Begin again with --force" };
 /// What the numbers of a study depend on.
 const STUDY: &str = "study.txt";
 
 /// A finished friction as an earlier run has left it.
-pub struct Earlier {
+pub struct EarlierValue {
     pub value: Value,
     /// Where modes are followed.
     spectrum: Option<Spectrum>,
@@ -63,7 +65,7 @@ impl Checkpoint {
         target: &Path,
         identity: &[(&str, String)],
         force: bool,
-    ) -> Result<(Checkpoint, VecDeque<Earlier>)> {
+    ) -> Result<(Checkpoint, VecDeque<EarlierValue>)> {
         let place = folder::unfinished(target)?.join(RESUME);
         let n = folder.map_or(Ok(0), |folder| prepare(folder, &place, target, identity, force));
         let n_earlier = comm.from_root(&[comm.agree(n)? as f64])[0] as usize;
@@ -71,13 +73,8 @@ impl Checkpoint {
         Ok((Checkpoint { comm: comm.clone(), folder: place, n_earlier, n_done: 0, kept: Vec::new() }, earlier))
     }
 
-    /// Frictions that are done, those of earlier runs among them.
-    pub fn n_done(&self) -> usize {
-        self.n_done
-    }
-
     /// Takes note that a friction of an earlier run is done once more, and gives its snapshot.
-    pub fn replay(&mut self, earlier: &mut Earlier) -> Option<Snapshot> {
+    pub fn replay(&mut self, earlier: &mut EarlierValue) -> Option<Snapshot> {
         let number = self.n_done;
         self.n_done += 1;
         let snapshot = Snapshot::kept(number, earlier.spectrum.take()?);
@@ -248,7 +245,7 @@ fn usable(place: &Path, target: &Path, identity: &[(&str, String)], n: usize) ->
         if before != value {
             let what = format!("{} is unfinished ({n} frictions are done), and was begun otherwise", target.display());
             let advice =
-                "Go on with the command that began it, use --force to start anew, or --output for another folder";
+                "Go on with the command that began it, use --force to begin again, or --output for another folder";
             return Err(Error::input(format!("{what}: {name} was {before}, is {value}. {advice}")));
         }
     }
@@ -266,11 +263,11 @@ fn write_value(path: &Path, value: &Value, spectrum: Option<&Spectrum>) -> Resul
     })
 }
 
-fn read_value(path: &Path) -> Result<Earlier> {
+fn read_value(path: &Path) -> Result<EarlierValue> {
     read(path, |file| {
         let value = file::read_value(&file.group("value")?)?;
         let spectrum = file.link_exists("spectrum").then(|| read_spectrum(&file.group("spectrum")?)).transpose()?;
-        Ok(Earlier { value, spectrum })
+        Ok(EarlierValue { value, spectrum })
     })
 }
 

@@ -1,41 +1,13 @@
 //! What explains a mode of a brake, by part, connector and contact pair.
 
-use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
-
-use super::{Brake, Sweep};
 use crate::Result;
 use crate::equilibrium::Equilibrium;
-use crate::stability::{
-    Complex, Forms, Sensitivity, Share, Sources, of_contacts, of_elements, self_product, sensitivity, shares,
-};
+use crate::reduction::super_element::Member;
+use crate::results::{Kind, Source};
+use crate::stability::{Complex, Forms, Mode, Sources, of_contacts, of_elements, self_product, sensitivity, shares};
+use crate::structure::{FullModel, Structure};
 
-/// What a source of energy, damping and stiffness is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// A part of the mesh.
-    Part,
-    /// A connector.
-    Connector,
-    /// A contact pair.
-    Contact,
-}
-
-/// A part, connector or contact pair and its role in a mode.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Source {
-    /// What it is.
-    pub kind: Kind,
-    /// Its name in the model.
-    pub name: String,
-    /// Its energies, and what it feeds in or takes out.
-    pub share: Share,
-    /// How the eigenvalue follows it, where the left vector is known.
-    pub sensitivity: Option<Sensitivity>,
-    /// How the eigenvalue follows a contact pair's friction at this equilibrium, `d lambda / d mu`, 1/s.
-    pub friction: Option<Complex64>,
-}
+use super::sweep::Sweep;
 
 impl Sweep<'_> {
     /// Explains a mode about an equilibrium by families of elements, the source of each member among `named`, and by the contact pairs. With
@@ -48,9 +20,10 @@ impl Sweep<'_> {
         &mut self,
         (families, named): (&[Sources], &[(Kind, String)]),
         equilibrium: &Equilibrium,
-        (lambda, right): (Complex64, Complex),
+        mode: &Mode,
         left: Option<Complex>,
     ) -> Result<Vec<Source>> {
+        let (lambda, right) = (mode.lambda, Complex { re: &mode.re, im: &mode.im });
         let pairs = &self.path.contacts().interface().pairs;
         let names = named.iter().cloned().chain(pairs.iter().map(|pair| (Kind::Contact, pair.name.clone())));
         let own = self.forms(families, named.len(), equilibrium, [right, right])?;
@@ -97,25 +70,44 @@ impl Sweep<'_> {
     }
 }
 
-impl Brake {
-    /// Explains a mode by parts, connectors and contact pairs: [`Sweep::explain`]. Collective.
-    ///
-    /// # Errors
-    /// [`crate::Error::Input`] where a part has no material; PETSc's.
-    pub fn explain(
-        &self,
-        sweep: &mut Sweep,
-        equilibrium: &Equilibrium,
-        mode: (Complex64, Complex),
-        left: Option<Complex>,
-    ) -> Result<Vec<Source>> {
-        let parts = self.mesh.parts.iter().map(|name| (Kind::Part, name.clone()));
-        let connectors = self.model.connectors.iter().map(|connector| (Kind::Connector, connector.name.clone()));
-        let named: Vec<_> = parts.chain(connectors).collect();
-        let part = |e: usize| self.mesh.tet_part[e] as usize;
-        let link = |e: usize| self.mesh.parts.len() + e;
-        let families = self.families()?;
-        let sources: [Sources; 2] = [(&families.tets, &part), (families.links, &link)];
-        sweep.explain((&sources, &named), equilibrium, mode, left)
+/// Explains a mode of a structure by parts, connectors and contact pairs: [`Sweep::explain`]. Collective.
+///
+/// # Errors
+/// [`crate::Error::Input`] where a part has no material; PETSc's.
+pub fn explain(
+    structure: &Structure,
+    sweep: &mut Sweep,
+    equilibrium: &Equilibrium,
+    mode: &Mode,
+    left: Option<Complex>,
+) -> Result<Vec<Source>> {
+    match structure {
+        Structure::Full(full) => explain_full(full, sweep, equilibrium, mode, left),
+        Structure::Reduced(reduced) => {
+            let named = [(Kind::Part, "super-element".to_owned())];
+            let member = Member::new(reduced.element());
+            sweep.explain((&[(&member, &|_| 0)], &named), equilibrium, mode, left)
+        }
     }
+}
+
+/// Explains a mode of a full model, as [`explain`] does. Collective.
+///
+/// # Errors
+/// [`crate::Error::Input`] where a part has no material; PETSc's.
+pub fn explain_full(
+    full: &FullModel,
+    sweep: &mut Sweep,
+    equilibrium: &Equilibrium,
+    mode: &Mode,
+    left: Option<Complex>,
+) -> Result<Vec<Source>> {
+    let parts = full.mesh.parts.iter().map(|name| (Kind::Part, name.clone()));
+    let connectors = full.model.connectors.iter().map(|connector| (Kind::Connector, connector.name.clone()));
+    let named: Vec<_> = parts.chain(connectors).collect();
+    let part = |e: usize| full.mesh.tet_part[e] as usize;
+    let link = |e: usize| full.mesh.parts.len() + e;
+    let families = full.families()?;
+    let sources: [Sources; 2] = [(&families.tets, &part), (families.links, &link)];
+    sweep.explain((&sources, &named), equilibrium, mode, left)
 }

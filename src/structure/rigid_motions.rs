@@ -4,27 +4,27 @@ use std::path::Path;
 
 use nalgebra::{Matrix6, SMatrix};
 
-use super::Brake;
-use super::brake::read_mesh;
+use super::FullModel;
 use super::distribution::distribute;
+use super::full::read_mesh;
 use crate::assembly::System;
 use crate::model;
 use crate::native::{Block, Comm};
 use crate::stability::Mode;
 use crate::{Error, Result};
 
-impl Brake {
+impl FullModel {
     /// Reads one part of a model, held by nothing and loaded by nothing. Collective.
     ///
     /// # Errors
-    /// [`Error::Input`] where there is no such part, or see [`Brake::read`].
-    pub fn read_part(comm: &Comm, path: &Path, part: &str) -> Result<Brake> {
+    /// [`Error::Input`] where there is no such part, or see [`FullModel::read`].
+    pub fn read_part(comm: &Comm, path: &Path, part: &str) -> Result<FullModel> {
         let model = comm.agree(model::read(path).and_then(|model| model.only(part)))?;
         let one = |mesh: crate::mesh::Mesh| {
             mesh.only(part).ok_or_else(|| Error::input(format!("{}: the mesh has no part {part:?}", path.display())))
         };
         let piece = distribute(comm, || read_mesh(&model).and_then(one))?;
-        comm.agree(Brake::new(model, piece, comm))
+        comm.agree(FullModel::new(model, piece, comm))
     }
 }
 
@@ -41,7 +41,7 @@ impl RigidMotions {
     ///
     /// # Errors
     /// PETSc's; [`Error::Input`] where the nodes lie on a line.
-    pub fn new(brake: &Brake, system: &System) -> Result<RigidMotions> {
+    pub fn new(brake: &FullModel, system: &System) -> Result<RigidMotions> {
         let comm = system.k.comm();
         let own: Vec<[f64; 3]> = system.dofs.owned_nodes().map(|n| brake.mesh.nodes[n as usize]).collect();
         let mut sums = [0, 1, 2, 3].map(|i| own.iter().map(|x| x.get(i).copied().unwrap_or(1.0)).sum::<f64>());

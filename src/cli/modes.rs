@@ -1,21 +1,24 @@
-//! `squeal modes`: modes of given matrices, along a parameter of them, and of a free part.
-
-mod free;
-mod given;
-mod mac;
+//! `squeal modes`: modes of external matrices, along a parameter of them, and of a free part.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::json;
 
+use crate::analysis::{ExternalOptions, FreeModesOptions, external_modes, free_modes};
 use crate::matrices::family::{self, Coefficient, MatrixFamily};
 use crate::matrices::{Role, Term};
-use crate::native::Comm;
+use crate::output;
+use crate::output::external::ExternalDocument;
 use crate::output::folder::Folder;
+use crate::output::free_modes::FreeModesDocument;
+use crate::output::overwrite::may_write_folder;
+use crate::structure::FullModel;
 use crate::{Error, Result};
 
 use super::Shell;
-use super::friction::{self, Values};
+use super::values::{self, Values};
+use super::watch::Watch;
 
 /// What `modes` takes.
 #[derive(Args)]
@@ -34,10 +37,10 @@ pub struct Modes {
     #[arg(long, value_name = "FILE", requires = "mass")]
     damping: Option<PathBuf>,
     /// Frequency band in Hz (with --part default: the model file's)
-    #[arg(long, value_name = "FROM:TO", value_parser = friction::band, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FROM:TO", value_parser = values::band, allow_hyphen_values = true)]
     band: Option<[f64; 2]>,
     /// Values of a family's parameter: one value, a list or a range FROM:TO:STEP
-    #[arg(long, value_name = "VALUES", value_parser = friction::values, allow_hyphen_values = true)]
+    #[arg(long, value_name = "VALUES", value_parser = values::values, allow_hyphen_values = true)]
     parameter: Option<Values>,
     /// Of a model the free, undamped modes of this part alone, held by nothing
     #[arg(long, value_name = "NAME", requires = "subject")]
@@ -46,7 +49,7 @@ pub struct Modes {
     /// for each mode under its frequency in Hz
     #[arg(long, value_name = "CSV", requires = "part")]
     measured: Option<PathBuf>,
-    /// Write the shapes of all modes of given matrices, shapes.csv
+    /// Write the shapes of all modes of external matrices, shapes.csv
     #[arg(long, conflicts_with = "part")]
     shapes: bool,
     /// Do not follow a family's modes over its parameter
@@ -64,11 +67,47 @@ pub struct Modes {
 }
 
 pub fn run(shell: &Shell, arguments: &Modes) -> Result<()> {
-    if let (Some(model), Some(part)) = (&arguments.subject, &arguments.part) {
-        return free::run(shell, arguments, model, part);
+    match (&arguments.subject, &arguments.part) {
+        (Some(model), Some(part)) => of_part(shell, arguments, model, part),
+        _ => of_matrices(shell, arguments),
     }
-    let family = shell.comm.agree(arguments.family())?;
-    given::run(shell, arguments, &family)
+}
+
+fn of_part(shell: &Shell, arguments: &Modes, model: &Path, part: &str) -> Result<()> {
+    let comm = shell.comm;
+    if arguments.parameter.is_some() {
+        return Err(Error::input("--parameter is for families of matrices: a part has none"));
+    }
+    let place = arguments.folder(&format!("{}-{part}", stem(model)));
+    let model = FullModel::read_part(comm, model, part)?;
+    let folder = Folder::open_empty(comm, &place, arguments.force)?;
+    let options = FreeModesOptions { band: arguments.band, measured: arguments.measured.clone() };
+    let mut watch = Watch::new(comm, arguments.verbose);
+    let found = free_modes(comm, &model, &options, folder.as_ref(), &mut watch)?;
+    watch.finish();
+    let text = output::free_modes::summary(&found, &place.display().to_string());
+    comm.agree(folder.map_or(Ok(()), |folder| output::free_modes::write(&found, folder, &text)))?;
+    shell.tell(&text, || json!(FreeModesDocument::from(&found)))
+}
+
+fn of_matrices(shell: &Shell, arguments: &Modes) -> Result<()> {
+    let comm = shell.comm;
+    let family = comm.agree(arguments.family())?;
+    let place = arguments.folder(&arguments.name());
+    comm.agree(if comm.is_root() { may_write_folder(&place, arguments.force) } else { Ok(()) })?;
+    let options = ExternalOptions {
+        band: arguments.band.ok_or_else(|| Error::input("which band? Give --band FROM:TO in Hz"))?,
+        values: arguments.parameter.as_ref().map_or_else(|| vec![0.0], |values| values.0.clone()),
+        branches: !arguments.no_branches,
+        shapes: arguments.shapes,
+    };
+    let mut watch = Watch::new(comm, arguments.verbose);
+    let results = external_modes(comm, &family, &options, &mut watch)?;
+    watch.finish();
+    let text = output::external::summary(&results, &place.display().to_string());
+    let folder = Folder::open_empty(comm, &place, arguments.force)?;
+    comm.agree(folder.map_or(Ok(()), |folder| output::external::write(&results, folder, &text)))?;
+    shell.tell(&text, || json!(ExternalDocument::from(&results)))
 }
 
 impl Modes {
@@ -106,14 +145,4 @@ impl Modes {
 fn stem(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     name.split('.').next().unwrap_or_default().to_owned()
-}
-
-/// The results folder on the root, empty; the refusal on all ranks alike. Collective.
-pub(super) fn folder(comm: &Comm, place: &Path, force: bool) -> Result<Option<Folder>> {
-    let open = || {
-        let folder = Folder::open(place, force)?;
-        folder.clear()?;
-        Ok(Some(folder))
-    };
-    comm.agree(if comm.is_root() { open() } else { Ok(None) })
 }

@@ -1,24 +1,26 @@
-//! From a model file to what is analysed.
+//! A brake with all nodes of its mesh.
 
 use std::fs::File;
 use std::path::Path;
 
 use crate::assembly::{self, Boundary, Connectivity, ConnectorElement, Elements, System, Tets};
-use crate::contact::Interface;
 use crate::contact::search::Team;
+use crate::contact::{Interface, Response};
 use crate::element::tet10::{MassProperties, mass_properties};
-use crate::equilibrium::free_motions;
 use crate::mesh::{self, Mesh, Numbering, Piece};
 use crate::model::{self, Model, located};
 use crate::native::Comm;
 use crate::reduction;
+use crate::results::{About, ContactFaces, Part};
 use crate::{Error, Result};
 
+use super::contact_surface::{ContactSurface, Fields};
 use super::distribution::distribute;
+use super::{digest, free_motions, pairs};
 
 /// A model with its mesh and contact interface. Each rank has its piece of the mesh ([`Piece`]), and all that is on surfaces: contact, loads
 /// and supports, in the numbers of its own piece.
-pub struct Brake {
+pub struct FullModel {
     /// What the user wrote.
     pub model: Model,
     /// This rank's piece of the mesh, m.
@@ -50,25 +52,25 @@ impl Families<'_> {
     }
 }
 
-impl Brake {
+impl FullModel {
     /// Reads and checks model and mesh and finds the contact points; each rank has its piece of the mesh. Collective: all ranks
     /// fail together.
     ///
     /// # Errors
     /// [`Error::Input`] with file and line, whatever is wrong.
-    pub fn read(comm: &Comm, path: &Path) -> Result<Brake> {
+    pub fn read(comm: &Comm, path: &Path) -> Result<FullModel> {
         let model = comm.agree(model::read(path))?;
         let piece = distribute(comm, || read_mesh(&model))?;
-        comm.agree(Brake::new(model, piece, comm))
+        comm.agree(FullModel::new(model, piece, comm))
     }
 
     /// Reads a brake, with so many reference pairs in place of the contact points of the sliding pairs where `n_contacts` asks for them.
     /// Collective.
     ///
     /// # Errors
-    /// See [`Brake::read`] and [`reduction::contacts::reduce`].
-    pub fn read_reduced(comm: &Comm, path: &Path, n_contacts: Option<usize>) -> Result<Brake> {
-        let mut brake = Brake::read(comm, path)?;
+    /// See [`FullModel::read`] and [`reduction::contacts::reduce`].
+    pub fn read_with_contacts(comm: &Comm, path: &Path, n_contacts: Option<usize>) -> Result<FullModel> {
+        let mut brake = FullModel::read(comm, path)?;
         n_contacts.map_or(Ok(()), |n| brake.reduce_contacts(n))?;
         Ok(brake)
     }
@@ -86,21 +88,21 @@ impl Brake {
     ///
     /// # Errors
     /// [`Error::Input`] where the two do not go together, or a contact has no points.
-    pub fn new(model: Model, piece: Piece, team: &dyn Team) -> Result<Brake> {
+    pub fn new(model: Model, piece: Piece, team: &dyn Team) -> Result<FullModel> {
         let Piece { mesh, nodes } = piece;
         model.check_against(&mesh)?;
         let interface = Interface::build(&model, &mesh, team)?;
         let loads = assembly::loads(&model, &mesh)?;
         let held = assembly::constraints(&model, &mesh)?;
         let links = assembly::connector_elements(&model, &mesh)?;
-        Ok(Brake { model, mesh, nodes, interface, loads, held, links })
+        Ok(FullModel { model, mesh, nodes, interface, loads, held, links })
     }
 
     /// Refuses a brake of which a part is held by nothing. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] that names the parts and their free motions.
-    pub fn require_held(&self, comm: &Comm) -> Result<()> {
+    pub fn require_constrained(&self, comm: &Comm) -> Result<()> {
         let free = free_motions(comm, &self.mesh, &self.nodes, &self.interface, &self.held, &self.links);
         if free.is_empty() {
             return Ok(());
@@ -166,7 +168,7 @@ impl Brake {
         self.assemble_families(comm, &families.list())
     }
 
-    /// As [`Brake::assemble`], of any families on the brake's nodes. Collective.
+    /// As [`FullModel::assemble`], of any families on the brake's nodes. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -177,33 +179,66 @@ impl Brake {
         Ok(system)
     }
 
-    /// The friction values to analyse: the command line's, else the model's sweep, else the swept pairs' own.
+    /// The values of the friction coefficient to analyse: those given, else the model's sweep, else the swept pairs' own.
     ///
     /// # Errors
-    /// [`Error::Input`] where nothing slides.
-    pub fn frictions(&self, asked: Option<&[f64]>) -> Result<Vec<f64>> {
-        frictions_of(asked, &self.model.frictions, &self.interface, &self.model.file)
+    /// [`Error::Input`] where no pair slides.
+    pub fn friction_values(&self, given: Option<&[f64]>) -> Result<Vec<f64>> {
+        super::friction_values(given, &self.model.frictions, &self.interface, &self.model.file)
     }
-}
 
-/// The friction values to analyse: those asked for, else the own ones of a file, else the swept pairs'.
-///
-/// # Errors
-/// [`Error::Input`] where nothing slides.
-pub fn frictions_of(asked: Option<&[f64]>, own: &[f64], interface: &Interface, file: &Path) -> Result<Vec<f64>> {
-    if let Some(list) = asked {
-        return Ok(list.to_vec());
+    /// The friction coefficient of the swept pairs in the model file; 0 where no pair slides.
+    pub fn own_friction(&self) -> f64 {
+        self.interface.pairs.iter().find(|pair| pair.swept).map_or(0.0, |pair| pair.friction)
     }
-    if !own.is_empty() {
-        return Ok(own.to_vec());
+
+    /// Title, files with their digests, sizes, parts and pairs. Collective.
+    pub(super) fn about(&self, comm: &Comm) -> Result<About> {
+        let material =
+            |name: &String| self.model.parts.iter().find(|part| part.name == *name).map(|p| p.material.name.clone());
+        let part = |(i, name): (usize, &String)| Part {
+            name: name.clone(),
+            material: material(name).unwrap_or_default(),
+            mass: self.part_properties(comm, i).mass,
+        };
+        let parts = self.mesh.parts.iter().enumerate().map(part).collect();
+        let n_tets = comm.sum(self.own_tets().count() as f64) as usize;
+        let [model_digest, mesh_digest] = [&self.model.file, &self.model.mesh_file]
+            .map(|file| comm.agree(if comm.is_root() { digest(file) } else { Ok(String::new()) }));
+        let file = &self.model.file;
+        let text = comm.agree(std::fs::read_to_string(file).map_err(Error::io(file)))?;
+        Ok(About {
+            title: self.model.title.clone(),
+            model: self.model.file.display().to_string(),
+            model_digest: model_digest?,
+            model_text: text,
+            mesh: self.model.mesh_file.display().to_string(),
+            mesh_digest: mesh_digest?,
+            n_nodes: self.nodes.n_global(),
+            n_tets,
+            parts,
+            pairs: pairs(&self.interface),
+            ..About::default()
+        })
     }
-    let mut pairs = interface.pairs.iter().filter(|pair| pair.swept).map(|pair| pair.friction);
-    pairs.next().map(|mu| vec![mu]).ok_or_else(|| {
-        Error::input(format!(
-            "{}: no contact pair slides, so there is no friction to sweep. Add the [[rotation]] of the disc, or give --friction 0",
-            file.display()
-        ))
-    })
+
+    pub(super) fn contact_faces(&self) -> ContactFaces {
+        ContactSurface::new(&self.mesh, &self.interface, &[]).faces(&self.mesh)
+    }
+
+    pub(super) fn contact_fields(&self, responses: &[Response]) -> (Vec<f64>, Vec<i32>) {
+        let Fields { pressure, status, .. } = ContactSurface::new(&self.mesh, &self.interface, responses).fields;
+        (pressure, status)
+    }
+
+    pub(super) fn dof_labels(&self, system: &System) -> Vec<String> {
+        let label = |node: u32| {
+            let ([x, y, z], number) = (self.mesh.nodes[node as usize], self.nodes.labels()[node as usize] + 1);
+            let free = (0..3).filter(move |&i| system.dofs.node_dofs(node)[i] >= 0);
+            free.map(move |i| format!("node,{number},{},{x:e},{y:e},{z:e}", ["x", "y", "z"][i]))
+        };
+        system.dofs.owned_nodes().flat_map(label).collect()
+    }
 }
 
 /// The mesh of a model.

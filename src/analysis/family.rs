@@ -7,7 +7,7 @@ use std::rc::{Rc, Weak};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::Sweep;
+use super::sweep::Sweep;
 use crate::Result;
 use crate::native::{Block, Matrix, Vector};
 use crate::stability::{Band, growth_threshold};
@@ -44,7 +44,7 @@ pub struct Vectors {
 }
 
 /// Pencils along the friction of the swept pairs.
-pub struct Friction<'f> {
+pub struct FrictionFamily<'f> {
     /// Finds equilibrium and modes.
     pub solutions: &'f mut dyn Solutions,
     /// Mass.
@@ -103,7 +103,7 @@ const RECOGNISES: f64 = 1e-4;
 const TOLERANCE: f64 = 1e-3;
 
 /// The band (Hz) to be solved for where modes of `band` are to be followed.
-pub fn wider(band: [f64; 2]) -> [f64; 2] {
+pub fn widened(band: [f64; 2]) -> [f64; 2] {
     let reach = BEYOND * band[1];
     [if band[0] > reach { band[0] - reach } else { 0.0 }, band[1] + reach]
 }
@@ -186,7 +186,7 @@ impl Snapshot {
     }
 }
 
-impl Friction<'_> {
+impl FrictionFamily<'_> {
     fn vectors<'s>(&mut self, snapshot: &'s Snapshot) -> Result<&'s Vectors> {
         if snapshot.vectors.get().is_none() {
             let vectors = self.solutions.vectors(snapshot.number)?;
@@ -196,7 +196,7 @@ impl Friction<'_> {
     }
 }
 
-impl Family for Friction<'_> {
+impl Family for FrictionFamily<'_> {
     type Modes = Snapshot;
 
     fn solve(&mut self, value: f64) -> Result<Snapshot> {

@@ -6,8 +6,6 @@ use crate::contact::{ContactPoint, Interface, Response, Status};
 use crate::mesh::Mesh;
 use crate::results::ContactFaces;
 
-use super::vtu::{Array, Values};
-
 /// The slave facets of all pairs, each pair with nodes of its own: exact values at the contact points (midside nodes), the mean of the
 /// neighbours at corners.
 #[derive(Default)]
@@ -52,15 +50,6 @@ impl Fields {
             traction: nodes.iter().map(|n| self.traction[of(n)]).collect(),
             status: nodes.iter().map(|n| self.status[of(n)]).collect(),
         }
-    }
-
-    /// The fields as arrays of a grid.
-    pub fn arrays(&self) -> [Array<'_>; 3] {
-        [
-            ("contact_pressure", Values::Scalars(&self.pressure)),
-            ("contact_traction", Values::Vectors(&self.traction)),
-            ("contact_status", Values::Integers(&self.status)),
-        ]
     }
 }
 

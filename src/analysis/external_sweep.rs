@@ -4,15 +4,16 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use super::friction::{Friction, Snapshot, Vectors, wider};
+use super::family::{FrictionFamily, Snapshot, Vectors, widened};
+use super::observer::{Event, Observer};
 use crate::matrices::{ExternalMatrices, Sums};
 use crate::native::{Factor, FactorKind};
 use crate::stability::{self, Band, Evidence, Pencil, Problem, Solver, condition};
 use crate::tracking::{Diagram, Options, track};
 use crate::{Error, Result};
 
-/// Given matrices under analysis at one value after the other.
-pub struct GivenSweep<'a> {
+/// ExternalMatrices matrices under analysis at one value after the other.
+pub struct ExternalSweep<'a> {
     given: &'a ExternalMatrices,
     solver: Solver,
     lu: Factor,
@@ -21,7 +22,7 @@ pub struct GivenSweep<'a> {
 }
 
 /// The modes at one value of the parameter. Their vectors are those of the scaled problem, [`ExternalMatrices::scale`].
-pub struct GivenModes {
+pub struct ExternalModes {
     /// The modes of the band.
     pub band: Band,
     /// Condition number of the matrix that was factorised, scaled as it is solved.
@@ -51,16 +52,16 @@ fn threshold(n: usize) -> fn(Complex64) -> f64 {
     if n <= SMALL { |lambda| 1e-9 * lambda.norm() } else { |lambda| 1e-6 * lambda.norm() }
 }
 
-impl<'a> GivenSweep<'a> {
+impl<'a> ExternalSweep<'a> {
     /// An analysis of a band, Hz.
-    pub fn new(given: &'a ExternalMatrices, band: [f64; 2]) -> GivenSweep<'a> {
+    pub fn new(given: &'a ExternalMatrices, band: [f64; 2]) -> ExternalSweep<'a> {
         let symmetry = given.symmetry;
         let evidence = match (symmetry.mass, symmetry.damping && symmetry.stiffness) {
             (true, true) => Evidence::Inertia,
             (estimated, _) => Evidence::Repetition { estimated },
         };
         let solver = Solver::given(given.n, given.labels(), symmetry.mass && symmetry.damping, evidence);
-        GivenSweep { given, solver, lu: Factor::new(FactorKind::Unsymmetric), band, evidence }
+        ExternalSweep { given, solver, lu: Factor::new(FactorKind::Unsymmetric), band, evidence }
     }
 
     /// What shows that no mode is missing.
@@ -68,25 +69,23 @@ impl<'a> GivenSweep<'a> {
         self.evidence
     }
 
-    /// All modes of the band at a value of the parameter. `hear` is told of (converged, wanted, solves). Collective.
+    /// All modes of the band at a value of the parameter. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] where the pencil is singular; see [`stability::solve`].
-    pub fn modes(&mut self, value: f64, hear: &mut dyn FnMut(usize, usize, usize)) -> Result<GivenModes> {
+    pub fn modes(&mut self, value: f64, observer: &mut dyn Observer) -> Result<ExternalModes> {
         let sums = self.given.at(value)?;
-        self.modes_of(&sums, self.band, hear)
+        self.modes_of(&sums, self.band, observer)
     }
 
-    fn modes_of(
-        &mut self,
-        sums: &Sums,
-        band: [f64; 2],
-        hear: &mut dyn FnMut(usize, usize, usize),
-    ) -> Result<GivenModes> {
+    fn modes_of(&mut self, sums: &Sums, band: [f64; 2], observer: &mut dyn Observer) -> Result<ExternalModes> {
         let pencil = self.pencil(sums);
         let (shift, condition) = self.choose_shift(&pencil)?;
-        let band = stability::solve(&pencil, &mut self.lu, &mut self.solver, band, hear)?;
-        Ok(GivenModes { band, condition, shift })
+        let band =
+            stability::solve(&pencil, &mut self.lu, &mut self.solver, band, &mut |n_converged, n_wanted, n_solves| {
+                observer.event(Event::Modes { n_converged, n_wanted, n_solves });
+            })?;
+        Ok(ExternalModes { band, condition, shift })
     }
 
     fn pencil<'s>(&self, sums: &'s Sums) -> Pencil<'s> {
@@ -122,18 +121,18 @@ impl<'a> GivenSweep<'a> {
     /// Modes at all values, strung on branches, with their Hopf points; `each` is given those of every value that is solved. Collective.
     ///
     /// # Errors
-    /// See [`GivenSweep::modes`] and [`track`]. What was found before an error is in the diagram.
+    /// See [`ExternalSweep::modes`] and [`track`]. What was found before an error is in the diagram.
     pub fn follow(
         &mut self,
         values: &[f64],
-        mut each: impl FnMut(f64, &GivenModes) -> Result<()>,
-        hear: &mut dyn FnMut(usize, usize, usize),
+        mut each: impl FnMut(f64, &ExternalModes) -> Result<()>,
+        observer: &mut dyn Observer,
     ) -> Result<(Diagram, Result<()>)> {
         let (given, band) = (self.given, self.band);
         let first = given.at(values[0])?;
         let mut solve = |value: f64| {
             let sums = given.at(value)?;
-            let modes = self.modes_of(&sums, wider(band), hear)?;
+            let modes = self.modes_of(&sums, widened(band), observer)?;
             each(value, &modes)?;
             let found = &modes.band.modes;
             let (pencil, labels) = (self.pencil(&sums), given.labels());
@@ -142,7 +141,7 @@ impl<'a> GivenSweep<'a> {
             let right = stability::right_vectors(&sums.m, found)?;
             Ok(Snapshot::of(&modes.band, band[1], Vectors { right, left, c: Some(sums.c), m: Some(sums.m) }))
         };
-        let mut family = Friction { solutions: &mut solve, m: &first.m, c: &first.c };
+        let mut family = FrictionFamily { solutions: &mut solve, m: &first.m, c: &first.c };
         let range = values.iter().fold([f64::MAX, f64::MIN], |[low, high], v| [low.min(*v), high.max(*v)]);
         let tolerance = BRACKET * (range[1] - range[0]);
         let options = Options { band: band.map(|f| TAU * f), tolerance, threshold: threshold(given.n) };

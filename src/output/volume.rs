@@ -4,26 +4,26 @@ use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt;
 use std::path::PathBuf;
 
+use super::files::write_file;
+use super::folder::Folder;
+use super::vtu::{Array, Cells, Grid};
 use crate::Result;
 use crate::native::Comm;
-use crate::output::files::write_file;
-use crate::output::folder::Folder;
-use crate::output::vtu::{Array, Cells, Grid};
-use crate::sweep::Brake;
+use crate::structure::FullModel;
 
 /// What this rank draws: the tetrahedra that it counts, and their nodes.
-pub struct Drawing {
+pub struct Volume {
     tets: Vec<usize>,
     nodes: Vec<u32>,
     points: Vec<[f64; 3]>,
     cells: Vec<[u32; 10]>,
 }
 
-impl Drawing {
-    /// The rank's share of a brake. Not collective.
-    pub fn new(brake: &Brake) -> Drawing {
-        let mesh = &brake.mesh;
-        let tets: Vec<usize> = brake.own_tets().collect();
+impl Volume {
+    /// The rank's share of a model. Not collective.
+    pub fn new(full: &FullModel) -> Volume {
+        let mesh = &full.mesh;
+        let tets: Vec<usize> = full.own_tets().collect();
         let mut nodes: Vec<u32> = tets.iter().flat_map(|&e| mesh.tets[e]).collect();
         nodes.sort_unstable();
         nodes.dedup();
@@ -31,7 +31,7 @@ impl Drawing {
         nodes.iter().enumerate().for_each(|(i, &n)| place[n as usize] = i as u32);
         let cells = tets.iter().map(|&e| mesh.tets[e].map(|n| place[n as usize])).collect();
         let points = nodes.iter().map(|&n| mesh.nodes[n as usize]).collect();
-        Drawing { tets, nodes, points, cells }
+        Volume { tets, nodes, points, cells }
     }
 
     /// The nodes of this rank's mesh that are drawn.

@@ -1,0 +1,164 @@
+//! The free modes of one part: undamped, unconstrained, as a tap test has them.
+
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use nalgebra::DMatrix;
+
+use crate::Result;
+use crate::assembly::System;
+use crate::native::{Comm, Factor, FactorKind};
+use crate::output::fields::write_free_mode;
+use crate::output::folder::Folder;
+use crate::results::{FreeMode, FreeModes, MeasuredComparison};
+use crate::stability::{self, Mode, Pencil, Solver};
+use crate::structure::{FullModel, RigidMotions};
+
+use super::measured::{self, Measured};
+use super::observer::{Event, Observer};
+
+/// Where the search stands, in units of the band's end: K of a free part is singular.
+const SHIFT_RATIO: f64 = 0.31;
+/// A mode with more of its kinetic energy in rigid motion than this is one.
+const RIGID_SHARE: f64 = 0.5;
+
+/// What [`free_modes`] is asked for.
+#[derive(Debug, Clone, Default)]
+pub struct FreeModesOptions {
+    /// Frequency band, Hz; the model's own where there is none.
+    pub band: Option<[f64; 2]>,
+    /// Measured modes (CSV) to compare with.
+    pub measured: Option<PathBuf>,
+}
+
+/// Finds the free, undamped modes of a part that [`FullModel::read_part`] has read, and compares them with measured ones. Shapes are written
+/// into the folder, which the root has. Collective.
+///
+/// # Errors
+/// [`crate::Error::Input`] for measured modes that cannot be read; PETSc's and MUMPS's; [`crate::Error::NotConverged`].
+pub fn free_modes(
+    comm: &Comm,
+    part: &FullModel,
+    options: &FreeModesOptions,
+    folder: Option<&Folder>,
+    observer: &mut dyn Observer,
+) -> Result<FreeModes> {
+    let start = Instant::now();
+    let measured = comm.agree(options.measured.as_deref().map(measured::read).transpose())?;
+    observer.event(Event::Stage("assembling"));
+    let system = part.assemble(comm, &part.families()?)?;
+    let band = options.band.unwrap_or(part.model.band);
+    let found = solve(&system, band, observer)?;
+    let motions = RigidMotions::new(part, &system)?;
+    let (mut elastic, mut weight, mut rigid_noise) = (Vec::new(), 0.0, 0.0_f64);
+    for mode in found.modes {
+        if motions.share(&system, &mode)? > RIGID_SHARE {
+            // A pair of the upper half plane stands for one motion, a real eigenvalue for half of one.
+            weight += if mode.lambda.im > 0.0 { 1.0 } else { 0.5 };
+            rigid_noise = rigid_noise.max(mode.lambda.norm() / TAU);
+        } else if mode.frequency() >= band[0] {
+            elastic.push(mode);
+        }
+    }
+    for (number, mode) in (1..).zip(&elastic) {
+        write_free_mode(folder, part, &system, number, mode)?;
+    }
+    let measured = measured.map(|measured| compare(comm, part, &system, &measured, &elastic)).transpose()?;
+    let data = |mode: &Mode| FreeMode { frequency: mode.frequency(), backward_error: mode.backward_error };
+    Ok(FreeModes {
+        title: part.model.title.clone(),
+        part: part.mesh.parts.concat(),
+        n_dofs: system.dofs.n_global(),
+        band,
+        n_rigid: weight as usize,
+        rigid_noise,
+        count: found.count,
+        modes: elastic.iter().map(data).collect(),
+        measured,
+        seconds: start.elapsed().as_secs_f64(),
+        n_ranks: comm.size(),
+    })
+}
+
+/// All modes up to the band's end, rigid motions among them. Collective.
+fn solve(system: &System, band: [f64; 2], observer: &mut dyn Observer) -> Result<stability::Band> {
+    let (m, k, undamped) = (&system.m, &system.k, system.c.zeros_like()?);
+    let pencil = Pencil { m, c: &undamped, k, k_symmetric: k, points: None, symmetric_mc: true };
+    let mut lu = Factor::new(FactorKind::Unsymmetric);
+    let mut solver = Solver::shifted(SHIFT_RATIO * TAU * band[1]);
+    stability::solve(&pencil, &mut lu, &mut solver, [0.0, band[1]], &mut |n_converged, n_wanted, n_solves| {
+        observer.event(Event::Modes { n_converged, n_wanted, n_solves });
+    })
+}
+
+/// MAC of each measured mode with each computed one. Collective.
+fn compare(
+    comm: &Comm,
+    part: &FullModel,
+    system: &System,
+    measured: &Measured,
+    computed: &[Mode],
+) -> Result<MeasuredComparison> {
+    let points = Points::new(part, comm, measured);
+    let (n_points, n_modes) = (measured.points.len(), computed.len());
+    let mut values = vec![0.0; n_points * n_modes];
+    for (j, mode) in computed.iter().enumerate() {
+        let shape = system.nodal(&[&mode.re])?.remove(0);
+        for (k, node) in points.nodes.iter().enumerate() {
+            if let Some(n) = node {
+                let along = |i: usize| shape[*n as usize][i] * measured.directions[k][i];
+                values[j * n_points + k] = (0..3).map(along).sum();
+            }
+        }
+    }
+    comm.sum_all(&mut values);
+    let values = DMatrix::from_vec(n_points, n_modes, values);
+    let groups = measured::groups(&computed.iter().map(Mode::frequency).collect::<Vec<_>>());
+    let of = |i: usize, columns: std::ops::Range<usize>| {
+        measured::mac(&measured.modes[i].1, &values.columns(columns.start, columns.len()).into_owned())
+    };
+    let n = measured.modes.len();
+    Ok(MeasuredComparison {
+        frequencies: measured.modes.iter().map(|(frequency, _)| *frequency).collect(),
+        single: DMatrix::from_fn(n, n_modes, |i, j| of(i, j..j + 1)),
+        grouped: DMatrix::from_fn(n, groups.len(), |i, g| of(i, groups[g].clone())),
+        groups,
+        distance: points.distance / part.model.mesh_unit,
+    })
+}
+
+/// The nodes nearest to the measured points.
+struct Points {
+    /// For each point the node where this rank has it, in its own numbers.
+    nodes: Vec<Option<u32>>,
+    /// The largest distance of a point from its node, m.
+    distance: f64,
+}
+
+impl Points {
+    /// Collective.
+    fn new(full: &FullModel, comm: &Comm, measured: &Measured) -> Points {
+        let unit = full.model.mesh_unit;
+        let own: Vec<u32> = full.nodes.owned().collect();
+        let square = |x: &[f64; 3], n: u32| {
+            let node = &full.mesh.nodes[n as usize];
+            (0..3).map(|i| (unit * x[i] - node[i]).powi(2)).sum::<f64>()
+        };
+        let nearest = |x: &[f64; 3]| own.iter().map(|&n| (square(x, n), n)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let own: Vec<Option<(f64, u32)>> = measured.points.iter().map(nearest).collect();
+        let mut least: Vec<f64> =
+            own.iter().map(|best| best.map_or(f64::NEG_INFINITY, |(square, _)| -square)).collect();
+        comm.max_all(&mut least);
+        // Of ranks with nodes equally near the first.
+        let claims = |best: &Option<(f64, u32)>, least: &f64| best.is_some_and(|(square, _)| -square == *least);
+        let rank = |claim: bool| if claim { -(comm.rank() as f64) } else { f64::NEG_INFINITY };
+        let mut first: Vec<f64> = own.iter().zip(&least).map(|(best, least)| rank(claims(best, least))).collect();
+        comm.max_all(&mut first);
+        let mine = |(best, (least, first)): (Option<(f64, u32)>, (&f64, &f64))| {
+            best.filter(|_| claims(&best, least) && -first == comm.rank() as f64).map(|(_, node)| node)
+        };
+        let distance = least.iter().fold(0.0, |largest: f64, least| largest.max((-least).sqrt()));
+        Points { nodes: own.into_iter().zip(least.iter().zip(&first)).map(mine).collect(), distance }
+    }
+}

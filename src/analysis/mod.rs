@@ -1,0 +1,45 @@
+//! The analyses: what the command line does, as one call each.
+//!
+//! | call | from | to |
+//! |---|---|---|
+//! | [`statics`] | a structure | equilibria over the friction coefficient |
+//! | [`stability`] | a structure | complex modes of a band over the friction coefficient, branches and Hopf points |
+//! | [`reduce`] | a full model | a super-element and its file |
+//! | [`study`] | a model file | contact layouts and super-elements compared with full contact |
+//! | [`export`] | a structure | M, C, K about an equilibrium as files |
+//! | [`external_modes`] | matrices M, C, K of any program | modes of a band, along a parameter of them |
+//! | [`free_modes`] | one part of a model | free modes, compared with measured ones |
+//!
+//! Each takes the communicator, what is analysed, options whose defaults are the files', and an [`Observer`], and gives plain
+//! [`crate::results::Results`]. With [`Output`] the same call writes a results folder and can go on where an earlier run has ended.
+
+mod checkpoint;
+mod explain;
+mod export;
+mod external;
+mod external_sweep;
+mod family;
+mod free_modes;
+mod measured;
+mod mode_data;
+mod observer;
+mod reduce;
+mod run;
+mod stability;
+mod statics;
+mod study;
+mod sweep;
+
+pub use explain::{explain, explain_full};
+pub use export::{ExportOptions, Exported, MatrixFormat, export};
+pub use external::{ExternalOptions, external_modes};
+pub use external_sweep::{ExternalModes, ExternalSweep};
+pub use family::{FrictionFamily, Snapshot, Solutions, Spectrum, Vectors, tracking_options, widened};
+pub use free_modes::{FreeModesOptions, free_modes};
+pub use observer::{Event, Observer};
+pub use reduce::{ReduceOptions, Reduction, reduce, with_reference_contacts};
+pub use run::Output;
+pub use stability::{StabilityOptions, stability};
+pub use statics::{StaticOptions, statics};
+pub use study::{StudyOptions, study};
+pub use sweep::{Costs, Sweep};

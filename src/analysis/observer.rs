@@ -1,0 +1,71 @@
+//! What a caller sees of an analysis while it runs.
+
+use crate::equilibrium::Iteration;
+use crate::reduction::craig_bampton;
+use crate::results::Value;
+
+/// What happens in an analysis.
+#[derive(Clone, Copy)]
+pub enum Event<'a> {
+    /// A stage begins, such as the assembly.
+    Stage(&'a str),
+    /// So many values are found in what an earlier run has left.
+    Resumed {
+        /// Where its results will be.
+        place: &'a str,
+        /// Values that need not be computed again.
+        n_values: usize,
+    },
+    /// So many values are to be analysed.
+    Planned(usize),
+    /// A value is analysed beside those asked for.
+    Inserted,
+    /// A value is taken from an earlier run.
+    Replayed(&'a Value),
+    /// A Newton iterate of the step with this label.
+    Newton {
+        /// What is solved.
+        label: &'a str,
+        /// Number of the iterate, from 0.
+        iteration: usize,
+        /// Its residual and contact status.
+        iterate: &'a Iteration,
+    },
+    /// The eigensolver works.
+    Modes {
+        /// Eigenvalues that have converged.
+        n_converged: usize,
+        /// Eigenvalues wanted.
+        n_wanted: usize,
+        /// Right-hand sides solved for.
+        n_solves: usize,
+    },
+    /// A part of a study begins, or was made before.
+    Part {
+        /// Its name.
+        name: &'a str,
+        /// Whether it need not be made again.
+        is_made: bool,
+    },
+    /// A step of a reduction.
+    Reduction(&'a craig_bampton::Event),
+    /// A value is finished.
+    Finished(&'a Value),
+}
+
+/// Follows an analysis. Only [`Observer::stop_signal`] has a say in it.
+pub trait Observer {
+    /// Is called with everything that happens, on every rank.
+    fn event(&mut self, event: Event);
+
+    /// The number of a signal that asks this rank to stop; the analysis ends after the value at hand, on all ranks, with
+    /// [`crate::Error::Interrupted`].
+    fn stop_signal(&mut self) -> Option<i32> {
+        None
+    }
+}
+
+/// Follows nothing.
+impl Observer for () {
+    fn event(&mut self, _: Event) {}
+}

@@ -1,0 +1,87 @@
+//! From a model to a super-element's file.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use crate::native::Comm;
+use crate::output::overwrite::{FileKind, may_write_file};
+use crate::reduction::craig_bampton::Costs;
+use crate::reduction::file;
+use crate::reduction::super_element::SuperElement;
+use crate::structure::FullModel;
+use crate::{Error, Result};
+
+use super::observer::{Event, Observer};
+use super::sweep::Sweep;
+
+/// What [`reduce`] writes.
+const SUPER_ELEMENT: FileKind = FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
+
+/// What [`reduce`] is asked for.
+#[derive(Debug, Clone)]
+pub struct ReduceOptions {
+    /// Friction coefficient of the equilibrium about which the other contacts are linearised; the swept pairs' own where there is none.
+    pub friction: Option<f64>,
+    /// Fixed-interface modes are kept below this, Hz; the model's own limit where there is none.
+    pub limit: Option<f64>,
+    /// The super-element's file.
+    pub file: PathBuf,
+    /// Whether an earlier super-element may be replaced.
+    pub force: bool,
+}
+
+/// A super-element, and what it cost.
+pub struct Reduction {
+    /// The super-element.
+    pub element: SuperElement,
+    /// Factor and solves of the reduction.
+    pub costs: Costs,
+    /// Reading, assembly and equilibrium, s.
+    pub equilibrium_seconds: f64,
+    /// All of it, s.
+    pub seconds: f64,
+}
+
+/// Reduces a model with reference contacts ([`FullModel::reduce_contacts`]) about its equilibrium, and writes the super-element's file.
+/// Collective.
+///
+/// # Errors
+/// [`Error::Input`] where the file may not be replaced or a part can move freely; [`Error::NotConverged`]; PETSc's, MUMPS's, the system's.
+pub fn reduce(
+    comm: &Comm,
+    model: &FullModel,
+    options: &ReduceOptions,
+    observer: &mut dyn Observer,
+) -> Result<Reduction> {
+    let start = Instant::now();
+    model.require_constrained(comm)?;
+    let friction = options.friction.unwrap_or_else(|| model.own_friction());
+    let limit = options.limit.unwrap_or_else(|| model.reduction_limit());
+    let may_write = || may_write_file(&options.file, &SUPER_ELEMENT, options.force);
+    comm.agree(if comm.is_root() { may_write() } else { Ok(()) })?;
+    observer.event(Event::Stage("assembling"));
+    let system = model.assemble(comm, &model.families()?)?;
+    let equilibrium = Sweep::new(&system, &model.interface, false)?.equilibrium(friction, observer)?;
+    let equilibrium_seconds = start.elapsed().as_secs_f64();
+    let mut follow = |event| observer.event(Event::Reduction(&event));
+    let (element, surface, costs) = model.reduce(comm, &system, &equilibrium, limit, &mut follow)?;
+    // Something may have come to that place since.
+    let write = || may_write().and_then(|()| file::write(&options.file, &element, &surface));
+    comm.agree(if comm.is_root() { write() } else { Ok(()) })?;
+    Ok(Reduction { element, costs, equilibrium_seconds, seconds: start.elapsed().as_secs_f64() })
+}
+
+/// Puts reference contacts into a model: as many as are given, else as its file says.
+///
+/// # Errors
+/// [`Error::Input`] where neither says how many; see [`FullModel::reduce_contacts`].
+pub fn with_reference_contacts(mut model: FullModel, n_contacts: Option<usize>) -> Result<FullModel> {
+    let n = n_contacts.or(model.model.reduction.as_ref().map(|reduction| reduction.contacts));
+    let n = n.ok_or_else(|| {
+        let file = model.model.file.display();
+        let advice = "Give --contacts, such as 104, or [reduction] contacts in the model";
+        Error::input(format!("{file}: how many contacts? {advice}"))
+    })?;
+    model.reduce_contacts(n)?;
+    Ok(model)
+}

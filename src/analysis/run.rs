@@ -1,0 +1,325 @@
+//! One value of the friction coefficient after the other: equilibrium, what an analysis makes of it, results, resume.
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use crate::assembly::System;
+use crate::equilibrium::Equilibrium;
+use crate::native::{Comm, libraries};
+use crate::output::fields::FieldWriter;
+use crate::output::folder::Folder;
+use crate::output::results_folder;
+use crate::results::{About, Failure, ModeData, Results, Value};
+use crate::stability::Count;
+use crate::structure::{Structure, SurfaceMotion};
+use crate::{Error, Result};
+
+use super::checkpoint::{Checkpoint, EarlierValue};
+use super::family::{Snapshot, Vectors};
+use super::observer::{Event, Observer};
+use super::sweep::{Costs, Sweep};
+
+/// A results folder that an analysis writes, and from whose unfinished state it goes on.
+#[derive(Debug, Clone, Default)]
+pub struct Output {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Whether results of another run may be replaced, and what another analysis has left unfinished.
+    pub force: bool,
+    /// How the analysis was started, for the results.
+    pub command: String,
+    /// What the numbers depend on beside structure and options, by name: an unfinished analysis with others does not go on.
+    pub identity: Vec<(&'static str, String)>,
+}
+
+/// An analysis over values of the friction coefficient.
+pub(super) struct Job {
+    /// Its name, that of the command.
+    pub name: &'static str,
+    /// Its options, as far as the numbers depend on them.
+    pub options: String,
+    /// Values of the friction coefficient.
+    pub values: Vec<f64>,
+    /// The band analysed, Hz.
+    pub band: [f64; 2],
+    /// The results as text for people, given with the folder's name.
+    pub summary: fn(&Results, &str) -> String,
+}
+
+/// A job under way.
+pub(super) struct Run<'r> {
+    pub structure: &'r Structure,
+    pub system: &'r System,
+    pub results: Results,
+    pub observer: &'r mut dyn Observer,
+    fields: FieldWriter<'r>,
+    sweep: Sweep<'r>,
+    motion: SurfaceMotion<'r>,
+    place: Option<PathBuf>,
+    checkpoint: Option<Checkpoint>,
+    /// What an earlier run has finished and this one has not come to yet.
+    earlier: VecDeque<EarlierValue>,
+}
+
+/// One value whose equilibrium is found.
+pub(super) struct AtValue<'v, 'r> {
+    pub system: &'v System,
+    pub structure: &'v Structure,
+    pub sweep: &'v mut Sweep<'r>,
+    pub motion: &'v mut SurfaceMotion<'r>,
+    pub fields: FieldWriter<'r>,
+    pub observer: &'v mut dyn Observer,
+    pub equilibrium: &'v Equilibrium,
+    pub band: [f64; 2],
+    /// Whether the value is one of those asked for, whose modes are drawn and explained.
+    pub asked: bool,
+}
+
+/// What an analysis makes of an equilibrium.
+#[derive(Default)]
+pub(super) struct ValueResult {
+    pub modes: Vec<ModeData>,
+    pub count: Option<Count>,
+    /// Where modes are followed.
+    pub snapshot: Option<Snapshot>,
+}
+
+/// Runs a job: opens the folder, assembles, does the work, writes. Where the work does not converge, what was found is kept. Collective.
+///
+/// # Errors
+/// Those of the work but [`Error::NotConverged`]; the system's.
+pub(super) fn run(
+    comm: &Comm,
+    structure: &Structure,
+    job: &Job,
+    output: Option<&Output>,
+    observer: &mut dyn Observer,
+    work: impl FnOnce(&mut Run) -> Result<()>,
+) -> Result<Results> {
+    let start = Instant::now();
+    let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
+    let folder = comm.agree(output.filter(|_| comm.is_root()).map_or(Ok(None), open))?;
+    let about = about(comm, structure, job, output)?;
+    let identity = identity(job, output, &about);
+    let opened = output.map(|output| Checkpoint::open(comm, folder.as_ref(), &output.folder, &identity, output.force));
+    let (checkpoint, earlier) =
+        opened.transpose()?.map_or((None, VecDeque::new()), |(file, earlier)| (Some(file), earlier));
+    let n_earlier = earlier.len();
+    observer.event(Event::Planned(job.values.len()));
+    if let Some(output) = output.filter(|_| n_earlier > 0) {
+        observer.event(Event::Resumed { place: &output.folder.display().to_string(), n_values: n_earlier });
+    }
+    observer.event(Event::Stage("assembling"));
+    let system = structure.assemble(comm)?;
+    let motion = structure.surface_motion(&system)?;
+    let results = Results {
+        about: About { n_equations: system.dofs.n_global(), ..about },
+        surface: motion.surface().clone(),
+        contact: structure.contact_faces(),
+        ..Results::default()
+    };
+    let sweep = Sweep::new(&system, structure.interface(), structure.friction_damping())?;
+    let fields = FieldWriter { structure, system: &system, folder: folder.as_ref() };
+    let place = output.map(|output| output.folder.clone());
+    let mut run =
+        Run { structure, system: &system, results, observer, fields, sweep, motion, place, checkpoint, earlier };
+    let outcome = work(&mut run);
+    let (costs, mut results) = (run.sweep.costs(), run.results);
+    results.costs = costs_text(&costs, start.elapsed().as_secs_f64(), comm.size());
+    if n_earlier > 0 {
+        results.costs += &format!("without {n_earlier} values that an earlier run has found\n");
+    }
+    match outcome {
+        Err(error @ Error::NotConverged(_)) => results.failure.get_or_insert_default().reason = error.to_string(),
+        outcome => outcome?,
+    }
+    let place = output.map_or_else(String::new, |output| output.folder.display().to_string());
+    comm.agree(folder.map_or(Ok(()), |folder| {
+        results_folder::write(&folder, &results, &(job.summary)(&results, &place))?;
+        folder.finish()
+    }))?;
+    Ok(results)
+}
+
+/// What is analysed, and by what. Collective.
+fn about(comm: &Comm, structure: &Structure, job: &Job, output: Option<&Output>) -> Result<About> {
+    Ok(About {
+        program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
+        libraries: libraries(),
+        command: output.map_or_else(String::new, |output| output.command.clone()),
+        n_ranks: comm.size(),
+        band: job.band,
+        frictions: job.values.clone(),
+        ..structure.about(comm)?
+    })
+}
+
+/// All that the numbers depend on, by name.
+fn identity(job: &Job, output: Option<&Output>, about: &About) -> Vec<(&'static str, String)> {
+    let mut identity = vec![
+        ("program", about.program.clone()),
+        ("analysis", format!("{}{}", job.name, job.options)),
+        ("friction values", numbers(&job.values)),
+        ("band", numbers(&job.band)),
+        ("SHA-256 of the model", about.model_digest.clone()),
+        ("SHA-256 of the mesh", about.mesh_digest.clone()),
+        ("number of ranks", about.n_ranks.to_string()),
+    ];
+    identity.extend(output.into_iter().flat_map(|output| output.identity.iter().cloned()));
+    identity
+}
+
+impl Run<'_> {
+    /// The values asked for.
+    pub fn values(&self) -> Vec<f64> {
+        self.results.about.frictions.clone()
+    }
+
+    /// Finds the equilibrium at a value; `each` makes of it what the analysis is for. Fields are written at values asked for. Gives the
+    /// snapshot that was made. Collective.
+    pub fn visit(
+        &mut self,
+        friction: f64,
+        each: impl FnOnce(AtValue) -> Result<ValueResult>,
+    ) -> Result<Option<Snapshot>> {
+        if let Some(earlier) = self.earlier.pop_front() {
+            return self.replay(friction, earlier);
+        }
+        let start = Instant::now();
+        let asked = self.results.about.frictions.contains(&friction);
+        if !asked {
+            self.observer.event(Event::Inserted);
+        }
+        let equilibrium = match self.sweep.equilibrium(friction, self.observer) {
+            Ok(equilibrium) => equilibrium,
+            Err(error) => return Err(self.give_up(friction, error)?),
+        };
+        let checks = self.structure.check_equilibrium(self.system, &equilibrium)?;
+        if asked {
+            self.fields.equilibrium(&equilibrium)?;
+        }
+        let ValueResult { modes, count, mut snapshot } = each(AtValue {
+            system: self.system,
+            structure: self.structure,
+            sweep: &mut self.sweep,
+            motion: &mut self.motion,
+            fields: self.fields,
+            observer: self.observer,
+            equilibrium: &equilibrium,
+            band: self.results.about.band,
+            asked,
+        })?;
+        let (pressure, status) = self.structure.contact_fields(&equilibrium.responses);
+        let (pairs, checks) = (checks.pairs, checks.text);
+        let (steps, seconds) = (equilibrium.steps, start.elapsed().as_secs_f64());
+        let value = Value { friction, asked, pairs, checks, steps, pressure, status, modes, count, seconds };
+        if let Some(checkpoint) = &mut self.checkpoint {
+            checkpoint.commit(&value, &self.sweep, snapshot.as_mut())?;
+            self.fields.folder.into_iter().for_each(Folder::keep);
+        }
+        self.observer.event(Event::Finished(&value));
+        self.results.values.push(value);
+        self.stop_if_asked(friction)?;
+        Ok(snapshot)
+    }
+
+    /// Takes a value as an earlier run has left it; after the last of them the path goes on from there.
+    fn replay(&mut self, friction: f64, mut earlier: EarlierValue) -> Result<Option<Snapshot>> {
+        let checkpoint = self.checkpoint.as_mut().expect("earlier values come from a checkpoint");
+        let snapshot = checkpoint.replay(&mut earlier);
+        let value = earlier.value;
+        if value.friction.to_bits() != friction.to_bits() {
+            let place = self.place.clone().unwrap_or_default();
+            return Err(Error::input(format!(
+                "{} is unfinished, and has friction coefficient {} where {friction} is due. Use --force to begin again",
+                place.display(),
+                value.friction
+            )));
+        }
+        self.observer.event(Event::Replayed(&value));
+        if self.earlier.is_empty() {
+            self.sweep.restore(checkpoint.path(&self.system.load)?, value.count.as_ref());
+        }
+        self.results.values.push(value);
+        Ok(snapshot)
+    }
+
+    /// Ends the work where a signal has asked any rank for it. Collective.
+    fn stop_if_asked(&mut self, friction: f64) -> Result<()> {
+        let signal = self.system.k.comm().max(f64::from(self.observer.stop_signal().unwrap_or(0))) as i32;
+        if signal == 0 {
+            return Ok(());
+        }
+        let n = self.results.values.len();
+        let advice = self
+            .place
+            .as_deref()
+            .map_or_else(String::new, |place| format!(". The same command goes on from there to {}", place.display()));
+        let text = format!("stopped after friction coefficient {friction:.4}; {n} values are done{advice}");
+        Err(Error::Interrupted { signal, text })
+    }
+
+    /// The vectors of a snapshot of an earlier run. Collective.
+    pub fn vectors(&mut self, number: usize) -> Result<Vectors> {
+        let checkpoint = self.checkpoint.as_ref().expect("only snapshots of a checkpoint lack their vectors");
+        let ([right, left], u) = checkpoint.vectors(number)?;
+        let c = self.sweep.damping_at(self.results.values[number].friction, &u)?;
+        Ok(Vectors { right, left, c, m: None })
+    }
+
+    /// The files from which the analysis can go on.
+    pub fn checkpoint(&self) -> Option<&Checkpoint> {
+        self.checkpoint.as_ref()
+    }
+
+    /// Keeps the steps towards an equilibrium that was not reached, writes the state in which they ended, and says where that is.
+    fn give_up(&mut self, friction: f64, error: Error) -> Result<Error> {
+        let steps = self.sweep.path().steps().to_vec();
+        self.results.failure = Some(Failure { friction: Some(friction), steps, ..Failure::default() });
+        let (Error::NotConverged(reason), Some(u), Some(place)) = (&error, self.sweep.path().last(), &self.place)
+        else {
+            return Ok(error);
+        };
+        let file = place.join(self.fields.last_state(u)?);
+        Ok(Error::NotConverged(format!("{reason}. The last state is in {}", file.display())))
+    }
+}
+
+/// Numbers as people give them.
+fn numbers(list: &[f64]) -> String {
+    list.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+}
+
+/// What the run cost: seconds of its stages, and each factor.
+fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
+    let mut text = format!(
+        "{seconds:.1} s on {ranks} rank{}: equilibria {:.1} s, modes {:.1} s, left vectors {:.1} s; {} iterations with a previous factor\n",
+        if ranks == 1 { "" } else { "s" },
+        costs.equilibria_seconds,
+        costs.modes_seconds,
+        costs.left_seconds,
+        costs.n_iterations
+    );
+    let factors = [("LU", costs.lu), ("LDL^T", costs.symmetric)];
+    for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
+        text += &format!(
+            "{name}{}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \
+             {:.0} MB of {:.0} MB estimated{}, ordering {}\n",
+            if cost.single { " in single precision" } else { "" },
+            cost.n_analyses,
+            cost.analysis_seconds,
+            cost.n_factorisations,
+            cost.factorisation_seconds,
+            cost.n_solves,
+            cost.n_right_hand_sides,
+            cost.solve_seconds,
+            1e-6 * cost.entries,
+            cost.used_mb,
+            cost.estimated_mb,
+            if cost.out_of_core { ", out of core" } else { "" },
+            cost.ordering_name()
+        );
+    }
+    text
+}

@@ -1,0 +1,166 @@
+//! Complex modes over the friction coefficient, followed from one value to the next.
+
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+use crate::Result;
+use crate::equilibrium::Equilibrium;
+use crate::native::{Comm, Vector};
+use crate::output::fields::FieldWriter;
+use crate::output::summary;
+use crate::results::{Results, Source};
+use crate::stability::{Complex, Mode};
+use crate::structure::Structure;
+use crate::tracking::track;
+
+use super::explain::explain;
+use super::family::{FrictionFamily, Snapshot, Solutions, Vectors, tracking_options, widened};
+use super::mode_data::{UnstableMode, mode_data};
+use super::observer::Observer;
+use super::run::{self, AtValue, Job, Output, Run, ValueResult};
+use super::sweep::Sweep;
+
+/// What [`stability`] is asked for.
+#[derive(Debug, Clone)]
+pub struct StabilityOptions {
+    /// Values of the friction coefficient; the structure's own where there are none.
+    pub friction_values: Option<Vec<f64>>,
+    /// Frequency band, Hz; the structure's own where there is none.
+    pub band: Option<[f64; 2]>,
+    /// Whether modes are followed over the friction coefficient, which solves at more values to find where they become unstable.
+    pub branches: bool,
+    /// Whether a full model is reduced to a super-element at each value, whose modes are found.
+    pub reduce_each: bool,
+    /// Where results are written; nowhere if none.
+    pub output: Option<Output>,
+}
+
+impl Default for StabilityOptions {
+    /// The structure's own values and band, with branches, nothing written.
+    fn default() -> Self {
+        StabilityOptions { friction_values: None, band: None, branches: true, reduce_each: false, output: None }
+    }
+}
+
+/// Finds the complex modes of a band about the equilibrium at each value of the friction coefficient, `(lambda^2 M + lambda C + K) x = 0`,
+/// follows them over the values, and explains those that are unstable. Where a value does not converge, the analysis ends there, and
+/// [`Results::failure`] says why. The root's results are complete. Collective.
+///
+/// # Errors
+/// [`crate::Error::Input`] for values, a band or an output folder that cannot be used; [`crate::Error::Interrupted`]; PETSc's, MUMPS's and the system's.
+pub fn stability(
+    comm: &Comm,
+    structure: &Structure,
+    options: &StabilityOptions,
+    observer: &mut dyn Observer,
+) -> Result<Results> {
+    let results = structure.on_its_ranks(comm, |comm| {
+        let job = options.job(structure)?;
+        let follows = options.follows(job.values.len());
+        run::run(comm, structure, &job, options.output.as_ref(), observer, |run| match (options.reduce_each, follows) {
+            (false, true) => follow(run),
+            (false, false) => each(run, modes_at),
+            (true, _) => each(run, reduced_modes_at),
+        })
+    })?;
+    Ok(results.unwrap_or_default())
+}
+
+impl StabilityOptions {
+    /// Super-elements that are made at each value have coordinates of their own, so that their modes cannot be compared.
+    fn follows(&self, n_values: usize) -> bool {
+        self.branches && !self.reduce_each && n_values > 1
+    }
+
+    fn job(&self, structure: &Structure) -> Result<Job> {
+        let mut values = structure.friction_values(self.friction_values.as_deref())?;
+        if self.follows(values.len()) && !values.is_sorted_by(|a, b| a > b) {
+            values.sort_by(f64::total_cmp);
+        }
+        let given = [(self.reduce_each, " --reduce-each"), (!self.branches, " --no-branches")];
+        let options = given.iter().filter(|(given, _)| *given).map(|(_, name)| *name).collect();
+        Ok(Job { name: "stability", options, values, band: structure.band(self.band)?, summary: summary::stability })
+    }
+}
+
+/// Only the values asked for, one by one.
+fn each(run: &mut Run, find: fn(AtValue) -> Result<ValueResult>) -> Result<()> {
+    run.values().into_iter().try_for_each(|friction| run.visit(friction, find).map(|_| ()))
+}
+
+/// Modes at all values, followed as branches, and at those in between that this needs.
+fn follow(run: &mut Run) -> Result<()> {
+    let (system, values) = (run.system, run.values());
+    let options = tracking_options(run.results.about.band);
+    let mut family = FrictionFamily { solutions: run, m: &system.m, c: &system.c };
+    let (diagram, outcome) = track(&mut family, &values, &options);
+    run.results.diagram = Some(diagram);
+    outcome
+}
+
+/// The modes at each value that tracking asks for.
+impl Solutions for Run<'_> {
+    fn solve(&mut self, friction: f64) -> Result<Snapshot> {
+        let snapshot = self.visit(friction, |at| {
+            let AtValue { sweep, motion, fields, equilibrium, band, .. } = at;
+            let modes = sweep.modes(equilibrium, widened(band), at.observer)?;
+            let snapshot = Snapshot::new(sweep, &modes, band[1])?;
+            let found = mode_data(motion, &modes, band, at.asked, |unstable| {
+                write_and_explain(sweep, &fields, equilibrium, &unstable, snapshot.left(unstable.index)?)
+            })?;
+            Ok(ValueResult { snapshot: Some(snapshot), ..found })
+        })?;
+        Ok(snapshot.expect("a visit without error has made it"))
+    }
+
+    fn vectors(&mut self, number: usize) -> Result<Vectors> {
+        Run::vectors(self, number)
+    }
+
+    fn known(&mut self, numbers: [usize; 2]) -> Result<Option<DMatrix<Complex64>>> {
+        self.checkpoint().map_or(Ok(None), |checkpoint| checkpoint.products(numbers))
+    }
+
+    fn keep(&mut self, numbers: [usize; 2], products: &DMatrix<Complex64>) -> Result<()> {
+        self.checkpoint().map_or(Ok(()), |checkpoint| checkpoint.keep_products(numbers, products))
+    }
+}
+
+/// The modes at one value; left vectors of unstable ones alone.
+fn modes_at(at: AtValue) -> Result<ValueResult> {
+    let AtValue { sweep, motion, fields, equilibrium, band, .. } = at;
+    let modes = sweep.modes(equilibrium, band, at.observer)?;
+    let any_unstable = modes.modes.iter().any(Mode::is_unstable);
+    let snapshot = any_unstable.then(|| Snapshot::of_unstable(sweep, &modes, band[1])).transpose()?;
+    mode_data(motion, &modes, band, at.asked, |unstable| match &snapshot {
+        Some(snapshot) => write_and_explain(sweep, &fields, equilibrium, &unstable, snapshot.left(unstable.index)?),
+        None => Ok(Vec::new()),
+    })
+}
+
+/// The modes of the super-element that the model is about the equilibrium.
+fn reduced_modes_at(at: AtValue) -> Result<ValueResult> {
+    let (comm, friction) = (at.system.k.comm(), at.equilibrium.friction);
+    let structure = at.structure.reduced_about(at.system, at.equilibrium)?;
+    let (band, system) = (structure.band(Some(at.band))?, structure.assemble(comm)?);
+    let mut sweep = Sweep::new(&system, structure.interface(), structure.friction_damping())?;
+    let equilibrium = sweep.equilibrium(friction, at.observer)?;
+    let modes = sweep.modes(&equilibrium, band, at.observer)?;
+    let fields = FieldWriter { structure: &structure, system: &system, folder: at.fields.folder };
+    mode_data(&mut structure.surface_motion(&system)?, &modes, at.band, at.asked, |unstable| {
+        fields.mode(friction, unstable.number, unstable.mode, unstable.shape)?;
+        Ok(Vec::new())
+    })
+}
+
+/// Writes the shape of an unstable mode, and gives what explains it.
+fn write_and_explain(
+    sweep: &mut Sweep,
+    fields: &FieldWriter,
+    equilibrium: &Equilibrium,
+    unstable: &UnstableMode,
+    [re, im]: [Vector; 2],
+) -> Result<Vec<Source>> {
+    fields.mode(equilibrium.friction, unstable.number, unstable.mode, unstable.shape)?;
+    explain(fields.structure, sweep, equilibrium, unstable.mode, Some(Complex { re: &re, im: &im }))
+}

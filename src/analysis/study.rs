@@ -1,0 +1,278 @@
+//! A brake with full contact, with fewer contacts, and as super-elements, compared with each other.
+//!
+//! Every model is a part of the study with a results folder of its own. `parts.toml` keeps for each finished part what it depends on, so that a
+//! study that is run again makes only what is missing or out of date.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::comparison::{Sizes, Study, n_contacts};
+use crate::native::Comm;
+use crate::output::files::write_whole;
+use crate::output::results_folder::RESULTS;
+use crate::reduction;
+use crate::results::{Results, file};
+use crate::structure::{FullModel, Structure, StructureOptions};
+use crate::{Error, Result};
+
+use super::observer::{Event, Observer};
+use super::reduce::{ReduceOptions, reduce, with_reference_contacts};
+use super::run::Output;
+use super::stability::{StabilityOptions, stability};
+
+/// What [`study`] is asked for.
+#[derive(Debug, Clone)]
+pub struct StudyOptions {
+    /// The model file.
+    pub model: PathBuf,
+    /// Values of the friction coefficient; the model's own where there are none.
+    pub friction_values: Option<Vec<f64>>,
+    /// Contact layouts: so many reference pairs over the sliding contacts.
+    pub layouts: Vec<usize>,
+    /// Reference pairs of the super-elements.
+    pub super_element: usize,
+    /// Friction coefficient at which the super-element for all values is made; the swept pairs' own where there is none.
+    pub reduced_at: Option<f64>,
+    /// Folder of the study.
+    pub folder: PathBuf,
+    /// What the numbers depend on beside model and options, such as options for PETSc.
+    pub identity: String,
+}
+
+/// Makes the parts of a study that are missing or out of date, and compares all of them with full contact. Only the root gets the
+/// comparison. Collective.
+///
+/// # Errors
+/// [`Error::Input`] for a model, layouts or a folder that cannot be used; those of [`stability`] and [`reduce`].
+pub fn study(comm: &Comm, options: &StudyOptions, observer: &mut dyn Observer) -> Result<Option<Study>> {
+    let plan = Plan::new(comm, options)?;
+    let mut record = comm.agree(if comm.is_root() { Record::open(&options.folder) } else { Ok(Record::default()) })?;
+    for part in plan.parts() {
+        plan.make(comm, &part, &mut record, observer)?;
+    }
+    comm.agree(if comm.is_root() { plan.compare(&record).map(Some) } else { Ok(None) })
+}
+
+/// What a study is made of.
+struct Plan<'a> {
+    options: &'a StudyOptions,
+    friction_values: Vec<f64>,
+    /// Friction coefficient of the super-element for all values.
+    reduced_at: f64,
+    n_loaded: usize,
+    /// What all parts depend on.
+    identity: String,
+}
+
+/// A model of the study.
+struct Part {
+    /// Its name for people.
+    name: String,
+    /// Its file or folder in the study's folder.
+    product: String,
+    /// What it alone depends on.
+    options: String,
+    work: Work,
+}
+
+/// How a part is made.
+enum Work {
+    /// Writes the super-element for all values.
+    Reduce,
+    /// Analyses a model or super-element.
+    Stability { model: PathBuf, contacts: Option<usize>, reduce_each: bool, branches: bool },
+}
+
+/// Folder of the reference.
+const FULL: &str = "full";
+
+impl<'a> Plan<'a> {
+    /// Reads and checks everything before anything is computed. Collective.
+    fn new(comm: &Comm, options: &'a StudyOptions) -> Result<Plan<'a>> {
+        let mut full = FullModel::read(comm, &options.model)?;
+        full.require_constrained(comm)?;
+        let mut friction_values = full.friction_values(options.friction_values.as_deref())?;
+        friction_values.sort_by(f64::total_cmp);
+        for &n in options.layouts.iter().chain([&options.super_element]) {
+            let reduced = reduction::contacts::reduce(&full.model, &full.mesh, &full.interface, n)?;
+            let all = std::mem::replace(&mut full.interface, reduced);
+            full.require_constrained(comm)?;
+            full.interface = all;
+        }
+        let mut loaded: Vec<&str> = full.model.loads.iter().map(|load| load.on.as_str()).collect();
+        loaded.sort_unstable();
+        loaded.dedup();
+        let (n_loaded, own) = (loaded.len(), full.own_friction());
+        let about = Structure::Full(Box::new(full)).about(comm)?;
+        let (program, more) = (env!("CARGO_PKG_VERSION"), &options.identity);
+        let identity = format!("squeal {program} {more}, model {}, mesh {}", about.model_digest, about.mesh_digest);
+        Ok(Plan { options, friction_values, reduced_at: options.reduced_at.unwrap_or(own), n_loaded, identity })
+    }
+
+    /// All parts, each after those that it needs.
+    fn parts(&self) -> Vec<Part> {
+        let (model, n) = (&self.options.model, self.options.super_element);
+        let stability = |model: &Path, contacts, reduce_each, branches| Work::Stability {
+            model: model.to_owned(),
+            contacts,
+            reduce_each,
+            branches,
+        };
+        let layouts = self.options.layouts.iter().map(|&n| {
+            self.part(&format!("{n} contacts"), &format!("contacts-{n}"), stability(model, Some(n), false, false))
+        });
+        let one = format!("super-element of {n}, made at {}", self.reduced_at);
+        let one = self.part(&one, &format!("super-element-{n}"), stability(&self.element(), None, false, true));
+        let each = format!("super-element of {n}, made at each");
+        let each = self.part(&each, &format!("super-element-{n}-each"), stability(model, Some(n), true, false));
+        let full = self.part("full contact", FULL, stability(model, None, false, true));
+        [full].into_iter().chain(layouts).chain([self.reduction(), one, each]).collect()
+    }
+
+    fn part(&self, name: &str, product: &str, work: Work) -> Part {
+        let values: Vec<String> = self.friction_values.iter().map(f64::to_string).collect();
+        let mut options = format!("friction values {}", values.join(" "));
+        if matches!(&work, Work::Stability { model, .. } if *model != self.options.model) {
+            options += &format!(", super-element of friction coefficient {}", self.reduced_at);
+        }
+        Part { name: name.into(), product: product.into(), options, work }
+    }
+
+    fn reduction(&self) -> Part {
+        Part {
+            name: format!("making the super-element of {}", self.options.super_element),
+            product: self.element().file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            options: format!("friction coefficient {}", self.reduced_at),
+            work: Work::Reduce,
+        }
+    }
+
+    /// The file of the super-element for all values.
+    fn element(&self) -> PathBuf {
+        self.options.folder.join(format!("brake-{}.se.h5", self.options.super_element))
+    }
+
+    /// Makes a part, unless it is there. Collective.
+    fn make(&self, comm: &Comm, part: &Part, record: &mut Record, observer: &mut dyn Observer) -> Result<()> {
+        let identity = format!("{}, {}", self.identity, part.options);
+        let is_made = comm.is_root() && record.has(part, &identity, &self.options.folder);
+        let is_made = comm.max(f64::from(u8::from(is_made))) > 0.0;
+        observer.event(Event::Part { name: &part.name, is_made });
+        if is_made {
+            return Ok(());
+        }
+        let start = Instant::now();
+        match &part.work {
+            Work::Reduce => self.reduce(comm, observer)?,
+            Work::Stability { .. } => self.analyse(comm, part, observer)?,
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        record.parts.insert(part.product.clone(), Done { identity, seconds });
+        comm.agree(if comm.is_root() { record.write(&self.options.folder) } else { Ok(()) })
+    }
+
+    fn reduce(&self, comm: &Comm, observer: &mut dyn Observer) -> Result<()> {
+        let model = FullModel::read(comm, &self.options.model)?;
+        let model = with_reference_contacts(model, Some(self.options.super_element))?;
+        let (friction, file) = (Some(self.reduced_at), self.element());
+        reduce(comm, &model, &ReduceOptions { friction, limit: None, file, force: true }, observer).map(|_| ())
+    }
+
+    fn analyse(&self, comm: &Comm, part: &Part, observer: &mut dyn Observer) -> Result<()> {
+        let Work::Stability { model, contacts, reduce_each, branches } = &part.work else { return Ok(()) };
+        let structure =
+            Structure::read(comm, model, &StructureOptions { contacts: *contacts, ..StructureOptions::default() })?;
+        let output = Output {
+            folder: self.options.folder.join(&part.product),
+            force: true,
+            command: format!("study: {}", part.name),
+            identity: vec![("study", self.identity.clone()), ("contacts", format!("{contacts:?}"))],
+        };
+        let options = StabilityOptions {
+            friction_values: Some(self.friction_values.clone()),
+            band: None,
+            branches: *branches,
+            reduce_each: *reduce_each,
+            output: Some(output),
+        };
+        let results = stability(comm, &structure, &options, observer)?;
+        let failed = |failure: crate::results::Failure| Err(Error::NotConverged(failure.reason));
+        comm.agree(results.failure.map_or(Ok(()), failed))
+    }
+
+    /// All models against the reference. Not collective.
+    fn compare(&self, record: &Record) -> Result<Study> {
+        let reference = self.read(FULL)?;
+        let mut study = Study::new(&reference);
+        let element = format!("super-element-{}", self.options.super_element);
+        let n_coordinates = self.read(&element)?.about.n_equations;
+        for part in self.parts().into_iter().filter(|part| part.product != FULL) {
+            let Work::Stability { model, reduce_each, .. } = &part.work else { continue };
+            let results = self.read(&part.product)?;
+            let n_contacts = n_contacts(&results);
+            let n_equations = if *reduce_each { n_coordinates } else { results.about.n_equations };
+            let sizes = Sizes { n_contacts, n_retained: Some(2 * n_contacts + self.n_loaded), n_equations };
+            let making = record.parts.get(&self.reduction().product).filter(|_| *model != self.options.model);
+            study.add(&part.name, [&reference, &results], sizes, making.map(|done| done.seconds))?;
+        }
+        Ok(study)
+    }
+
+    fn read(&self, product: &str) -> Result<Results> {
+        file::read(&self.options.folder.join(product).join(RESULTS))
+    }
+}
+
+/// What is made.
+#[derive(Default, Serialize, Deserialize)]
+struct Record {
+    /// By the names of their files and folders.
+    #[serde(default)]
+    parts: BTreeMap<String, Done>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Done {
+    /// What it depends on.
+    identity: String,
+    /// What it took, s.
+    seconds: f64,
+}
+
+/// The record's file, which marks a folder as a study's.
+const PARTS: &str = "parts.toml";
+
+impl Record {
+    /// Of a folder that is a study's, or empty, or not there.
+    fn open(place: &Path) -> Result<Record> {
+        let file = place.join(PARTS);
+        if let Ok(text) = std::fs::read_to_string(&file) {
+            let damaged =
+                |reason| Error::input(format!("{} is damaged: {reason}. Remove it to begin again", file.display()));
+            return toml::from_str(&text).map_err(damaged);
+        }
+        let is_free = std::fs::read_dir(place).map_or(!place.exists(), |mut entries| entries.next().is_none());
+        if is_free {
+            return Ok(Record::default());
+        }
+        let what = format!("{} exists and is not the folder of a study", place.display());
+        Err(Error::input(format!("{what}. Choose another with --output")))
+    }
+
+    fn has(&self, part: &Part, identity: &str, place: &Path) -> bool {
+        let file = match part.work {
+            Work::Reduce => place.join(&part.product),
+            Work::Stability { .. } => place.join(&part.product).join(RESULTS),
+        };
+        self.parts.get(&part.product).is_some_and(|done| done.identity == identity) && file.is_file()
+    }
+
+    /// Appears whole or not at all.
+    fn write(&self, place: &Path) -> Result<()> {
+        let text = toml::to_string(self).expect("texts and numbers");
+        write_whole(&place.join(PARTS), |out| out.write_all(text.as_bytes()))
+    }
+}

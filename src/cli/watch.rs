@@ -1,0 +1,89 @@
+//! What a person sees of an analysis: events as a progress line, and Ctrl-C as a request to stop.
+
+use crate::Result;
+use crate::analysis::{Event, Observer};
+use crate::native::Comm;
+use crate::reduction::craig_bampton;
+use crate::results::Value;
+
+use super::interrupt::Interrupt;
+use super::progress::Progress;
+
+/// Shows events, and asks the analysis to stop after a signal.
+pub struct Watch {
+    progress: Progress,
+    interrupt: Option<Interrupt>,
+}
+
+impl Watch {
+    /// Shows events on the first rank.
+    pub fn new(comm: &Comm, verbose: bool) -> Watch {
+        Watch { progress: Progress::new(comm, 1, verbose), interrupt: None }
+    }
+
+    /// The same, for an analysis that stops after the value at hand when a signal asks for it.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn with_signals(comm: &Comm, verbose: bool) -> Result<Watch> {
+        let watch = Watch::new(comm, verbose);
+        let notice = watch.progress.notice("stopping after this value; a second signal stops at once");
+        Ok(Watch { interrupt: Some(Interrupt::listen(notice)?), ..watch })
+    }
+
+    /// Removes the progress line.
+    pub fn finish(&self) {
+        self.progress.finish();
+    }
+}
+
+impl Observer for Watch {
+    fn event(&mut self, event: Event) {
+        match event {
+            Event::Planned(n) => self.progress.set_length(n),
+            Event::Inserted => self.progress.lengthen(),
+            Event::Stage(what) => self.progress.show(what),
+            Event::Resumed { place, n_values } => self.progress.print(&format!(
+                "{place}: an earlier run has finished {n_values} values; this run continues from there"
+            )),
+            Event::Part { name, is_made } => {
+                self.progress.print(&format!("{name}: {}", if is_made { "made before" } else { "begins" }));
+            }
+            Event::Replayed(value) => self.progress.skip(value.asked),
+            Event::Newton { label, iteration, iterate } => {
+                let (residual, closed) = (iterate.residual, iterate.counts.closed());
+                self.progress.show(format!("{label}: iteration {iteration}, residual {residual:.1e}, {closed} closed"));
+            }
+            Event::Modes { n_converged, n_wanted, n_solves } => {
+                self.progress.show(format!("modes: {n_converged} of {n_wanted} eigenvalues, {n_solves} solves"));
+            }
+            Event::Reduction(step) => self.progress.show(reduction_step(step)),
+            Event::Finished(value) => self.progress.advance(&finished(value)),
+        }
+    }
+
+    fn stop_signal(&mut self) -> Option<i32> {
+        self.interrupt.as_ref().and_then(Interrupt::signal)
+    }
+}
+
+fn reduction_step(step: &craig_bampton::Event) -> String {
+    match step {
+        craig_bampton::Event::Factor => "factorising the structure without its sliding contacts".into(),
+        craig_bampton::Event::Constraint(done, all) => format!("constraint modes: {done} of {all}"),
+        craig_bampton::Event::Fixed(size) => format!("fixed-interface modes: a space of {size} vectors"),
+        craig_bampton::Event::Project => "projecting".into(),
+    }
+}
+
+/// A finished value in a few words.
+fn finished(value: &Value) -> String {
+    let found = match value.count {
+        Some(_) => {
+            let n_unstable = value.modes.iter().filter(|mode| mode.unstable).count();
+            format!("{} modes, {n_unstable} unstable", value.modes.len())
+        }
+        None => "equilibrium".into(),
+    };
+    format!("friction coefficient {:.4}: {found}", value.friction)
+}

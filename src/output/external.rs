@@ -1,0 +1,261 @@
+//! Modes of external matrices as text and tables; real eigenvalues are shown as what they are.
+
+use std::f64::consts::TAU;
+use std::io;
+
+use serde::Serialize;
+
+use crate::Result;
+use crate::results::{ExternalMode, ExternalResults, ExternalValue};
+use crate::stability::{Count, Evidence};
+
+use super::branches;
+use super::folder::Folder;
+use super::tables::csv_file;
+
+/// From this condition number on a warning is given: of sixteen digits four are left.
+const ILL_CONDITIONED: f64 = 1e12;
+
+/// The results in words, with the files of their folder.
+pub fn summary(results: &ExternalResults, place: &str) -> String {
+    let [from, to] = results.band;
+    let mut text = format!("{}: modes {from}-{to} Hz, {} dofs\n\n", results.title, results.n_dofs);
+    text += &matrices_text(results);
+    let worst = results.values.iter().map(|value| value.condition).fold(0.0, f64::max);
+    text += &format!("condition number of the factorised matrix, scaled: {worst:.1e}\n");
+    if worst >= ILL_CONDITIONED {
+        text += &format!("warning: it is above {ILL_CONDITIONED:.0e}: few digits of the modes can be trusted\n");
+    }
+    if let Some(value) = results.values.iter().find(|value| value.shift != 0.0) {
+        text += &format!("K is singular or nearly so: P(shift) was factorised instead, shift {:.1} 1/s\n", value.shift);
+    }
+    results.notes.iter().for_each(|note| text += &format!("{note}\n"));
+    text.push('\n');
+    match &results.values[..] {
+        [value] => text += &value_text(results, value),
+        values => {
+            let width = results.parameter.len().max(8);
+            text += &format!("{:>width$}  modes  unstable: frequency (growth rate)\n", results.parameter);
+            values.iter().for_each(|value| text += &line(value, width));
+        }
+    }
+    if let Some(diagram) = &results.diagram {
+        text += &branches::summary(diagram, &results.parameter);
+    }
+    let plural = if results.n_ranks == 1 { "" } else { "s" };
+    text + &format!("\n{:.1} s on {} rank{plural}\n", results.seconds, results.n_ranks) + &files_text(results, place)
+}
+
+/// What the matrices are like.
+fn matrices_text(results: &ExternalResults) -> String {
+    let of = |is_symmetric: bool| if is_symmetric { "symmetric" } else { "unsymmetric" };
+    let symmetry = results.symmetry;
+    let damping = if results.is_damped { format!("C {}", of(symmetry.damping)) } else { "no C".into() };
+    let constrained = match results.n_constrained {
+        0 => String::new(),
+        n => format!("; {n} constrained dofs (1e36 on the diagonal of K) are left out"),
+    };
+    format!("M {}, {damping}, K {}{constrained}\n", of(symmetry.mass), of(symmetry.stiffness))
+}
+
+/// How many modes, and which of them grow.
+fn line(value: &ExternalValue, width: usize) -> String {
+    let unstable = value.modes.iter().filter(|mode| mode.is_unstable);
+    let named = unstable.map(|mode| format!("{:.4} Hz ({:+.4} /s)", mode.frequency(), mode.lambda.re));
+    let list = named.collect::<Vec<_>>().join(", ");
+    let doubt = if value.count.agrees() { "" } else { "  (number of modes not confirmed)" };
+    let list = if list.is_empty() { "none" } else { &list };
+    format!("{:>width$}  {:>5}  {list}{doubt}\n", value.value, value.modes.len())
+}
+
+/// The modes at one value, and what is known of their number.
+fn value_text(results: &ExternalResults, value: &ExternalValue) -> String {
+    modes_text(&value.modes) + &count_text(&value.count, results)
+}
+
+/// Modes in lines.
+fn modes_text(modes: &[ExternalMode]) -> String {
+    let mut text = String::from("  mode   frequency Hz    growth 1/s  damping %  backward error  largest in\n");
+    for mode in modes {
+        let place = match mode.largest_dof {
+            Some((node, dof)) => format!("node {node}, dof {dof}"),
+            None => format!("row {}", mode.largest_row),
+        };
+        let mark = match (mode.is_unstable, mode.lambda.im == 0.0) {
+            (true, true) => "  unstable: real eigenvalue, divergence",
+            (true, false) => "  unstable",
+            (false, true) => "  real eigenvalue",
+            (false, false) => "",
+        };
+        let (number, hertz, growth) = (mode.number, mode.frequency(), mode.lambda.re);
+        let (damping, error) = (100.0 * mode.damping_ratio(), mode.backward_error);
+        text +=
+            &format!("  {number:>4}  {hertz:>13.6}  {growth:>+12.5}  {damping:>9.4}  {error:>14.1e}  {place}{mark}\n");
+    }
+    text
+}
+
+/// What is known of the number of modes.
+fn count_text(count: &Count, results: &ExternalResults) -> String {
+    let Count { below, expected, found } = *count;
+    let how = match (results.evidence, count.agrees()) {
+        (Evidence::Inertia, true) if !results.is_damped => {
+            "as many as K - omega^2 M has negative eigenvalues by Sylvester's law of inertia: none is missing".into()
+        }
+        (Evidence::Inertia, true) => {
+            "as many as the undamped problem has by Sylvester's law of inertia, which damping may \
+             shift across the end"
+                .into()
+        }
+        (Evidence::Inertia, false) => format!(
+            "but {expected} negative eigenvalues of K - omega^2 M: not confirmed (massless dofs, strong damping or an \
+             indefinite M change the count)"
+        ),
+        (Evidence::Repetition { .. }, true) if results.n_dofs <= Evidence::ALL_UP_TO => {
+            "and all eigenvalues were found: none is missing".into()
+        }
+        (Evidence::Repetition { .. }, true) => {
+            "as many as the Sturm count of the symmetric parts, or as another search \
+             found; of matrices that are not symmetric neither is a proof"
+                .into()
+        }
+        (Evidence::Repetition { .. }, false) => "not confirmed: two searches did not find the same number".into(),
+    };
+    format!("{found} modes with |lambda| below {below:.1} Hz, {how}\n")
+}
+
+fn files_text(results: &ExternalResults, place: &str) -> String {
+    let mut files = vec![("summary.txt", "this text"), ("modes.csv", "all modes")];
+    if results.values.len() > 1 {
+        files.push(("details.txt", "the modes at each value in words"));
+    }
+    if results.diagram.is_some() {
+        files.push(("branches.csv", "modes followed over the parameter"));
+        files.push(("hopf.csv", "where they become unstable"));
+    }
+    if has_shapes(results) {
+        files.push(("shapes*.csv", "shapes, a row for each dof"));
+    }
+    let lines: String = files.iter().map(|(name, what)| format!("  {name:36}{what}\n")).collect();
+    format!("\nresults in {place}:\n{lines}")
+}
+
+fn has_shapes(results: &ExternalResults) -> bool {
+    results.values.iter().any(|value| !value.shapes.is_empty())
+}
+
+/// Writes the folder's files. Not collective.
+///
+/// # Errors
+/// The system's, with the file's path.
+pub fn write(results: &ExternalResults, folder: Folder, summary: &str) -> Result<()> {
+    folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
+    csv_file(&folder, "modes.csv", |out| modes_table(out, results))?;
+    if results.values.len() > 1 {
+        let of = |value: &ExternalValue| {
+            format!("{} = {}\n{}\n", results.parameter, value.value, value_text(results, value))
+        };
+        let text: String = results.values.iter().map(of).collect();
+        folder.write("details.txt", |out| out.write_all(text.as_bytes()))?;
+    }
+    if let Some(diagram) = &results.diagram {
+        let band = results.band.map(|f| TAU * f);
+        folder.write("branches.csv", |out| branches::points(out, diagram, band, &results.parameter))?;
+        folder.write("hopf.csv", |out| branches::hopf(out, diagram, &results.parameter))?;
+    }
+    for value in results.values.iter().filter(|value| !value.shapes.is_empty()) {
+        let name = if results.varies { format!("shapes_{}.csv", value.value) } else { "shapes.csv".into() };
+        csv_file(&folder, &name, |out| shapes_table(out, results, value))?;
+    }
+    folder.finish()
+}
+
+/// Modes as CSV: the parameter under its name where there is one, `mode, frequency_hz, growth_rate_per_s, damping_ratio, backward_error,
+/// unstable, largest_row`, and `largest_node, largest_dof` where rows have names.
+fn modes_table(out: &mut dyn io::Write, results: &ExternalResults) -> csv::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let columns =
+        ["mode", "frequency_hz", "growth_rate_per_s", "damping_ratio", "backward_error", "unstable", "largest_row"];
+    let parameter = Some(results.parameter.as_str()).filter(|_| results.varies);
+    let names: &[&str] = if results.names.is_some() { &["largest_node", "largest_dof"] } else { &[] };
+    table.write_record(parameter.into_iter().chain(columns).chain(names.iter().copied()))?;
+    for value in &results.values {
+        for mode in &value.modes {
+            let first = parameter.map(|_| value.value.to_string());
+            let own = [
+                mode.number.to_string(),
+                format!("{:.15e}", mode.frequency()),
+                format!("{:.15e}", mode.lambda.re),
+                format!("{:.6e}", mode.damping_ratio()),
+                format!("{:.2e}", mode.backward_error),
+                u8::from(mode.is_unstable).to_string(),
+                mode.largest_row.to_string(),
+            ];
+            let last = mode.largest_dof.iter().flat_map(|(node, dof)| [node.to_string(), dof.to_string()]);
+            table.write_record(first.into_iter().chain(own).chain(last))?;
+        }
+    }
+    Ok(table.flush()?)
+}
+
+/// Shapes as CSV, a line for each dof: `row`, `node, dof` where rows have names, and `re_1, im_1, re_2, ...` of the modes, the largest
+/// entry of each of modulus 1.
+fn shapes_table(out: &mut dyn io::Write, results: &ExternalResults, value: &ExternalValue) -> csv::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let names: &[&str] = if results.names.is_some() { &["node", "dof"] } else { &[] };
+    let of_modes = (1..=value.shapes.len()).flat_map(|i| [format!("re_{i}"), format!("im_{i}")]);
+    let header = std::iter::once("row").chain(names.iter().copied()).map(String::from);
+    table.write_record(header.chain(of_modes))?;
+    for (i, row) in results.rows.iter().enumerate() {
+        let name = results.names.iter().flat_map(|names| [names[i].0.to_string(), names[i].1.to_string()]);
+        let entries = value.shapes.iter().flat_map(|[re, im]| [format!("{:.9e}", re[i]), format!("{:.9e}", im[i])]);
+        table.write_record(std::iter::once((row + 1).to_string()).chain(name).chain(entries))?;
+    }
+    Ok(table.flush()?)
+}
+
+/// The results as one JSON document.
+#[derive(Serialize)]
+pub struct ExternalDocument {
+    equations: usize,
+    band_hz: [f64; 2],
+    values: Vec<ValueDocument>,
+}
+
+#[derive(Serialize)]
+struct ValueDocument {
+    parameter: f64,
+    condition: f64,
+    confirmed: bool,
+    modes: Vec<ModeDocument>,
+}
+
+#[derive(Serialize)]
+struct ModeDocument {
+    frequency_hz: f64,
+    growth_rate_per_s: f64,
+    unstable: bool,
+    backward_error: f64,
+}
+
+impl From<&ExternalResults> for ExternalDocument {
+    fn from(results: &ExternalResults) -> Self {
+        let mode = |mode: &ExternalMode| ModeDocument {
+            frequency_hz: mode.frequency(),
+            growth_rate_per_s: mode.lambda.re,
+            unstable: mode.is_unstable,
+            backward_error: mode.backward_error,
+        };
+        let value = |value: &ExternalValue| ValueDocument {
+            parameter: value.value,
+            condition: value.condition,
+            confirmed: value.count.agrees(),
+            modes: value.modes.iter().map(mode).collect(),
+        };
+        ExternalDocument {
+            equations: results.n_dofs,
+            band_hz: results.band,
+            values: results.values.iter().map(value).collect(),
+        }
+    }
+}

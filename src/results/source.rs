@@ -1,0 +1,33 @@
+//! What explains a mode, source by source: parts, connectors, contact pairs.
+
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+use crate::stability::{Sensitivity, Share};
+
+/// What a source of energy, damping and stiffness is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A part of the mesh.
+    Part,
+    /// A connector.
+    Connector,
+    /// A contact pair.
+    Contact,
+}
+
+/// A part, connector or contact pair and its role in a mode.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Source {
+    /// What it is.
+    pub kind: Kind,
+    /// Its name in the model.
+    pub name: String,
+    /// Its energies, and what it feeds in or takes out.
+    pub share: Share,
+    /// How the eigenvalue follows it, where the left vector is known.
+    pub sensitivity: Option<Sensitivity>,
+    /// How the eigenvalue follows a contact pair's friction at this equilibrium, `d lambda / d mu`, 1/s.
+    pub friction: Option<Complex64>,
+}

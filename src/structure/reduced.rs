@@ -1,0 +1,130 @@
+//! A brake as a super-element.
+
+use std::path::{Path, PathBuf};
+
+use crate::assembly::System;
+use crate::contact::{Interface, Response};
+use crate::model::NormalLaw;
+use crate::native::Comm;
+use crate::reduction::file;
+use crate::reduction::recovery::OuterSurface;
+use crate::reduction::super_element::SuperElement;
+use crate::results::{About, ContactFaces, Part};
+use crate::{Error, Result};
+
+use super::{StructureOptions, contact_surface, digest, pairs};
+
+/// A super-element under a law and loads.
+pub struct ReducedModel {
+    place: PathBuf,
+    element: SuperElement,
+    surface: OuterSurface,
+    interface: Interface,
+    load_factor: f64,
+}
+
+impl ReducedModel {
+    /// Reads the file of a super-element. Collective.
+    ///
+    /// # Errors
+    /// See [`file::read`]; where arguments are for models.
+    pub fn read(comm: &Comm, path: &Path, options: &StructureOptions) -> Result<ReducedModel> {
+        if options.contacts.is_some() {
+            let what = "a super-element has its contacts already; --contacts is for models";
+            return Err(Error::input(format!("{}: {what}", path.display())));
+        }
+        let (element, surface) = comm.agree(file::read(path))?;
+        Ok(ReducedModel::new(path, element, surface, options.law, options.load_factor))
+    }
+
+    /// A super-element under a law, its own if none is given, and a multiple of its loads.
+    pub fn new(
+        file: &Path,
+        element: SuperElement,
+        surface: OuterSurface,
+        law: Option<NormalLaw>,
+        load_factor: f64,
+    ) -> ReducedModel {
+        let interface = element.interface(law);
+        ReducedModel { place: file.to_owned(), element, surface, interface, load_factor }
+    }
+
+    pub(super) fn about(&self, comm: &Comm) -> Result<About> {
+        let origin = &self.element.origin;
+        let file = if comm.is_root() && self.place.is_file() { digest(&self.place) } else { Ok(String::new()) };
+        Ok(About {
+            title: origin.title.clone(),
+            model: self.place.display().to_string(),
+            model_digest: comm.agree(file)?,
+            mesh: origin.mesh.clone(),
+            mesh_digest: origin.mesh_hash.clone(),
+            parts: self.surface.parts.iter().map(|name| Part { name: name.clone(), ..Part::default() }).collect(),
+            pairs: pairs(&self.interface),
+            ..About::default()
+        })
+    }
+
+    /// The super-element.
+    pub fn element(&self) -> &SuperElement {
+        &self.element
+    }
+
+    /// The outer surface and how the coordinates move it.
+    pub fn surface(&self) -> &OuterSurface {
+        &self.surface
+    }
+
+    pub(super) fn interface(&self) -> &Interface {
+        &self.interface
+    }
+
+    pub(super) fn band(&self, given: Option<[f64; 2]>) -> Result<[f64; 2]> {
+        let band = given.unwrap_or(self.element.origin.band);
+        if let Some(warning) = self.element.require_band(band)? {
+            eprintln!("warning: {}: {warning}", self.place.display());
+        }
+        Ok(band)
+    }
+
+    pub(super) fn friction_damping(&self) -> bool {
+        self.element.origin.friction_damping
+    }
+
+    pub(super) fn friction_values(&self, given: Option<&[f64]>) -> Result<Vec<f64>> {
+        super::friction_values(given, &[self.element.origin.friction], &self.interface, &self.place)
+    }
+
+    pub(super) fn assemble(&self, comm: &Comm) -> Result<System> {
+        self.element.assemble(comm, &self.interface, self.load_factor)
+    }
+
+    pub(super) fn contact_faces(&self) -> ContactFaces {
+        let points = &self.element.contacts;
+        ContactFaces {
+            nodes: points.iter().map(|contact| contact.point.position).collect(),
+            pair_of_node: points.iter().map(|contact| contact.point.pair as i32).collect(),
+            ..ContactFaces::default()
+        }
+    }
+
+    pub(super) fn contact_fields(&self, responses: &[Response]) -> (Vec<f64>, Vec<i32>) {
+        // Under a law of its own a contact has no area; that of the super-element has.
+        let areas = self.element.contacts.iter().map(|contact| contact.point.law.weight);
+        responses.iter().zip(areas).map(|(r, area)| (r.normal_force / area, contact_surface::status(r))).unzip()
+    }
+
+    pub(super) fn dof_labels(&self, system: &System) -> Vec<String> {
+        let points = &self.element.points;
+        let n_interface = points.len() * 3 + self.element.frequencies.len();
+        let coordinate = |i: usize| match points.get(i / 3) {
+            Some([x, y, z]) => format!("point,{},{},{x:e},{y:e},{z:e}", i / 3 + 1, ["x", "y", "z"][i % 3]),
+            None if i < n_interface => format!("fixed-interface mode,{},,,,", i + 1 - 3 * points.len()),
+            None => format!("inertia mode,{},,,,", i + 1 - n_interface),
+        };
+        let of = |node: u32| {
+            let free = (0..3).filter(move |&i| system.dofs.node_dofs(node)[i] >= 0);
+            free.map(move |i| 3 * node as usize + i)
+        };
+        system.dofs.owned_nodes().flat_map(of).map(coordinate).collect()
+    }
+}
