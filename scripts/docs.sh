@@ -13,7 +13,7 @@ fi
 generated=docs/manual/src/generated
 mkdir -p "$generated"
 "$binary" --help > "$generated/squeal.txt"
-for command in check static stability report compare reduce study modes export; do
+for command in $(sed -n 's/^## //p' docs/manual/src/commands.md); do
   "$binary" "$command" --help > "$generated/$command.txt"
 done
 

@@ -139,6 +139,18 @@ fn every_command_line_is_understood() {
     assert!(n > 20, "{n} command lines found");
 }
 
+#[test]
+fn every_command_has_its_help_in_the_manual() {
+    let help = Place::empty().run(&["--help"]).out;
+    let list = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    let names =
+        list.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next().filter(|name| !name.is_empty()));
+    let text = manual("commands.md").text;
+    for name in names.filter(|name| *name != "help") {
+        assert!(text.contains(&format!("## {name}\n")), "commands.md: {name} is missing");
+    }
+}
+
 /// The tutorial's commands up to `check`, which takes its model and that of the README.
 #[test]
 fn the_first_brake_is_meshed_and_checked() {
