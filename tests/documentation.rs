@@ -188,6 +188,26 @@ fn the_family_of_matrices_becomes_unstable_at_three_quarters() {
     assert!((friction - 0.75).abs() < 1e-3, "{hopf}");
 }
 
+/// The headings of the tables that README and tutorial quote are those that the program prints.
+#[test]
+fn quoted_tables_have_the_headings_of_the_program() {
+    let place = Place::blocks();
+    let run = |command: &str| place.run(&[command, "brake.toml", "--friction", "0.4"]).out;
+    let printed = words([place.run(&["check", "brake.toml"]).out, run("static"), run("stability")].concat());
+    let quoting = [Page::read(&root().join("README.md")), manual("first-brake.md")];
+    let quoted: Vec<String> = quoting.iter().flat_map(|page| page.text.lines()).map(words).collect();
+    for (heading, n) in [("part tets", 1), ("pair kind", 1), ("pair open", 1), ("friction modes", 2)] {
+        let lines: Vec<&String> = quoted.iter().filter(|line| line.starts_with(heading)).collect();
+        assert_eq!(lines.len(), n, "{heading}");
+        assert!(lines.iter().all(|line| printed.contains(*line)), "{lines:?} is not in: {printed}");
+    }
+}
+
+/// A text with single spaces.
+fn words(text: impl AsRef<str>) -> String {
+    text.as_ref().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// The Python of the manual, beside the results of a small brake.
 #[test]
 fn python_reads_results_and_json() {
