@@ -79,7 +79,7 @@ fn write_draft(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::R
 
 /// What HDF5 says of a file that it could not write.
 fn failure(path: &Path, reason: &hdf5::Error) -> Error {
-    Error::Library(format!("{}: HDF5: {reason}", path.display()))
+    Error::library("HDF5")(format!("{}: {reason}", path.display()))
 }
 
 /// Opens a file of ours. Not collective.

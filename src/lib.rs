@@ -107,4 +107,4 @@ pub mod stability;
 pub mod structure;
 pub mod tracking;
 
-pub use error::{Error, Result};
+pub use error::{Error, ErrorKind, Result};

@@ -125,7 +125,7 @@ fn a_panic_on_one_rank_ends_all() {
 fn an_error_of_the_library_on_one_rank_ends_all() {
     let said = on_two_ranks("rank_one_fails");
     assert_eq!(said.code, 1, "{}", said.err);
-    assert!(said.err.contains("error on rank 1: MUMPS has a bug"), "{}", said.err);
+    assert!(said.err.contains("error on rank 1: MUMPS: it has a bug"), "{}", said.err);
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn rank_one_panics() {
 #[test]
 #[ignore = "one of the ranks of an_error_of_the_library_on_one_rank_ends_all"]
 fn rank_one_fails() {
-    as_the_program(|| Err(squeal::Error::Library("MUMPS has a bug".into())))
+    as_the_program(|| Err(squeal::Error::library("MUMPS")("it has a bug")))
 }
 
 #[test]

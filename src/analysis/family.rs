@@ -66,7 +66,7 @@ pub trait Solutions {
     /// # Errors
     /// Where they cannot be had.
     fn vectors(&mut self, number: usize) -> Result<Vectors> {
-        Err(crate::Error::Library(format!("the vectors of snapshot {number} were not kept")))
+        Err(crate::Error::library("resume")(format!("the vectors of snapshot {number} were not kept")))
     }
 
     /// The products of two snapshots' left and right vectors, where they are known.

@@ -371,8 +371,7 @@ fn guard_as(comm: &Comm, json: bool, work: impl FnOnce() -> Result<()>) -> i32 {
 /// Tells the error once and ends all ranks. Input, convergence and signals are judged alike everywhere, so that ranks end in order;
 /// anything else may have happened on this rank alone, so that the others are ended.
 fn end(comm: &Comm, error: &Error, json: bool) -> i32 {
-    let together =
-        matches!(error, Error::Input(_) | Error::NotConverged(_) | Error::Interrupted { .. } | Error::Agreed { .. });
+    let together = error.is_of_all_ranks();
     if comm.is_root() {
         tell_error("error", error, json);
     } else if !together {

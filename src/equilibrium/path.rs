@@ -260,12 +260,13 @@ impl<'a> Path<'a> {
         } else {
             "Look at the directions of the loads; what is to be pulled needs separation = false"
         };
-        Error::NotConverged(format!(
+        let what = format!(
             "no equilibrium at friction {friction:.3} (step `{}`){reached}. Relative residuals: {}.{flicker}{} {advice}",
             step.label,
             history(&step.iterations),
             pulled.collect::<String>()
-        ))
+        );
+        Error::NotConverged { what, history: step.iterations.iter().map(|it| it.residual).collect() }
     }
 }
 

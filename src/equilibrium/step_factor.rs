@@ -222,7 +222,7 @@ fn apply(factor: &Factor, update: Option<&Update>, b: &Vector, x: &mut Vector, c
     factor.solve(b, x)?;
     let Some(Update { dyads, w, capacitance }) = update else { return Ok(()) };
     let y = capacitance.solve(&DVector::from_vec(projections(dyads, x, contacts)?));
-    let y = y.ok_or_else(|| crate::Error::Library("the updated tangent is singular".into()))?;
+    let y = y.ok_or_else(|| crate::Error::Singular { found_by: "the update of the tangent".into() })?;
     let correction = w.combined(y.as_slice(), 1);
     x.local_mut(|x| x.iter_mut().zip(correction.column(0)).for_each(|(x, c)| *x -= c))
 }

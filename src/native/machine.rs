@@ -54,12 +54,9 @@ pub(in crate::native) fn require(comm: &Comm, needed_mb: f64) -> Result<()> {
     }
     let (available, whose) = limits(comm);
     let gigabytes = |mb: f64| format!("{:.2} GB", mb / 1024.0);
-    Err(Error::input(format!(
-        "too little memory: the factor needs {}, even out of core, and {whose} leaves {}. A coarser mesh, other programs closed, a higher limit or a \
-         machine with more memory help",
-        gigabytes(needed_mb),
-        gigabytes(available)
-    )))
+    let (needs, leaves) = (gigabytes(needed_mb), gigabytes(available));
+    let what = format!("the factor needs {needs}, even out of core, and {whose} leaves {leaves}");
+    Err(Error::OutOfMemory { what, needed_mb: Some(needed_mb) })
 }
 
 /// Memory that the kernel could give now, MB.

@@ -268,7 +268,7 @@ fn motions(
     let live: Vec<usize> = (0..mass.nrows()).filter(|&i| mass[(i, i)] > 0.0).collect();
     let [m, k] = [mass, &k].map(|a| a.select_rows(&live).select_columns(&live));
     // M = L L^T,  L^-1 K L^-T y = omega^2 y,  x = L^-T y
-    let l = m.cholesky().ok_or_else(|| Error::Library("the reduced mass is not positive definite".into()))?.unpack();
+    let l = m.cholesky().ok_or_else(|| Error::Singular { found_by: "Cholesky of the reduced mass".into() })?.unpack();
     let half = l.solve_lower_triangular(&k).expect("the diagonal of L is positive");
     let mut y = l.solve_lower_triangular(&half.transpose()).expect("the diagonal of L is positive");
     let squares = lapack::symmetric_eigen(live.len(), y.as_mut_slice())?;

@@ -71,7 +71,7 @@ pub fn below(
         next = invert(&last.multiplied_by(mass)?)?;
         n_solves += last.n_columns();
     }
-    Err(Error::NotConverged(format!(
+    Err(Error::not_converged(format!(
         "the fixed-interface modes below {limit} Hz did not converge with {LARGEST_BASIS} vectors. Give the reduction a lower band"
     )))
 }

@@ -44,7 +44,7 @@ pub fn page(results: &Results) -> Result<String> {
     let figures = plots::figures(&findings);
     let about = &results.about;
     let json = serde_json::to_string(&Data::new(&findings));
-    let json = json.map_err(|reason| Error::Library(format!("the report's data cannot be written: {reason}")))?;
+    let json = json.map_err(Error::library("the report's data cannot be written as JSON"))?;
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPT.join("\n"));
     let values = [
         ("style-hash", digest(STYLE)),

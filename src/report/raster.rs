@@ -55,7 +55,7 @@ impl Painter {
     /// # Errors
     /// [`Error::Library`] where the SVG cannot be read or drawn.
     pub fn png(&self, svg: &str) -> Result<Vec<u8>> {
-        let failed = |reason: String| Error::Library(format!("a figure cannot be drawn: {reason}"));
+        let failed = |reason: String| Error::library("a figure cannot be drawn")(reason);
         let tree = Tree::from_str(svg, &self.options).map_err(|reason| failed(reason.to_string()))?;
         let size = tree.size().to_int_size().scale_by(FINENESS).ok_or_else(|| failed("it has no size".into()))?;
         let mut pixels = Pixmap::new(size.width(), size.height()).ok_or_else(|| failed("it is too large".into()))?;

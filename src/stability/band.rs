@@ -95,7 +95,7 @@ pub fn solve(
     }
     match last {
         Some((search, count)) => finish(search, band, count, n_solves),
-        None => Err(Error::NotConverged(format!(
+        None => Err(Error::not_converged(format!(
             "the eigensolver did not reach the end of the band {}-{} Hz, with {expected} modes expected. Try a narrower band \
              ([stability] band)",
             band[0], band[1]

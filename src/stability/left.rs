@@ -57,7 +57,7 @@ pub(super) fn left_vectors(
             return Ok((normalised_left(m, space.vectors(&vectors))?, space.n_solves));
         }
     }
-    Err(Error::NotConverged(format!(
+    Err(Error::not_converged(format!(
         "left vectors of the modes: after {ROUNDS} rounds of corrections {} of {} are not accurate. A narrower band may help \
          ([stability] band)",
         open.len(),

@@ -111,7 +111,7 @@ pub fn solve(
         space.extend_by_solves(&residuals)?;
         last = ritz.iter().map(|r| r.lambda).collect();
     }
-    Err(Error::NotConverged(format!("the eigensolver's corrections did not converge in {MAX_ROUNDS} rounds")))
+    Err(Error::not_converged(format!("the eigensolver's corrections did not converge in {MAX_ROUNDS} rounds")))
 }
 
 /// The pairs, whose vectors a start spans, with their backward errors; none where one of these is too large.
@@ -174,7 +174,7 @@ fn ritz(space: &Space, radius: f64, n_expected: usize) -> Result<Vec<Ritz>> {
             return within(found, radius);
         }
     }
-    Err(Error::NotConverged("the eigensolver's projected problem has too many modes in the band".into()))
+    Err(Error::not_converged("the eigensolver's projected problem has too many modes in the band"))
 }
 
 /// The pairs with `|lambda| <= radius` by modulus, vectors of length 1.

@@ -16,7 +16,7 @@ use super::{Mode, Pencil};
 use crate::assembly::System;
 use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
 use crate::native::{Block, Factor, Matrix, Precision, machine};
-use crate::{Error, Result};
+use crate::{ErrorKind, Result};
 
 /// Equations from which the blocked search pays: below, a single solve costs too little.
 const BLOCKED_FROM: usize = 50_000;
@@ -135,7 +135,7 @@ impl Solver {
         let matrix = shifted.as_ref().unwrap_or(pencil.k);
         match lu.factorise(matrix) {
             Ok(()) => condition(matrix, lu),
-            Err(Error::Library(text)) if text.contains("the matrix is singular") => {
+            Err(error) if error.kind() == ErrorKind::Singular => {
                 // MUMPS takes no other values after it has failed.
                 lu.release();
                 Ok(f64::INFINITY)
@@ -223,7 +223,7 @@ impl Solver {
         let start = self.start.take();
         let was_started = start.is_some();
         let mut outcome = search::solve(&problem, TAU * reach, n_modes, start, progress);
-        if was_started && matches!(outcome, Err(Error::NotConverged(_))) {
+        if was_started && matches!(&outcome, Err(error) if error.kind() == ErrorKind::NotConverged) {
             outcome = search::solve(&problem, TAU * reach, n_modes, None, progress);
         }
         match outcome {
@@ -231,7 +231,7 @@ impl Solver {
                 (self.basis, self.start) = (Some(basis), Some(start));
                 Ok(Some(Search { pairs, reach, n_solves, backward_errors }))
             }
-            Err(Error::NotConverged(_)) => Ok(None),
+            Err(error) if error.kind() == ErrorKind::NotConverged => Ok(None),
             Err(error) => Err(error),
         }
     }

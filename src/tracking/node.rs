@@ -48,7 +48,7 @@ impl<M> Node<M> {
             return Ok(products);
         }
         self.factor.solve(&products).ok_or_else(|| {
-            Error::NotConverged(format!(
+            Error::not_converged(format!(
                 "the modes at {} cannot be told apart: left and right vectors of one of them are orthogonal",
                 self.value
             ))

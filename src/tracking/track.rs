@@ -168,7 +168,7 @@ impl<F: Family> Tracker<'_, F> {
     fn accept(&mut self, a: &Rc<Node<F::Modes>>, b: &Rc<Node<F::Modes>>, span: Span) -> Result<()> {
         let Span { transfer, path } = span;
         let Some(path) = path else {
-            return Err(Error::NotConverged(format!(
+            return Err(Error::not_converged(format!(
                 "the modes at {} and {} have nothing in common: no branch can be followed from one to the other",
                 a.value, b.value
             )));

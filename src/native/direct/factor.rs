@@ -61,6 +61,12 @@ impl FactorStats {
     }
 }
 
+/// Whether double precision may do where this one did not: pivots that rounding makes zero, or so small that pivoting outgrows its
+/// workspace. All else (PETSc's errors, short memory, an empty matrix) fails in double precision, too.
+fn needs_double(precision: Precision, error: &Error) -> bool {
+    precision == Precision::Single && error.is_numerical()
+}
+
 /// A factorised matrix. The first factorisation analyses the pattern, which all later ones share.
 pub struct Factor {
     kind: FactorKind,
@@ -159,7 +165,7 @@ impl Factor {
             return self.factorise_dense(a.n_local(), values);
         }
         match self.factorise_sparse(a) {
-            Err(Error::Library(_)) if self.precision == Precision::Single => {
+            Err(error) if needs_double(self.precision, &error) => {
                 self.set_precision(Precision::Double);
                 self.factorise_sparse(a)
             }
@@ -174,7 +180,7 @@ impl Factor {
         let mut workspace = WORKSPACE;
         for attempt in 0..WORKSPACE_TRIES {
             mumps.factorise(a)?;
-            if !matches!(mumps.infog(1) as i32, -8 | -9 | -11 | -12 | -14 | -15) || attempt + 1 == WORKSPACE_TRIES {
+            if !Error::MUMPS_WORKSPACE.contains(&(mumps.infog(1) as i32)) || attempt + 1 == WORKSPACE_TRIES {
                 break;
             }
             workspace *= 2;
@@ -273,5 +279,21 @@ impl Factor {
     pub fn stats(&self) -> FactorStats {
         let (n_solves, n_right_hand_sides, solve_seconds) = self.solves.get();
         FactorStats { n_solves, n_right_hand_sides, solve_seconds, ..self.stats }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn double_precision_is_tried_for_numerical_reasons_only() {
+        let singular = Error::Singular { found_by: "MUMPS".into() };
+        assert!(needs_double(Precision::Single, &singular));
+        assert!(!needs_double(Precision::Double, &singular));
+        assert!(needs_double(Precision::Single, &Error::Mumps { phase: "factorisation", code: -9, detail: 0 }));
+        assert!(!needs_double(Precision::Single, &Error::Mumps { phase: "factorisation", code: -16, detail: 0 }));
+        let short = Error::OutOfMemory { what: "the factor".into(), needed_mb: None };
+        assert!(!needs_double(Precision::Single, &short));
     }
 }

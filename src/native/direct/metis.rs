@@ -42,7 +42,7 @@ pub fn partition(tets: &[[u32; 10]], n_nodes: usize, n_parts: usize) -> Result<V
         )
     };
     if status != 1 {
-        return Err(Error::Library(format!("METIS_PartMeshDual failed with code {status} on {n_tets} tetrahedra")));
+        return Err(Error::library("METIS")(format!("PartMeshDual failed with code {status} on {n_tets} tetrahedra")));
     }
     Ok(of_nodes.into_iter().map(|part| part as u32).collect())
 }
@@ -96,7 +96,7 @@ pub(in crate::native) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Re
     };
     match status {
         1 => Ok(order),
-        _ => Err(Error::Library(format!("METIS_NodeND failed with code {status} on {n} vertices"))),
+        _ => Err(Error::library("METIS")(format!("NodeND failed with code {status} on {n} vertices"))),
     }
 }
 

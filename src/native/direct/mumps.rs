@@ -204,9 +204,10 @@ impl Mumps {
     /// What MUMPS says of its last job.
     ///
     /// # Errors
-    /// Its code, in words.
-    pub fn verdict(&self, phase: &str) -> Result<()> {
-        both!(&self.data, id => verdict(phase, id.infog[0], id.infog[1]))
+    /// [`Error::Singular`], [`Error::OutOfMemory`], [`Error::Mumps`].
+    pub fn verdict(&self, phase: &'static str) -> Result<()> {
+        let estimated_mb = self.infog(17);
+        both!(&self.data, id => verdict(phase, id.infog[0], id.infog[1], estimated_mb))
     }
 
     /// Orders the equations and makes the symbolic factorisation. Collective.
@@ -300,7 +301,7 @@ impl Mumps {
             id.sol_loc = solution.as_mut_ptr();
             id.run(SOLVE);
             drop(right);
-            verdict("solve", id.infog[0], id.infog[1])?;
+            verdict("solution", id.infog[0], id.infog[1], f64::from(id.infog[16]))?;
             if self.route.is_none() {
                 let first = self.equations.first().map_or(0, |&equation| equation as usize - 1);
                 self.route = Some(Route::new(&self.comm, &self.unknowns, first, n));
@@ -312,19 +313,19 @@ impl Mumps {
     }
 }
 
-/// What MUMPS's codes say.
-fn verdict(phase: &str, code: i32, detail: i32) -> Result<()> {
-    if code >= 0 {
-        return Ok(());
+/// From MUMPS's codes to errors. `estimated_mb`: what the analysis has estimated, zero before it.
+fn verdict(phase: &'static str, code: i32, detail: i32, estimated_mb: f64) -> Result<()> {
+    let codes = || format!("MUMPS's {phase}, INFOG(1) = {code}, INFOG(2) = {detail}");
+    match code {
+        0.. => Ok(()),
+        -5 | -7 | -13 => {
+            let needed_mb = Some(estimated_mb).filter(|mb| *mb > 0.0);
+            let needs = needed_mb.map_or(String::new(), |mb| format!("; the factor needs about {:.2} GB", mb / 1024.0));
+            Err(Error::OutOfMemory { what: codes() + &needs, needed_mb })
+        }
+        -6 | -10 => Err(Error::Singular { found_by: codes() }),
+        _ => Err(Error::Mumps { phase, code, detail }),
     }
-    let meaning = match code {
-        -5 | -7 | -13 => "not enough memory; use a smaller mesh or a machine with more",
-        -8 | -9 | -11 | -12 | -14 | -15 => "its workspace was too small even after enlarging",
-        -6 | -10 => "the matrix is singular: a part is held by nothing, or the load has reached a limit point",
-        -16 => "the matrix is empty",
-        _ => "see MUMPS's manual, INFOG(1)",
-    };
-    Err(Error::Library(format!("MUMPS {phase} failed with INFOG(1) = {code}, INFOG(2) = {detail}: {meaning}")))
 }
 
 /// PETSc's name of an option of MUMPS.
@@ -399,5 +400,27 @@ impl Route {
                 rows.iter().zip(values).for_each(|(&row, value)| x[row] = scale * of_rows[row] * value);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ErrorKind;
+
+    #[test]
+    fn codes_become_kinds() {
+        let of = |code| verdict("factorisation", code, 7, 512.0).map_err(|error| error.kind());
+        assert_eq!((of(0), of(2)), (Ok(()), Ok(())));
+        for (codes, kind) in [
+            (&[-6, -10][..], ErrorKind::Singular),
+            (&[-5, -7, -13], ErrorKind::OutOfMemory),
+            (&[-9, -16, -53], ErrorKind::Library),
+        ] {
+            assert!(codes.iter().all(|&code| of(code) == Err(kind)), "{kind:?}");
+        }
+        let short = verdict("factorisation", -13, 7, 512.0).unwrap_err().to_string();
+        assert!(short.contains("needs about 0.50 GB"), "{short}");
+        assert!(!verdict("analysis", -7, 7, 0.0).unwrap_err().to_string().contains("needs about"));
     }
 }

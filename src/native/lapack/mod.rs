@@ -90,12 +90,13 @@ fn update(
 /// Eigenvalues, ascending, of a symmetric `n x n` matrix, which its orthonormal eigenvectors replace column by column. Not collective.
 ///
 /// # Errors
-/// [`Error::NotConverged`] where LAPACK's QR iteration fails.
+/// [`Error::Lapack`] where the QR iteration fails, [`Error::NotConverged`] where an entry is not finite, with which it cannot succeed.
 ///
 /// # Panics
 /// Where the slice is not `n x n`.
 pub fn symmetric_eigen(n: usize, a: &mut [f64]) -> Result<Vec<f64>> {
     assert_eq!(a.len(), n * n);
+    finite("symmetric", n, a)?;
     let (size, mut info) = (n as i32, 0);
     let (mut values, mut work) = (vec![0.0; n], vec![0.0; 40 * n.max(1)]);
     let length = work.len() as i32;
@@ -115,7 +116,17 @@ pub fn symmetric_eigen(n: usize, a: &mut [f64]) -> Result<Vec<f64>> {
     }
     match info {
         0 => Ok(values),
-        _ => Err(Error::NotConverged(format!("LAPACK's dsyev failed with code {info} on {n} rows"))),
+        _ => Err(Error::Lapack { routine: "dsyev", info, n_rows: n }),
+    }
+}
+
+/// Refuses a matrix with entries that are not finite.
+fn finite(what: &str, n: usize, a: &[f64]) -> Result<()> {
+    match a.iter().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(Error::not_converged(format!(
+            "the eigenvalues of a {what} matrix of {n} rows: an entry is not finite, as the iteration before has overflowed"
+        ))),
     }
 }
 
@@ -195,6 +206,13 @@ mod tests {
         let values = symmetric_eigen(2, &mut a).unwrap();
         assert!((values[0] - 1.0).abs() < 1e-15 && (values[1] - 3.0).abs() < 1e-15);
         assert!((a[0] + a[1]).abs() < 1e-15 && (a[2] - a[3]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn entries_that_are_not_finite_are_refused() {
+        let error = symmetric_eigen(2, &mut [1.0, f64::NAN, f64::NAN, 1.0]).unwrap_err();
+        assert_eq!(error.kind(), crate::ErrorKind::NotConverged);
+        assert!(error.to_string().contains("not finite"), "{error}");
     }
 
     #[test]

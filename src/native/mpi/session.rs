@@ -32,7 +32,7 @@ impl Session {
         // SAFETY: MPI_Finalized may be called at any time.
         unsafe { sys::MPI_Finalized(&mut finalized) };
         if finalized != 0 {
-            return Err(Error::Library("MPI cannot be started twice in one process".into()));
+            return Err(Error::library("MPI")("it has ended, and cannot be started again in this process"));
         }
         if env::var_os(OUT_OF_CORE).is_none() {
             // SAFETY: MPI has not started yet, and with it no thread that reads the environment.
@@ -301,12 +301,11 @@ impl Comm {
         if self.size == 1 || speaker.is_infinite() {
             return result;
         }
-        let code = own.map_or(0, Error::exit_code);
-        let text = own.map_or_else(String::new, ToString::to_string);
-        let speaker = speaker as usize;
-        let code = self.max(if self.rank == speaker { f64::from(code) } else { 0.0 }) as i32;
-        let text = self.broadcast(speaker, text.into_bytes());
-        Err(Error::Agreed { code, text: String::from_utf8_lossy(&text).into_owned() })
+        let error = own.map(|error| (error.kind(), error.to_string()));
+        let bytes = error.and_then(|error| postcard::to_stdvec(&error).ok()).unwrap_or_default();
+        let bytes = self.broadcast(speaker as usize, bytes);
+        let (kind, text) = postcard::from_bytes(&bytes).map_err(Error::library("postcard"))?;
+        Err(Error::Agreed { kind, text })
     }
 
     /// The bytes of one rank, on every rank.

@@ -8,7 +8,7 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Matrix, Vector};
+use super::{Matrix, PETSC_ERR_LIB, Vector};
 use crate::native::Comm;
 use crate::{Error, Result};
 
@@ -124,9 +124,18 @@ pub fn solve_or_none(
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Option<Found>> {
     match solve(problem, options, progress) {
-        Err(Error::Library(text)) if text.contains("LAPACK subroutine trexc: info=1") => Ok(None),
+        Err(error) if is_of_reordering(&error) => Ok(None),
         found => found.map(Some),
     }
+}
+
+/// Functions of SLEPc that call xTREXC and no other routine of LAPACK.
+const REORDERING: [&str; 2] = ["DSSort_NHEP_Total", "DSSortWithPermutation_NHEP_Private"];
+
+/// Whether LAPACK, called to reorder a Schur form, is where an error comes from.
+fn is_of_reordering(error: &Error) -> bool {
+    let Error::Petsc { code: PETSC_ERR_LIB, frames, .. } = error else { return false };
+    frames.first().is_some_and(|frame| REORDERING.contains(&frame.function.as_str()))
 }
 
 unsafe fn configure(pep: sys::PEP, shift: f64, options: &Options) -> Result<()> {
@@ -217,4 +226,22 @@ fn collect(pep: &Pep, comm: &Comm, n_local: usize, n_solves: usize) -> Result<Fo
         }
     }
     Ok(Found { pairs, n_converged: n_converged as usize, n_solves })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Frame;
+
+    #[test]
+    fn only_a_schur_form_that_cannot_be_reordered_is_given_up() {
+        let error = |code: i32, function: &str| {
+            let frame = |function: &str| Frame { function: function.into(), file: "dsnhep.c".into(), line: 1 };
+            Error::Petsc { code, message: String::new(), frames: vec![frame(function), frame("DSSort")] }
+        };
+        assert!(is_of_reordering(&error(PETSC_ERR_LIB, "DSSort_NHEP_Total")));
+        assert!(!is_of_reordering(&error(PETSC_ERR_LIB, "DSSolve_NHEP_Private")));
+        assert!(!is_of_reordering(&error(62, "DSSort_NHEP_Total")));
+        assert!(!is_of_reordering(&Error::not_converged("DSSort_NHEP_Total")));
+    }
 }

@@ -7,10 +7,18 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use squeal_sys as sys;
 
+use crate::error::Frame;
 use crate::{Error, Result};
 
+/// The error under way: its message and the functions that it has passed through, the innermost first.
+#[derive(Default)]
+struct Stack {
+    message: String,
+    frames: Vec<Frame>,
+}
+
 thread_local! {
-    static FRAMES: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+    static STACK: RefCell<Stack> = const { RefCell::new(Stack { message: String::new(), frames: Vec::new() }) };
 }
 
 /// Collects one frame of PETSc's error stack; the innermost comes first and carries the message.
@@ -31,14 +39,13 @@ pub(in crate::native) unsafe extern "C" fn collect(
         // SAFETY: PETSc passes NUL-terminated strings that live for the call.
         unsafe { CStr::from_ptr(pointer) }.to_string_lossy().trim().to_owned()
     };
-    let first = kind == sys::PetscErrorType::PETSC_ERROR_INITIAL;
-    let frame = match (first, text(message)) {
-        (true, message) if !message.is_empty() => {
-            format!("{message}\n    in {} ({}:{line})", text(function), text(file))
+    let frame = Frame { function: text(function), file: text(file), line };
+    STACK.with_borrow_mut(|stack| {
+        if kind == sys::PetscErrorType::PETSC_ERROR_INITIAL {
+            *stack = Stack { message: text(message), frames: Vec::new() };
         }
-        _ => format!("    in {} ({}:{line})", text(function), text(file)),
-    };
-    FRAMES.with_borrow_mut(|frames| frames.push(frame));
+        stack.frames.push(frame);
+    });
     code
 }
 
@@ -47,8 +54,8 @@ pub(in crate::native) fn check(code: sys::PetscErrorCode) -> Result<()> {
     if code == 0 {
         return Ok(());
     }
-    let frames = FRAMES.with_borrow_mut(std::mem::take);
-    Err(Error::Library(format!("PETSc error {code}: {}", frames.join("\n"))))
+    let Stack { message, frames } = STACK.with_borrow_mut(std::mem::take);
+    Err(Error::Petsc { code, message, frames })
 }
 
 /// Carries an error or a panic across PETSc's C frames.

@@ -16,6 +16,8 @@ pub(in crate::native) use matrix::Part;
 pub use pattern::{Csr, Rows};
 pub use vector::{Gather, Vector};
 
+/// PETSc's code of an error in a library that it calls: a macro in its headers.
+pub(in crate::native) const PETSC_ERR_LIB: i32 = 76;
 /// PETSc's "work it out": a macro in its headers.
 pub(in crate::native) const DETERMINE: i32 = -1;
 /// PETSc's "choose for me".
