@@ -23,7 +23,8 @@ pub enum Error {
     },
     /// A matrix to be factorised, or updated, is singular.
     #[error(
-        "the matrix is singular ({found_by}): a part is unconstrained, or the load has reached a limit point. `squeal check` shows free parts"
+        "the matrix is singular ({found_by}): a part is unconstrained, or the load has reached a limit point. \
+         `squeal check` shows free parts"
     )]
     Singular {
         /// Library or step that found it, with its code.
@@ -31,7 +32,8 @@ pub enum Error {
     },
     /// Memory is short.
     #[error(
-        "too little memory: {what}. A coarser mesh, other programs closed, a higher limit or a machine with more memory help"
+        "too little memory: {what}. A coarser mesh, other programs closed, a higher limit or a machine with more \
+         memory help"
     )]
     OutOfMemory {
         /// What needs memory, and what limits it.
@@ -103,7 +105,8 @@ pub enum Error {
     },
 }
 
-/// What kind of error it is: all that callers decide by, the same on every rank after [`Comm::agree`](crate::native::Comm::agree).
+/// What kind of error it is: all that callers decide by, the same on every rank after
+/// [`Comm::agree`](crate::native::Comm::agree).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ErrorKind {
     /// The user's input. Exit code 2.
@@ -201,7 +204,8 @@ impl Error {
         self.kind().exit_code()
     }
 
-    /// Whether single precision may be the reason: a pivot that rounding has made zero, or a workspace that pivoting has outgrown.
+    /// Whether single precision may be the reason: a pivot that rounding has made zero, or a workspace that pivoting
+    /// has outgrown.
     pub fn is_numerical(&self) -> bool {
         match self {
             Error::Mumps { code, .. } => Error::MUMPS_WORKSPACE.contains(code),
@@ -209,8 +213,8 @@ impl Error {
         }
     }
 
-    /// Whether all ranks have it together: they agreed on it, or it is of a kind that every rank decides alike. Any other error may be one
-    /// rank's alone, while the others wait for it.
+    /// Whether all ranks have it together: they agreed on it, or it is of a kind that every rank decides alike. Any
+    /// other error may be one rank's alone, while the others wait for it.
     pub fn is_of_all_ranks(&self) -> bool {
         use ErrorKind::{Input, Interrupted, NotConverged, OutOfMemory};
         let is_alike = matches!(self.kind(), Input | NotConverged | OutOfMemory | Interrupted { .. });

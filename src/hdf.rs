@@ -1,12 +1,14 @@
 //! What all our HDF5 files share: how they appear, how they are recognised, and how lists, tables and texts are kept.
 //!
-//! A file has the attributes `format` and `version`, and appears under its name when it is complete. Every array is checksummed
-//! (Fletcher-32), and so are the names and attributes (HDF5 1.10's metadata), so that a flipped bit is an error. A text is an array of bytes, UTF-8.
+//! A file has the attributes `format` and `version`, and appears under its name when it is complete. Every array is
+//! checksummed (Fletcher-32), and so are the names and attributes (HDF5 1.10's metadata), so that a flipped bit is an
+//! error. A text is an array of bytes, UTF-8; the mark of a file is a string of fixed length, as HDF5 keeps those of
+//! variable length in a heap without checksums.
 
 use std::path::{Path, PathBuf};
 
-use hdf5::types::VarLenUnicode;
-use hdf5::{File, Group, H5Type};
+use hdf5::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
+use hdf5::{Attribute, File, Group, H5Type};
 use ndarray::{ArrayView, IxDyn};
 
 use crate::{Error, Result};
@@ -26,8 +28,9 @@ const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes of a chunk, about: what is checked and unpacked at a time.
 const CHUNK: usize = 1 << 20;
 
-/// Starts the library; to be called before MPI starts. HDF5 that meets a running MPI ends itself within MPI_Finalize, where it crashes after a
-/// write that failed: a full disc would end the program with a crash for its exit code.
+/// Starts the library, which a session does before it starts MPI. HDF5 that meets a running MPI ends itself within
+/// MPI_Finalize, where it crashes after a write that failed: a full disc would end the program with a crash for its
+/// exit code.
 pub fn start() {
     hdf5::sync::sync(|| ());
 }
@@ -71,7 +74,7 @@ fn draft(path: &Path) -> Result<PathBuf> {
 
 fn write_draft(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::Result<()>) -> hdf5::Result<()> {
     let file = File::with_options().with_fapl(|access| access.libver_v110()).create(path)?;
-    file.new_attr::<VarLenUnicode>().create("format")?.write_scalar(&unicode(format.name)?)?;
+    file.new_attr::<Mark>().create("format")?.write_scalar(&mark(format.name)?)?;
     file.new_attr::<i32>().create("version")?.write_scalar(&format.version)?;
     body(&file)?;
     file.close()
@@ -98,8 +101,8 @@ pub fn open(path: &Path, format: &Format) -> Result<File> {
         )));
     }
     let file = File::open(path).map_err(|reason| damaged(path, format, reason))?;
-    let name = file.attr("format").and_then(|a| a.read_scalar::<VarLenUnicode>());
-    if name.map_or(true, |name| name.as_str() != format.name) {
+    let name = file.attr("format").and_then(|attribute| read_mark(&attribute));
+    if name.map_or(true, |name| name != format.name) {
         return Err(Error::input(format!("{place} is an HDF5 file, but not of the kind \"{}\"", format.name)));
     }
     let version: i32 =
@@ -124,9 +127,19 @@ pub fn damaged(path: &Path, format: &Format, reason: impl std::fmt::Display) -> 
     Error::input(format!("{} is incomplete or damaged: {reason}. {}", path.display(), format.advice))
 }
 
-/// A text as HDF5's own kind of string, for attributes.
-fn unicode(text: &str) -> hdf5::Result<VarLenUnicode> {
-    text.parse().map_err(|reason| hdf5::Error::from(format!("{reason:?}")))
+/// The mark of a file.
+type Mark = FixedUnicode<64>;
+
+fn mark(name: &str) -> hdf5::Result<Mark> {
+    name.parse().map_err(|reason| hdf5::Error::from(format!("{reason:?}")))
+}
+
+/// The mark of a file, which earlier versions of the program wrote with variable length.
+fn read_mark(attribute: &Attribute) -> hdf5::Result<String> {
+    match attribute.dtype()?.to_descriptor()? {
+        TypeDescriptor::VarLenUnicode => attribute.read_scalar::<VarLenUnicode>().map(|name| name.to_string()),
+        _ => attribute.read_scalar::<Mark>().map(|name| name.to_string()),
+    }
 }
 
 /// Keeps a text.
@@ -200,4 +213,55 @@ pub fn triples<T: H5Type + Copy>(group: &Group, name: &str) -> hdf5::Result<Vec<
 /// HDF5's; where it is not UTF-8.
 pub fn read_text(group: &Group, name: &str) -> hdf5::Result<String> {
     String::from_utf8(values(group, name)?).map_err(|reason| hdf5::Error::from(format!("{name}: {reason}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FORMAT: Format = Format { name: "a test of squeal", version: 3, advice: "Write it again" };
+
+    fn reason(path: &Path, format: &Format) -> String {
+        open(path, format).err().unwrap().to_string()
+    }
+
+    #[test]
+    fn a_file_is_known_by_its_mark_and_version() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.h5");
+        create(&path, &FORMAT, |file| list(file, "x", &[1.0, 2.0])).unwrap();
+        assert_eq!(values::<f64>(&open(&path, &FORMAT).unwrap(), "x").unwrap(), [1.0, 2.0]);
+        assert!(reason(&path, &Format { name: "another", ..FORMAT }).contains("not of the kind \"another\""));
+        assert!(reason(&path, &Format { version: 4, ..FORMAT }).contains("of version 3"));
+    }
+
+    /// As earlier versions of the program marked files.
+    #[test]
+    fn a_mark_of_variable_length_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.h5");
+        let file = File::create(&path).unwrap();
+        let name: VarLenUnicode = FORMAT.name.parse().unwrap();
+        file.new_attr::<VarLenUnicode>().create("format").unwrap().write_scalar(&name).unwrap();
+        file.new_attr::<i32>().create("version").unwrap().write_scalar(&FORMAT.version).unwrap();
+        file.close().unwrap();
+        assert!(open(&path, &FORMAT).is_ok());
+    }
+
+    #[test]
+    fn a_flipped_bit_is_an_error_or_does_no_harm() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.h5");
+        create(&path, &FORMAT, |file| list(file, "x", &[1.0, 2.0])).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        for (at, bit) in (0..whole.len()).flat_map(|at| [(at, 0), (at, 5)]) {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 1 << bit;
+            std::fs::write(&path, bytes).unwrap();
+            let read = open(&path, &FORMAT).map(|file| values::<f64>(&file, "x"));
+            if let Ok(Ok(x)) = read {
+                assert_eq!(x, [1.0, 2.0], "byte {at}, bit {bit}");
+            }
+        }
+    }
 }

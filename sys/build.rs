@@ -1,62 +1,109 @@
-//! Finds Debian's real PETSc and SLEPc, MUMPS, METIS and MPI, and generates the bindings that `squeal` uses.
+//! Finds PETSc, SLEPc, MUMPS, METIS and MPI, and generates the bindings that `squeal` uses: the functions of
+//! `functions.txt`.
+//!
+//! In this order: `PETSC_DIR`, `PETSC_ARCH` and `SLEPC_DIR`; `PKG_CONFIG_PATH`; Debian's packages. `MUMPS_LIBRARIES`
+//! and `METIS_LIBRARY` name other libraries than those found beside PETSc or in the system's folders.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// The real-scalar flavour is pinned even where the complex packages are installed side by side.
-const REAL: &str = "/usr/lib/slepcdir/slepc-real/lib/pkgconfig:/usr/lib/petscdir/petsc-real/lib/pkgconfig:\
-    /usr/lib/slepcdir/slepc3.18/x86_64-linux-gnu-real/lib/pkgconfig:\
-    /usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/pkgconfig";
+/// Everything `squeal` calls, one name a line; whatever these need comes along.
+const FUNCTIONS: &str = include_str!("functions.txt");
 
-/// Everything `squeal` calls; whatever these need comes along.
-const FUNCTIONS: &[&str] = &[
-    "MPI_(Initialized|Finalized|Comm_rank|Comm_size|Allreduce|Allgather|Allgatherv|Alltoall|Alltoallv|Bcast|Send|Recv|Barrier|Abort)",
-    "Petsc(InitializeNoArguments|OptionsSetValue|OptionsClearValue|OptionsGetInt|OptionsGetReal|PushErrorHandler|PopErrorHandler|Error|GetVersion)",
-    "PetscObject(TypeCompare|GetId|StateGet|SetName|SetOptionsPrefix|GetOptionsPrefix|Reference)",
-    "Slepc(Initialize|InitializeNoArguments|Finalize|GetVersion)",
-    "Vec(Create|CreateMPI|CreateSeq|CreateMPIWithArray|CreateSeqWithArray|Destroy|Duplicate|Copy|Set|Scale|AXPY|AYPX|WAXPY|Dot|Norm|MDot|PointwiseMult)",
-    "Vec(GetArray|RestoreArray|GetArrayRead|RestoreArrayRead|GetLocalSize|GetSize|GetOwnershipRange|SetValues|AssemblyBegin|AssemblyEnd)",
-    "VecScatter(Create|CreateToAll|CreateToZero|Begin|End|Destroy)",
-    "IS(CreateGeneral|CreateStride|Destroy)",
-    "Mat(Create|SetSizes|SetType|SetOption|SetUp|Destroy|Duplicate|Copy|Scale|AXPY|AYPX|Mult|MultTranspose|MultAdd|Norm|Zero.*|GetInfo|GetSize|GetLocalSize)",
-    "Mat(CreateSeqAIJWithArrays|CreateMPIAIJWithSplitArrays|MPIAIJGetSeqAIJ|SeqAIJGetArray|SeqAIJRestoreArray|SeqAIJGetArrayRead|SeqAIJRestoreArrayRead|SetValues|AssemblyBegin|AssemblyEnd|GetOwnershipRange|GetRow|RestoreRow|GetRowIJ|RestoreRowIJ|ConvertIfNeeded)",
-    "Mat(MatMult|TransposeMatMult|CreateShell|ShellSetOperation|ShellSetContext|ShellGetContext|CreateDense|DenseGetArray|DenseGetArrayRead|DenseRestoreArrayRead|Convert|DenseRestoreArray|DenseGetLDA|GetRowMaxAbs|GetRowSumAbs)",
-    "[ds]mumps_c",
-    "KSP(Create|Destroy|Solve|GMRESSetRestart|SetPCSide|SetType|SetPC|GetPC|SetTolerances|SetFromOptions|GetConvergedReason|GetIterationNumber|SetOperators|SetNormType)",
-    "PC(SetType|ShellSetApply|ShellSetApplyTranspose|ShellSetContext|ShellGetContext|ShellSetName)",
-    "SNES(Create|Destroy|SetType|SetFunction|SetJacobian|SetConvergenceTest|SetTolerances|SetFromOptions|SetOptionsPrefix|Solve|GetKSP|GetLineSearch)",
-    "SNES(GetConvergedReason|GetIterationNumber|GetFunctionNorm|MonitorSet|SetFunctionDomainError|SetMaxLinearSolveFailures|GetSolution|LineSearchSetType|LineSearchSetTolerances|LineSearchGetLambda|GetNumberFunctionEvals)",
-    "PEP(Create|Destroy|SetOperators|SetProblemType|SetType|SetDimensions|SetTarget|SetWhichEigenpairs|SetTolerances|SetScale|SetRefine|SetExtract|SetFromOptions|SetOptionsPrefix)",
-    "PEP(Solve|GetST|GetConverged|GetEigenpair|GetIterationNumber|GetConvergedReason|MonitorSet|SetStoppingTestFunction|StoppingBasic|SetInitialSpace|SetConvergenceTest|TOARSetRestart|TOARSetLocking|GetDimensions)",
-    "ST(SetType|SetShift|GetKSP|SetMatMode|SetMatStructure|SetTransform|SetFromOptions)",
-    "d(gemm|gemv|syev|sygvd|getrf|getrs|sytrf|sytrs|trsv)_",
-    "zgesv_",
-    "METIS_(PartMeshDual|NodeND)",
-    "squeal_.*",
-];
+/// The double and the single precision of MUMPS; Debian's build with SCOTCH, before the plain one.
+const MUMPS: [[&str; 2]; 2] = [["dmumps_ptscotch", "smumps_ptscotch"], ["dmumps", "smumps"]];
+
+/// Where Debian keeps its configurations of PETSc and SLEPc.
+const DEBIAN: [&str; 2] = ["/usr/lib/petscdir", "/usr/lib/slepcdir"];
+
+/// Where libraries are that no package tells of.
+const SYSTEM: [&str; 4] = ["/usr/local/lib", "/usr/lib/x86_64-linux-gnu", "/usr/lib64", "/usr/lib"];
 
 fn main() {
-    let path = env::var("PKG_CONFIG_PATH").unwrap_or_default();
-    // SAFETY: a build script is single-threaded here.
-    unsafe { env::set_var("PKG_CONFIG_PATH", format!("{REAL}:{path}")) };
-    for library in ["dmumps_ptscotch", "smumps_ptscotch", "metis", "lapack", "blas"] {
-        println!("cargo:rustc-link-lib={library}");
+    for name in ["PETSC_DIR", "PETSC_ARCH", "SLEPC_DIR", "PKG_CONFIG_PATH", "MUMPS_LIBRARIES", "METIS_LIBRARY"] {
+        println!("cargo:rerun-if-env-changed={name}");
     }
-    let slepc = probe("slepc", "libslepc-real-dev");
-    let petsc = probe("petsc", "libpetsc-real-dev");
-    let mpi = probe("mpi-c", "libopenmpi-dev");
-    let includes: Vec<PathBuf> = [slepc, petsc, mpi].into_iter().flat_map(|library| library.include_paths).collect();
+    let folders: Vec<String> = package_folders().iter().map(|folder| folder.display().to_string()).collect();
+    // SAFETY: a build script is single-threaded here.
+    unsafe { env::set_var("PKG_CONFIG_PATH", folders.join(":")) };
+    let found = [
+        probe(&["slepc", "SLEPc"], "libslepc-real-dev"),
+        probe(&["petsc", "PETSc"], "libpetsc-real-dev"),
+        probe(&["mpi-c", "ompi-c", "mpich"], "libopenmpi-dev"),
+    ];
+    let libraries: Vec<PathBuf> = found.iter().flat_map(|library| library.link_paths.clone()).collect();
+    link(&libraries);
+    let includes: Vec<PathBuf> = found.into_iter().flat_map(|library| library.include_paths).collect();
     shim(&includes);
     bindings(&includes);
-    println!("cargo:rerun-if-changed=wrapper.h");
-    println!("cargo:rerun-if-changed=shim.c");
-    println!("cargo:rerun-if-changed=shim.h");
+    for file in ["wrapper.h", "shim.c", "shim.h", "functions.txt"] {
+        println!("cargo:rerun-if-changed={file}");
+    }
 }
 
-fn probe(name: &str, package: &str) -> pkg_config::Library {
-    pkg_config::Config::new()
-        .probe(name)
-        .unwrap_or_else(|error| panic!("{name} is missing: apt-get install {package} (or run `make setup`)\n{error}"))
+/// Folders of pkg-config's files, the first to be looked at first.
+fn package_folders() -> Vec<PathBuf> {
+    let variable = |name: &str| env::var_os(name).filter(|value| !value.is_empty());
+    let arch = variable("PETSC_ARCH").unwrap_or_default();
+    let roots = ["SLEPC_DIR", "PETSC_DIR"].into_iter().filter_map(variable).map(PathBuf::from);
+    let own = roots.flat_map(|root| [root.join(&arch), root]).map(|prefix| prefix.join("lib/pkgconfig"));
+    let given: Vec<PathBuf> =
+        variable("PKG_CONFIG_PATH").map_or(Vec::new(), |paths| env::split_paths(&paths).collect());
+    own.chain(given).chain(debian()).collect()
+}
+
+/// Debian's configurations with real scalars and 32-bit indices: the alternative that the administrator has chosen,
+/// then all others, the newest first. Complex ones may be installed beside them.
+fn debian() -> Vec<PathBuf> {
+    let entries = |folder: &Path| -> Vec<PathBuf> {
+        let mut all: Vec<PathBuf> = folder.read_dir().into_iter().flatten().flatten().map(|e| e.path()).collect();
+        all.sort();
+        all.reverse();
+        all
+    };
+    let ends = |path: &Path, end: &str| path.to_string_lossy().ends_with(end);
+    let mut prefixes = Vec::new();
+    for versions in DEBIAN.map(|folder| entries(Path::new(folder))) {
+        prefixes.extend(versions.iter().filter(|path| ends(path, "-real")).cloned());
+        let is_64 = |path: &&PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().contains("64-"));
+        let below = versions.iter().filter(|path| !is_64(path)).flat_map(|version| entries(version));
+        prefixes.extend(below.filter(|path| ends(path, "-real")));
+    }
+    prefixes.into_iter().map(|prefix| prefix.join("lib/pkgconfig")).collect()
+}
+
+/// The first of some names of a library that pkg-config knows.
+fn probe(names: &[&str], package: &str) -> pkg_config::Library {
+    let found = names.iter().map(|name| pkg_config::Config::new().probe(name)).find_map(Result::ok);
+    found.unwrap_or_else(|| {
+        panic!(
+            "pkg-config does not find {}. Set PETSC_DIR, PETSC_ARCH and SLEPC_DIR, or PKG_CONFIG_PATH; on Debian: \
+             apt-get install {package} (or `make setup`)",
+            names[0]
+        )
+    })
+}
+
+/// Links MUMPS, METIS, LAPACK and BLAS, and leaves for the package's own build script what executables need: MUMPS's
+/// names, ahead of those that PETSc asks for, and the folders where libraries lie at run time.
+fn link(folders: &[PathBuf]) {
+    let is_there = |name: &str| {
+        let system = SYSTEM.iter().map(Path::new);
+        folders
+            .iter()
+            .map(PathBuf::as_path)
+            .chain(system)
+            .any(|folder| ["so", "a", "dylib"].iter().any(|end| folder.join(format!("lib{name}.{end}")).exists()))
+    };
+    let found = MUMPS.iter().find(|names| is_there(names[0])).unwrap_or(&MUMPS[1]);
+    let mumps = env::var("MUMPS_LIBRARIES").unwrap_or_else(|_| found.join(" "));
+    let metis = env::var("METIS_LIBRARY").unwrap_or_else(|_| "metis".into());
+    for library in mumps.split_whitespace().chain([metis.as_str(), "lapack", "blas"]) {
+        println!("cargo:rustc-link-lib={library}");
+    }
+    let folders: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+    println!("cargo:mumps={mumps}");
+    println!("cargo:folders={}", folders.join(":"));
 }
 
 fn shim(includes: &[PathBuf]) {
@@ -76,7 +123,7 @@ fn bindings(includes: &[PathBuf]) {
         .layout_tests(false)
         .generate_comments(false)
         .derive_default(true);
-    for function in FUNCTIONS {
+    for function in FUNCTIONS.lines() {
         builder = builder.allowlist_function(function);
     }
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("bindings.rs");

@@ -1,4 +1,4 @@
-#include "shim.h"
+#include "wrapper.h"
 #include <malloc.h>
 
 MPI_Comm squeal_comm_world(void) { return MPI_COMM_WORLD; }
@@ -7,9 +7,16 @@ int squeal_comm_fortran(MPI_Comm comm) { return (int)MPI_Comm_c2f(comm); }
 MPI_Op squeal_op_sum(void) { return MPI_SUM; }
 MPI_Op squeal_op_max(void) { return MPI_MAX; }
 MPI_Op squeal_op_min(void) { return MPI_MIN; }
+MPI_Op squeal_op_maxloc(void) { return MPI_MAXLOC; }
+MPI_Errhandler squeal_errors_return(void) { return MPI_ERRORS_RETURN; }
 MPI_Datatype squeal_type_double(void) { return MPI_DOUBLE; }
-MPI_Datatype squeal_type_int(void) { return MPI_INT; }
+MPI_Datatype squeal_type_float(void) { return MPI_FLOAT; }
+MPI_Datatype squeal_type_int32(void) { return MPI_INT32_T; }
+MPI_Datatype squeal_type_int64(void) { return MPI_INT64_T; }
+MPI_Datatype squeal_type_uint32(void) { return MPI_UINT32_T; }
+MPI_Datatype squeal_type_uint64(void) { return MPI_UINT64_T; }
 MPI_Datatype squeal_type_byte(void) { return MPI_BYTE; }
+MPI_Datatype squeal_type_double_int(void) { return MPI_DOUBLE_INT; }
 
 void squeal_give_memory_back(void)
 {

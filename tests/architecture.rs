@@ -335,7 +335,10 @@ fn imports(code: &str) -> Vec<(usize, &str)> {
         }
     }
     // The error room's types are known to the whole crate by their own names.
-    found.into_iter().map(|(at, name)| (at, if ["Error", "Result"].contains(&name) { "error" } else { name })).collect()
+    found
+        .into_iter()
+        .map(|(at, name)| (at, if ["Error", "ErrorKind", "Result"].contains(&name) { "error" } else { name }))
+        .collect()
 }
 
 /// First names of the items of a list up to its closing brace.

@@ -170,3 +170,54 @@ fn rank_one_misses_a_file() {
     drop(comm);
     std::process::exit(code)
 }
+
+#[test]
+fn numbers_and_values_reach_other_ranks() {
+    let said = on_two_ranks("ranks_exchange_numbers_and_values");
+    assert_eq!(said.code, 0, "{} {}", said.out, said.err);
+}
+
+#[test]
+fn an_error_of_mpi_ends_all() {
+    let said = on_two_ranks("ranks_broadcast_from_a_rank_that_is_not_there");
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert!(said.err.contains("MPI_Bcast failed: MPI_ERR_ROOT"), "{}", said.err);
+}
+
+#[test]
+#[ignore = "one of the ranks of numbers_and_values_reach_other_ranks"]
+fn ranks_exchange_numbers_and_values() {
+    let comm = Session::start(&[]).unwrap();
+    let (rank, other) = (comm.rank(), 1 - comm.rank());
+    assert_eq!((comm.sum(rank + 1), comm.max(-1.5_f32), comm.min(rank as i64)), (3, -1.5, 0));
+    // Of equal values the first; a larger one wherever it is.
+    let first = comm.max_loc_all(&[2.0, rank as f64, -(rank as f64)]);
+    assert_eq!(first.iter().map(|found| found.rank()).collect::<Vec<_>>(), [0, 1, 0]);
+    assert_eq!(first.iter().map(|found| found.value).collect::<Vec<_>>(), [2.0, 1.0, 0.0]);
+    assert_eq!(comm.join(&vec![rank as u8; 1 + rank]), [0, 1, 1]);
+    let theirs = comm.exchange(&[vec![rank as u32; 2], vec![10 + rank as u32]]);
+    assert_eq!(theirs, if rank == 0 { [vec![0, 0], vec![1, 1]] } else { [vec![10], vec![11]] });
+    assert_eq!(comm.broadcast(1, vec![rank as i32; 1 + rank]), [1, 1]);
+    let value = (rank == 1, format!("rank {rank}"), vec![[0.5, rank as f64]]);
+    assert_eq!(comm.broadcast_value(1, value.clone()), (true, "rank 1".to_owned(), vec![[0.5, 1.0]]));
+    assert_eq!(
+        comm.join_values(value).iter().map(|(_, text, _)| text.as_str()).collect::<Vec<_>>(),
+        ["rank 0", "rank 1"]
+    );
+    assert_eq!(comm.gather_values(Some(rank)), if rank == 0 { vec![Some(0), Some(1)] } else { Vec::new() });
+    if rank == 0 {
+        comm.send_value(&[1.5, 2.5], other)
+    } else {
+        assert_eq!(comm.receive_value::<[f64; 2]>(other), [1.5, 2.5])
+    }
+    let own = if rank == 1 { Err(squeal::Error::not_converged("late")) } else { Ok(()) };
+    let agreed = comm.agree(own).unwrap_err();
+    assert_eq!((agreed.kind(), agreed.to_string().as_str()), (squeal::ErrorKind::NotConverged, "late"));
+}
+
+#[test]
+#[ignore = "one of the ranks of an_error_of_mpi_ends_all"]
+fn ranks_broadcast_from_a_rank_that_is_not_there() {
+    let comm = Session::start(&[]).unwrap();
+    comm.broadcast(7, vec![1_u8]);
+}

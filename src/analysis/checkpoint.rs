@@ -68,7 +68,7 @@ impl Checkpoint {
     ) -> Result<(Checkpoint, VecDeque<EarlierValue>)> {
         let place = folder::unfinished(target)?.join(RESUME);
         let n = folder.map_or(Ok(0), |folder| prepare(folder, &place, target, identity, force));
-        let n_earlier = comm.from_root(&[comm.agree(n)? as f64])[0] as usize;
+        let n_earlier = comm.broadcast_value(0, comm.agree(n)?);
         let earlier = comm.agree((0..n_earlier).map(|i| read_value(&place.join(value_name(i)))).collect())?;
         Ok((Checkpoint { comm: comm.clone(), folder: place, n_earlier, n_done: 0, kept: Vec::new() }, earlier))
     }
@@ -181,9 +181,7 @@ impl Checkpoint {
         } else {
             Ok(Vec::new())
         };
-        let bytes = self.comm.agree(known)?.iter().flat_map(|x| x.to_le_bytes()).collect();
-        let bytes = self.comm.broadcast(0, bytes);
-        let numbers: Vec<f64> = bytes.as_chunks().0.iter().map(|&eight| f64::from_le_bytes(eight)).collect();
+        let numbers = self.comm.broadcast(0, self.comm.agree(known)?);
         let Some((&rows, products)) = numbers.split_first() else { return Ok(None) };
         let products: Vec<Complex64> = products.as_chunks().0.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
         let rows = rows as usize;

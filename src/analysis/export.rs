@@ -154,12 +154,8 @@ impl Export<'_> {
         const FILE: &str = "equations.csv";
         self.files.push((FILE.into(), "node, axis and place of each row (nodes as the mesh file has them, from 1)"));
         let own = structure.dof_labels(system).join("\n");
-        let Some(folder) = self.folder else {
-            self.comm.send(own.as_bytes(), 0);
-            return self.comm.agree(Ok(()));
-        };
-        let others = (1..self.comm.size()).map(|rank| String::from_utf8_lossy(&self.comm.receive(rank)).into_owned());
-        let all: Vec<String> = std::iter::once(own).chain(others).collect();
+        let all = self.comm.gather_values(own);
+        let Some(folder) = self.folder else { return self.comm.agree(Ok(())) };
         self.comm.agree(folder.write(FILE, |out| {
             writeln!(out, "equation,kind,node,axis,x_m,y_m,z_m")?;
             let mut lines = all.iter().flat_map(|text| text.lines()).enumerate();

@@ -10,7 +10,7 @@ use crate::matrices::family::MatrixFamily;
 use crate::native::{Comm, Vector};
 use crate::results::{ExternalMode, ExternalResults, ExternalValue};
 use crate::stability::Mode;
-use crate::{Error, Result};
+use crate::{Error, ErrorKind, Result};
 
 use super::external_sweep::{ExternalModes, ExternalSweep};
 use super::observer::{Event, Observer};
@@ -68,7 +68,7 @@ pub fn external_modes(
         })
     };
     match outcome {
-        Err(error @ Error::NotConverged(_)) => results.notes.push(format!("not converged: {error}")),
+        Err(error) if error.kind() == ErrorKind::NotConverged => results.notes.push(format!("not converged: {error}")),
         outcome => outcome?,
     }
     (results.seconds, results.n_ranks) = (start.elapsed().as_secs_f64(), comm.size());
@@ -156,10 +156,9 @@ fn largest(matrices: &ExternalMatrices, [re, im]: &[Vec<f64>; 2]) -> (f64, usize
     let moduli: Vec<f64> = re.iter().zip(im).map(|(re, im)| re.hypot(*im)).collect();
     let own = moduli.iter().copied().fold(0.0, f64::max);
     let comm = matrices.comm();
-    let largest = comm.max(own);
-    let here = moduli.iter().position(|&modulus| modulus == largest).map(|at| matrices.owned.start + at);
-    let row = -comm.max(here.map_or(f64::NEG_INFINITY, |row| -(row as f64)));
-    (largest, row as usize)
+    let largest = comm.max_loc(own);
+    let here = moduli.iter().position(|&modulus| modulus == own).unwrap_or_default();
+    (largest.value, comm.broadcast_value(largest.rank(), matrices.owned.start + here))
 }
 
 /// Growth rates above this are no noise, 1/s: a millionth of the frequency; of a real eigenvalue, as which the double zero of a free motion

@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 use crate::Result;
 use crate::assembly::System;
-use crate::native::{Comm, Factor, FactorKind};
+use crate::native::{Comm, Factor, FactorKind, MaxLoc};
 use crate::output::fields::write_free_mode;
 use crate::output::folder::Folder;
 use crate::results::{FreeMode, FreeModes, MeasuredComparison};
@@ -147,18 +147,14 @@ impl Points {
         };
         let nearest = |x: &[f64; 3]| own.iter().map(|&n| (square(x, n), n)).min_by(|a, b| a.0.total_cmp(&b.0));
         let own: Vec<Option<(f64, u32)>> = measured.points.iter().map(nearest).collect();
-        let mut least: Vec<f64> =
+        let closeness: Vec<f64> =
             own.iter().map(|best| best.map_or(f64::NEG_INFINITY, |(square, _)| -square)).collect();
-        comm.max_all(&mut least);
         // Of ranks with nodes equally near the first.
-        let claims = |best: &Option<(f64, u32)>, least: &f64| best.is_some_and(|(square, _)| -square == *least);
-        let rank = |claim: bool| if claim { -(comm.rank() as f64) } else { f64::NEG_INFINITY };
-        let mut first: Vec<f64> = own.iter().zip(&least).map(|(best, least)| rank(claims(best, least))).collect();
-        comm.max_all(&mut first);
-        let mine = |(best, (least, first)): (Option<(f64, u32)>, (&f64, &f64))| {
-            best.filter(|_| claims(&best, least) && -first == comm.rank() as f64).map(|(_, node)| node)
+        let closest = comm.max_loc_all(&closeness);
+        let mine = |(best, closest): (Option<(f64, u32)>, &MaxLoc)| {
+            best.filter(|_| closest.rank() == comm.rank()).map(|(_, node)| node)
         };
-        let distance = least.iter().fold(0.0, |largest: f64, least| largest.max((-least).sqrt()));
-        Points { nodes: own.into_iter().zip(least.iter().zip(&first)).map(mine).collect(), distance }
+        let distance = closest.iter().fold(0.0, |largest: f64, closest| largest.max((-closest.value).sqrt()));
+        Points { nodes: own.into_iter().zip(&closest).map(mine).collect(), distance }
     }
 }

@@ -13,7 +13,7 @@ use crate::output::results_folder;
 use crate::results::{About, Failure, ModeData, Results, Value};
 use crate::stability::Count;
 use crate::structure::{Structure, SurfaceMotion};
-use crate::{Error, Result};
+use crate::{Error, ErrorKind, Result};
 
 use super::checkpoint::{Checkpoint, EarlierValue};
 use super::family::{Snapshot, Vectors};
@@ -131,7 +131,9 @@ pub(super) fn run(
         results.costs += &format!("without {n_earlier} values that an earlier run has found\n");
     }
     match outcome {
-        Err(error @ Error::NotConverged(_)) => results.failure.get_or_insert_default().reason = error.to_string(),
+        Err(error) if error.kind() == ErrorKind::NotConverged => {
+            results.failure.get_or_insert_default().reason = error.to_string();
+        }
         outcome => outcome?,
     }
     let place = output.map_or_else(String::new, |output| output.folder.display().to_string());
@@ -277,12 +279,13 @@ impl Run<'_> {
     fn give_up(&mut self, friction: f64, error: Error) -> Result<Error> {
         let steps = self.sweep.path().steps().to_vec();
         self.results.failure = Some(Failure { friction: Some(friction), steps, ..Failure::default() });
-        let (Error::NotConverged(reason), Some(u), Some(place)) = (&error, self.sweep.path().last(), &self.place)
+        let (ErrorKind::NotConverged, Some(u), Some(place)) = (error.kind(), self.sweep.path().last(), &self.place)
         else {
             return Ok(error);
         };
         let file = place.join(self.fields.last_state(u)?);
-        Ok(Error::NotConverged(format!("{reason}. The last state is in {}", file.display())))
+        let what = format!("{error}. The last state is in {}", file.display());
+        Ok(Error::NotConverged { what, history: error.history().to_vec() })
     }
 }
 

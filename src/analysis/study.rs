@@ -199,7 +199,7 @@ impl<'a> Plan<'a> {
             output: Some(output),
         };
         let results = stability(comm, &structure, &options, observer)?;
-        let failed = |failure: crate::results::Failure| Err(Error::NotConverged(failure.reason));
+        let failed = |failure: crate::results::Failure| Err(Error::not_converged(failure.reason));
         comm.agree(results.failure.map_or(Ok(()), failed))
     }
 

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use serde::{Deserialize, Serialize};
+
 use super::{DofMap, System};
 use crate::Result;
 use crate::element::tet10::FACES;
@@ -25,7 +27,7 @@ pub struct Boundary {
 impl Boundary {
     /// Brings the outer faces of all ranks together. Collective.
     pub fn new(comm: &Comm, mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Boundary {
-        let mut faces = OuterFace::from_numbers(&comm.join(&OuterFace::to_numbers(&own_faces(mesh, nodes, dofs))));
+        let mut faces = comm.join_values(own_faces(mesh, nodes, dofs)).concat();
         faces.sort_by_key(|face| (face.part, face.corners.map(|corner| corner.label)));
         let corners: BTreeMap<u32, Corner> =
             faces.iter().flat_map(|face| face.corners).map(|corner| (corner.label, corner)).collect();
@@ -72,7 +74,7 @@ impl Displacements {
 }
 
 /// A corner of an outer face, by its number in the mesh's file.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Corner {
     label: u32,
     position: [f64; 3],
@@ -80,40 +82,10 @@ struct Corner {
 }
 
 /// An outer face of a tetrahedron.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct OuterFace {
     corners: [Corner; 3],
     part: i32,
-}
-
-impl OuterFace {
-    /// Numbers that a face becomes to be sent.
-    const WIDTH: usize = 22;
-
-    fn to_numbers(faces: &[OuterFace]) -> Vec<f64> {
-        faces.iter().flat_map(|face| face.numbers()).collect()
-    }
-
-    fn numbers(&self) -> [f64; OuterFace::WIDTH] {
-        let mut numbers = [0.0; OuterFace::WIDTH];
-        for (corner, out) in self.corners.iter().zip(numbers.chunks_exact_mut(7)) {
-            out[0] = f64::from(corner.label);
-            out[1..4].copy_from_slice(&corner.position);
-            out[4..].copy_from_slice(&corner.dofs.map(f64::from));
-        }
-        numbers[21] = f64::from(self.part);
-        numbers
-    }
-
-    fn from_numbers(numbers: &[f64]) -> Vec<OuterFace> {
-        let corner = |n: &[f64]| Corner {
-            label: n[0] as u32,
-            position: [n[1], n[2], n[3]],
-            dofs: [n[4], n[5], n[6]].map(|e| e as i32),
-        };
-        let face = |n: &[f64]| OuterFace { corners: [0, 7, 14].map(|k| corner(&n[k..])), part: n[21] as i32 };
-        numbers.chunks_exact(OuterFace::WIDTH).map(face).collect()
-    }
 }
 
 /// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it has all
@@ -164,6 +136,5 @@ mod tests {
         assert!(all.iter().all(|face| below_three(face) == 2));
         let apart = [faces(0..1), faces(1..14)].concat();
         assert!(apart.len() == 6 && all.iter().all(|face| apart.contains(face)));
-        assert_eq!(OuterFace::from_numbers(&OuterFace::to_numbers(&all)), all);
     }
 }

@@ -62,7 +62,7 @@ fn parts(told: &mut Told, comm: &Comm, brake: &FullModel) {
     };
     let (high, low) = (ends(1.0), ends(-1.0));
     let size = [0, 1, 2].map(|i| high[i] + low[i]);
-    let (nodes, tets) = (brake.nodes.n_global(), comm.sum(brake.own_tets().count() as f64) as usize);
+    let (nodes, tets) = (brake.nodes.n_global(), comm.sum(brake.own_tets().count()));
     let _ =
         writeln!(text, "mesh: {nodes} nodes, {tets} tetrahedra, {} mm", size.map(|x| fixed(1e3 * x, 1)).join(" x "));
     told.json["mesh"] = json!({"nodes": nodes, "tetrahedra": tets, "size_m": size});

@@ -7,7 +7,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::exit;
 
-use crate::{Error, Result};
+use crate::{Error, ErrorKind, Result};
 
 /// Receives the signals that ask a run to stop.
 pub struct Interrupt {
@@ -20,14 +20,13 @@ impl Interrupt {
     /// # Errors
     /// The system's.
     pub fn listen(notice: impl Fn() + Send + 'static) -> Result<Interrupt> {
-        let mut signals = Signals::new([SIGINT, SIGTERM])
-            .map_err(|reason| Error::Library(format!("signals cannot be received: {reason}")))?;
+        let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(Error::library("no handler for signals"))?;
         let signal = Arc::new(AtomicI32::new(0));
         let received = signal.clone();
         std::thread::spawn(move || {
             for number in signals.forever() {
                 if received.swap(number, Ordering::Relaxed) != 0 {
-                    exit(Error::SIGNAL + number);
+                    exit(ErrorKind::SIGNAL + number);
                 }
                 notice();
             }

@@ -25,13 +25,12 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use serde_json::{Value as Json, json};
 
 use crate::analysis::Output;
-use crate::hdf;
 use crate::model::NormalLaw;
 use crate::native::{Comm, Session};
 use crate::output::json;
 use crate::results::Results;
 use crate::structure::StructureOptions;
-use crate::{Error, Result};
+use crate::{Error, ErrorKind, Result};
 use values::FrictionValues;
 
 /// Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake.
@@ -89,7 +88,7 @@ impl Shell<'_> {
         let place = place.display().to_string();
         self.tell(&summary(results, &place), || json::document(results, &place))?;
         let failure = self.comm.agree(match &results.failure {
-            Some(failure) => Err(Error::NotConverged(failure.reason.clone())),
+            Some(failure) => Err(Error::not_converged(failure.reason.clone())),
             None => Ok(()),
         });
         failure
@@ -300,7 +299,6 @@ pub fn main() -> i32 {
         Ok(parsed) => parsed,
         Err(usage) => return tell_usage(&usage),
     };
-    hdf::start();
     match Session::start(&options) {
         Ok(comm) => {
             let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json, silent: false };
@@ -387,10 +385,10 @@ fn end(comm: &Comm, error: &Error, json: bool) -> i32 {
 
 /// Writes to standard error, as far as anyone listens.
 fn tell_error(what: &str, error: &Error, as_json: bool) {
-    let text = match (as_json, error) {
+    let text = match (as_json, error.kind()) {
         (true, _) => json!({"error": error.to_string(), "exit_code": error.exit_code()}).to_string(),
         // That a run was stopped is no mistake.
-        (false, Error::Interrupted { .. }) => error.to_string(),
+        (false, ErrorKind::Interrupted { .. }) => error.to_string(),
         (false, _) => format!("{what}: {error}"),
     };
     let _ = writeln!(io::stderr(), "{text}");

@@ -15,6 +15,7 @@ use crate::mesh::Surface;
 use nalgebra::Vector3;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -75,7 +76,16 @@ pub trait Team {
     /// This member's share of n things.
     fn share(&self, n: usize) -> Range<usize>;
     /// Everyone's values, in the order of the shares.
-    fn join(&self, own: Vec<f64>) -> Vec<f64>;
+    fn join(&self, own: Vec<Option<Foot>>) -> Vec<Option<Foot>>;
+}
+
+/// Where a point's projection lies on the master.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Foot {
+    /// The facet's index in the master.
+    facet: usize,
+    /// Coordinates on the facet.
+    at: [f64; 2],
 }
 
 /// One who searches alone.
@@ -86,7 +96,7 @@ impl Team for Alone {
         0..n
     }
 
-    fn join(&self, own: Vec<f64>) -> Vec<f64> {
+    fn join(&self, own: Vec<Option<Foot>>) -> Vec<Option<Foot>> {
         own
     }
 }
@@ -102,16 +112,15 @@ pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Opt
     let search = |&(node, point): &(u32, Midside)| {
         let reach = options.search_distance.unwrap_or(0.5 * point.size());
         let hit = target.closest(&position(node), &point, reach);
-        hit.map_or(NOTHING, |hit| [hit.facet as f64, hit.projection.at[0], hit.projection.at[1]])
+        hit.map(|hit| Foot { facet: hit.facet, at: hit.projection.at })
     };
-    let hits = team.join(candidates[team.share(candidates.len())].iter().flat_map(search).collect());
+    let feet = team.join(candidates[team.share(candidates.len())].iter().map(search).collect());
     let mut found = Found { area, ..Found::default() };
-    for ((node, point), &hit) in candidates.into_iter().zip(hits.as_chunks().0) {
-        match hit {
-            NOTHING => found.dropped.push(node),
-            [facet, r, s] => {
-                let hit =
-                    target.hit(facet as usize, Projection::at(&target.facets[facet as usize], &position(node), [r, s]));
+    for ((node, point), foot) in candidates.into_iter().zip(feet) {
+        match foot {
+            None => found.dropped.push(node),
+            Some(Foot { facet, at }) => {
+                let hit = target.hit(facet, Projection::at(&target.facets[facet], &position(node), at));
                 found.points.push(found_point(node, nodes, &point, &hit));
             }
         }
@@ -119,8 +128,6 @@ pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Opt
     found
 }
 
-/// What a search without a hit says in place of a facet and the coordinates on it.
-const NOTHING: [f64; 3] = [-1.0, 0.0, 0.0];
 /// Where a point of space comes down on a master.
 #[derive(Debug, Clone, Copy)]
 pub struct Landing {

@@ -212,7 +212,7 @@ impl StepFactor {
 
 /// How many columns an update may have. Collective.
 fn room(like: &Vector) -> usize {
-    let column_mb = 8.0 * like.comm().sum(like.n_local() as f64) / (1024.0 * 1024.0);
+    let column_mb = 8.0 * like.comm().sum(like.n_local()) as f64 / (1024.0 * 1024.0);
     let room = SHARE_OF_MEMORY * machine::available_mb(like.comm()) / column_mb;
     MAX_UPDATES.min(room as usize)
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::combined::{CombinedTerms, Term};
 use super::sparse::{SparsityPattern, symmetric_part};
 use super::{Dof, Role};
@@ -65,6 +67,7 @@ pub struct Sums {
 const ROUNDING: f64 = 1e-10;
 
 /// What a rank gets of a problem.
+#[derive(Serialize, Deserialize)]
 struct RowBlock {
     offsets: Vec<u32>,
     columns: Vec<u32>,
@@ -86,18 +89,16 @@ impl ExternalMatrices {
     /// Distributes what the root has. Collective.
     fn distribute(comm: &Comm, terms: &[Term], problem: Option<CombinedTerms>) -> Result<ExternalMatrices> {
         let (parts, is_symmetric) = problem.as_ref().map_or_else(Default::default, |problem| parts(terms, problem));
-        let flags: Vec<f64> =
-            (0..terms.len()).map(|i| f64::from(u8::from(is_symmetric.get(i) == Some(&true)))).collect();
-        let flags: Vec<bool> = comm.from_root(&flags).iter().map(|&flag| flag == 1.0).collect();
-        let n = comm.max(problem.as_ref().map_or(0.0, |problem| problem.scale.len() as f64)) as usize;
+        let n = problem.as_ref().map_or(0, |problem| problem.scale.len());
+        let (n, flags) = comm.broadcast_value(0, (n, is_symmetric));
         let owned = |rank: usize| rank * n / comm.size()..(rank + 1) * n / comm.size();
         let piece = match &problem {
             Some(problem) => {
                 let piece = |rank: usize| RowBlock::of(problem, &parts, owned(rank));
-                (1..comm.size()).for_each(|rank| comm.send(&piece(rank).to_bytes(), rank));
+                (1..comm.size()).for_each(|rank| comm.send_value(&piece(rank), rank));
                 piece(0)
             }
-            None => RowBlock::from_bytes(&comm.receive(0)),
+            None => comm.receive_value(0),
         };
         let matrices = piece.matrices(comm, &owned(comm.rank()))?;
         let all = |role: Role| terms.iter().zip(&flags).filter(|(term, _)| term.role == role).all(|(_, flag)| *flag);
@@ -190,31 +191,6 @@ impl RowBlock {
             values: problem.values.iter().chain(parts).map(|values| values[range.clone()].to_vec()).collect(),
             scale: problem.scale[rows].to_vec(),
         }
-    }
-
-    fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        let sizes = [self.offsets.len(), self.columns.len(), self.values.len()];
-        sizes.iter().for_each(|&size| bytes.extend((size as u64).to_le_bytes()));
-        self.offsets.iter().chain(&self.columns).for_each(|number| bytes.extend(number.to_le_bytes()));
-        self.values.iter().chain([&self.scale]).flatten().for_each(|number| bytes.extend(number.to_le_bytes()));
-        bytes
-    }
-
-    fn from_bytes(bytes: &[u8]) -> RowBlock {
-        let (head, mut rest) = bytes.split_at(24);
-        let sizes: Vec<usize> = head.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes) as usize).collect();
-        let mut take = |n_bytes: usize| {
-            let (own, others) = rest.split_at(n_bytes);
-            rest = others;
-            own
-        };
-        let integers = |bytes: &[u8]| bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
-        let numbers = |bytes: &[u8]| bytes.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
-        let (offsets, columns): (Vec<u32>, Vec<u32>) = (integers(take(4 * sizes[0])), integers(take(4 * sizes[1])));
-        let values = (0..sizes[2]).map(|_| numbers(take(8 * columns.len()))).collect();
-        let scale = numbers(take(8 * (offsets.len() - 1)));
-        RowBlock { offsets, columns, values, scale }
     }
 
     /// The matrices of all values on one pattern. Collective.

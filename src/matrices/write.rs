@@ -2,13 +2,15 @@
 
 use std::io::{self, Write};
 
+use serde::{Deserialize, Serialize};
+
 use crate::Result;
 use crate::native::Matrix;
 
 use super::petsc_binary::MATRIX;
 
 /// All rows of a matrix, compressed; entries that are zero are left out.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct GatheredMatrix {
     /// Number of entries of each row.
     pub lengths: Vec<u32>,
@@ -35,30 +37,15 @@ impl GatheredMatrix {
             }
             whole.lengths.push((whole.columns.len() - before) as u32);
         })?;
-        if !comm.is_root() {
-            comm.send(&whole.to_bytes(), 0);
-            return Ok(None);
-        }
-        (1..comm.size()).for_each(|rank| whole.append_bytes(&comm.receive(rank)));
-        Ok(Some(whole))
+        Ok(comm.gather_values(whole).into_iter().reduce(GatheredMatrix::followed_by))
     }
 
-    fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = (self.lengths.len() as u64).to_le_bytes().to_vec();
-        self.lengths.iter().chain(&self.columns).for_each(|number| bytes.extend(number.to_le_bytes()));
-        self.values.iter().for_each(|number| bytes.extend(number.to_le_bytes()));
-        bytes
-    }
-
-    fn append_bytes(&mut self, bytes: &[u8]) {
-        let (head, rest) = bytes.split_at(8);
-        let n = u64::from_le_bytes(head.try_into().expect("eight bytes")) as usize;
-        let (lengths, rest) = rest.split_at(4 * n);
-        // An entry takes four bytes of column and eight of value.
-        let (columns, values) = rest.split_at(rest.len() / 3);
-        self.lengths.extend(lengths.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)));
-        self.columns.extend(columns.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)));
-        self.values.extend(values.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)));
+    /// With the rows of another one below its own.
+    fn followed_by(mut self, below: GatheredMatrix) -> GatheredMatrix {
+        self.lengths.extend(below.lengths);
+        self.columns.extend(below.columns);
+        self.values.extend(below.values);
+        self
     }
 
     /// Writes Matrix Market, coordinate real general. Numbers are as short as they can be and still the same.

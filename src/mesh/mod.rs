@@ -11,7 +11,6 @@
 //!
 //! The order of nodes is that of [`tet10`](crate::element::tet10) and [`tri6`](crate::element::tri6).
 
-mod bytes;
 mod gmsh;
 mod numbering;
 mod piece;

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 /// The nodes that a rank has, by their *local* numbers, and their *global* numbers among all nodes.
 ///
 /// Local numbers rise with global ones, so that whatever is ordered by local numbers is ordered alike on all ranks. The nodes that
 /// the rank owns follow one another; every node has one owner.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Numbering {
     pub(super) global: Vec<u32>,
     pub(super) owned: Range<u32>,

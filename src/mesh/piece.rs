@@ -4,14 +4,14 @@
 //! their nodes are on every rank, as contact, loads and supports are. They grow with the surface of the bodies, the rest with their
 //! volume.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::bytes::{Reader, Writer};
+use serde::{Deserialize, Serialize};
+
 use super::{Mesh, Numbering, Surface};
 
 /// A part of a mesh, in local numbers.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Piece {
     /// Nodes and tetrahedra that the rank has; all surfaces and node sets.
     pub mesh: Mesh,
@@ -47,49 +47,6 @@ impl Piece {
             node_sets: whole.node_sets.iter().map(set).collect(),
         };
         Piece { mesh, nodes: Numbering::new(global, owned, labels) }
-    }
-
-    /// The piece as bytes, for another rank.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let (mesh, nodes) = (&self.mesh, &self.nodes);
-        let mut out = Writer::default();
-        out.integers(&[nodes.n_global as u32, nodes.owned.start, nodes.owned.end]);
-        out.integers(&nodes.global);
-        out.integers(&nodes.labels);
-        out.numbers(mesh.nodes.as_flattened());
-        out.integers(mesh.tets.as_flattened());
-        out.integers(&mesh.tet_part);
-        out.texts(mesh.parts.iter());
-        out.texts(mesh.surfaces.keys());
-        for surface in mesh.surfaces.values() {
-            out.integers(surface.facets.as_flattened());
-            out.integers(&surface.parts);
-            out.integers(&surface.inner);
-        }
-        out.texts(mesh.node_sets.keys());
-        mesh.node_sets.values().for_each(|set| out.integers(set));
-        out.bytes
-    }
-
-    /// The piece of [`Piece::to_bytes`].
-    ///
-    /// # Panics
-    /// Where these are other bytes.
-    pub fn from_bytes(bytes: &[u8]) -> Piece {
-        let mut from = Reader { bytes };
-        let head = from.integers();
-        let (global, labels) = (from.integers(), from.integers());
-        let nodes = Numbering { global, owned: head[1]..head[2], n_global: head[0] as usize, labels };
-        let coordinates = from.numbers().as_chunks().0.to_vec();
-        let tets = from.integers().as_chunks().0.to_vec();
-        let (tet_part, parts) = (from.integers(), from.texts());
-        let mut surfaces = BTreeMap::new();
-        for name in from.texts() {
-            let facets = from.integers().as_chunks().0.to_vec();
-            surfaces.insert(name, Surface { facets, parts: from.integers(), inner: from.integers() });
-        }
-        let node_sets = from.texts().into_iter().map(|name| (name, from.integers())).collect();
-        Piece { mesh: Mesh { nodes: coordinates, tets, tet_part, parts, surfaces, node_sets }, nodes }
     }
 }
 
@@ -135,7 +92,7 @@ mod tests {
     fn a_piece_survives_the_way_to_another_rank() {
         for owned in [0..30, 12..16, 5..5] {
             let piece = Piece::of(&chain(), owned, &labels());
-            let copy = Piece::from_bytes(&piece.to_bytes());
+            let copy: Piece = postcard::from_bytes(&postcard::to_stdvec(&piece).unwrap()).unwrap();
             assert_eq!(format!("{copy:?}"), format!("{piece:?}"));
         }
     }

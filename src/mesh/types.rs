@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 /// A mesh of 10-node tetrahedra in metres.
 ///
 /// Node order of a tetrahedron: corners 0-3, then the midsides of the edges
 /// (0,1) (1,2) (2,0) (0,3) (1,3) (2,3). Node order of a facet: corners 0-2, then the midsides of (0,1) (1,2) (2,0).
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Mesh {
     /// Coordinates of the nodes, m.
     pub nodes: Vec<[f64; 3]>,
@@ -23,7 +25,7 @@ pub struct Mesh {
 }
 
 /// A named set of 6-node facets on the skin of the parts, each oriented so that its normal points out of the body.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Surface {
     /// The facets, six node indices each.
     pub facets: Vec<[u32; 6]>,

@@ -1,8 +1,8 @@
 //! What this process may still take, against what a factor will need.
 //!
-//! Three limits hold at once: what the machine has free, what the control group (a container, a batch job) may have, and the
-//! address space of a process (`ulimit -v`). The kernel tells all three under `/proc` and `/sys`; one that it does not tell is
-//! no limit.
+//! Three limits hold at once: what the machine has free, what the control group (a container, a batch job) may have,
+//! and the address space of a process (`ulimit -v`). The kernel tells all three under `/proc` and `/sys`; one that it
+//! does not tell is no limit.
 
 use std::fs;
 use std::path::Path;
@@ -14,35 +14,36 @@ use crate::{Error, Result};
 
 const MB: f64 = 1024.0 * 1024.0;
 
-/// Whether the ranks together may still take so much memory, MB. Where they may not at first, what they have freed is given back to the system
-/// before it is said: Open MPI has the C library keep it, which saves the page faults of the next factor (a third of its time on the
-/// medium demo brake). Collective.
+/// Whether the ranks together may still take so much memory, MB. Where they may not at first, what they have freed is
+/// given back to the system before it is said: Open MPI has the C library keep it, which saves the page faults of the
+/// next factor (a third of its time on the medium demo brake). Collective.
 pub fn has_mb(comm: &Comm, needed_mb: f64) -> bool {
     if needed_mb <= available_mb(comm) {
         return true;
     }
     // SAFETY: it frees nothing that is in use.
     unsafe { sys::squeal_give_memory_back() };
-    comm.sum(0.0);
+    comm.barrier();
     needed_mb <= available_mb(comm)
 }
 
-/// Memory that the ranks together may still take, MB. Collective; ranks are taken to share one machine and control group.
+/// Memory that the ranks together may still take, MB. Collective; ranks are taken to share one machine and control
+/// group.
 pub fn available_mb(comm: &Comm) -> f64 {
     limits(comm).0
 }
 
 /// Whether the ranks together may reserve so much address space, MB, and use so much of it. Collective.
 pub(in crate::native) fn has_room(comm: &Comm, used_mb: f64, reserved_mb: f64) -> bool {
-    let each = -comm.max(-address_space_mb().unwrap_or(f64::INFINITY));
+    let each = comm.min(address_space_mb().unwrap_or(f64::INFINITY));
     has_mb(comm, used_mb) && reserved_mb <= each * comm.size() as f64
 }
 
 /// What the ranks together may still take, MB, and what limits it.
 fn limits(comm: &Comm) -> (f64, &'static str) {
     let own = machine_mb().unwrap_or(f64::INFINITY).min(group_mb().unwrap_or(f64::INFINITY));
-    let shared = -comm.max(-own);
-    let each = -comm.max(-address_space_mb().unwrap_or(f64::INFINITY));
+    let shared = comm.min(own);
+    let each = comm.min(address_space_mb().unwrap_or(f64::INFINITY));
     let available = shared.min(each * comm.size() as f64);
     (available, if shared <= available { "the machine or its container" } else { "ulimit -v" })
 }

@@ -15,7 +15,7 @@ const ROUNDS: usize = 5;
 /// PETSc's and MUMPS's.
 pub fn condition(a: &Matrix, factor: &Factor) -> Result<f64> {
     let (comm, n) = (a.comm(), a.n_local());
-    let total = comm.sum(n as f64);
+    let total = comm.sum(n) as f64;
     let mut x = Block::from_columns(comm, n, vec![1.0 / total; n]);
     if n == 0 {
         x = Block::zeros(comm, 0, 1);
@@ -23,7 +23,7 @@ pub fn condition(a: &Matrix, factor: &Factor) -> Result<f64> {
     let mut estimate = 0.0_f64;
     for _ in 0..ROUNDS {
         let y = x.solved_by_transpose(factor)?;
-        let norm = comm.sum(y.values().iter().map(|y| y.abs()).sum());
+        let norm: f64 = comm.sum(y.values().iter().map(|y| y.abs()).sum());
         if !norm.is_finite() {
             return Ok(f64::INFINITY);
         }
@@ -33,17 +33,15 @@ pub fn condition(a: &Matrix, factor: &Factor) -> Result<f64> {
         signs.values_mut().iter_mut().for_each(|y| *y = if *y < 0.0 { -1.0 } else { 1.0 });
         let gradient = signs.solved_by(factor)?;
         let own = gradient.values().iter().map(|z| z.abs()).fold(0.0, f64::max);
-        let largest = comm.max(own);
-        let slope = comm.sum(gradient.values().iter().zip(x.values()).map(|(z, x)| z * x).sum());
-        if !has_grown || largest <= slope {
+        let largest = comm.max_loc(own);
+        let slope: f64 = comm.sum(gradient.values().iter().zip(x.values()).map(|(z, x)| z * x).sum());
+        if !has_grown || largest.value <= slope {
             break;
         }
         // The first of the largest entries, in the order of the ranks.
-        let mine = if own == largest { comm.rank() } else { comm.size() };
-        let rank = -comm.max(-(mine as f64));
         x.values_mut().fill(0.0);
-        if rank == comm.rank() as f64 {
-            let at = gradient.values().iter().position(|z| z.abs() == largest).expect("it is here");
+        if largest.rank() == comm.rank() {
+            let at = gradient.values().iter().position(|z| z.abs() == largest.value).expect("it is here");
             x.values_mut()[at] = 1.0;
         }
     }

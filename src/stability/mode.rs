@@ -158,12 +158,8 @@ fn largest(re: &Vector, im: &Vector) -> Result<(Complex64, f64)> {
     };
     let own = re.local(|re| im.local(|im| entry(re, im)))??;
     let comm = re.comm();
-    let modulus = comm.max(own.norm());
-    let rank = if own.norm() == modulus { -(comm.rank() as f64) } else { f64::NEG_INFINITY };
-    let mine = comm.max(rank) == rank;
-    let mut value = if mine { [own.re, own.im] } else { [0.0; 2] };
-    comm.sum_all(&mut value);
-    Ok((Complex64::new(value[0], value[1]), modulus))
+    let largest = comm.max_loc(own.norm());
+    Ok((comm.broadcast_value(largest.rank(), own), largest.value))
 }
 
 /// Columns of a block of products.

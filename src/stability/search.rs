@@ -160,7 +160,8 @@ fn ritz(space: &Space, radius: f64, n_expected: usize) -> Result<Vec<Ritz>> {
     let comm = space.v.comm().alone();
     let n = space.v.n_columns();
     // The same numbers on every rank, to the last bit.
-    let small = |a: &DMatrix<f64>| Matrix::dense(&comm, n, &space.v.comm().from_root(a.transpose().as_slice()));
+    let small =
+        |a: &DMatrix<f64>| Matrix::dense(&comm, n, &space.v.comm().broadcast(0, a.transpose().as_slice().to_vec()));
     let (m, c, k) = (small(&space.m)?, small(&space.c)?, small(&space.a)?);
     let mut factor = Factor::new(FactorKind::Unsymmetric);
     factor.factorise(&k)?;

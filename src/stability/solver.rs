@@ -319,5 +319,5 @@ fn shifted(pencil: &Pencil, shift: f64) -> Result<Option<Matrix>> {
 }
 
 pub(super) fn n_equations(pencil: &Pencil) -> usize {
-    pencil.k.comm().sum(pencil.k.n_local() as f64) as usize
+    pencil.k.comm().sum(pencil.k.n_local())
 }

@@ -106,7 +106,7 @@ impl<'a> Space<'a> {
         let (comm, n_local) = (problem.pencil.k.comm(), problem.pencil.k.n_local());
         let none = || DMatrix::zeros(0, 0);
         let v = Block::with_room(comm, n_local, n_columns);
-        let (noise, n_equations) = (Noise::new(problem.labels), comm.sum(n_local as f64) as usize);
+        let (noise, n_equations) = (Noise::new(problem.labels), comm.sum(n_local));
         Space { problem, side, v, m: none(), c: none(), a: none(), noise, n_equations, n_solves: 0 }
     }
 

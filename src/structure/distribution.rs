@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::Result;
-use crate::contact::search::Team;
+use crate::contact::search::{Foot, Team};
 use crate::mesh::{Mesh, Piece, order};
 use crate::native::{Comm, partition};
 
@@ -21,9 +21,9 @@ pub fn distribute(comm: &Comm, read: impl FnOnce() -> Result<Mesh>) -> Result<Pi
         Ok(Some((mesh, owner, labels)))
     };
     let whole = comm.agree(if comm.is_root() { whole() } else { Ok(None) })?;
-    let Some((mesh, owner, labels)) = whole else { return Ok(Piece::from_bytes(&comm.receive(0))) };
+    let Some((mesh, owner, labels)) = whole else { return Ok(comm.receive_value(0)) };
     for rank in 1..comm.size() {
-        comm.send(&Piece::of(&mesh, owned(&owner, rank), &labels).to_bytes(), rank);
+        comm.send_value(&Piece::of(&mesh, owned(&owner, rank), &labels), rank);
     }
     Ok(Piece::of(&mesh, owned(&owner, 0), &labels))
 }
@@ -40,7 +40,7 @@ impl Team for Comm {
         self.rank() * n / self.size()..(self.rank() + 1) * n / self.size()
     }
 
-    fn join(&self, own: Vec<f64>) -> Vec<f64> {
-        Comm::join(self, &own)
+    fn join(&self, own: Vec<Option<Foot>>) -> Vec<Option<Foot>> {
+        self.join_values(own).concat()
     }
 }

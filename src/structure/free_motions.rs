@@ -51,7 +51,7 @@ impl Bodies {
         let (part_of, meet) = parts_of_nodes(comm, mesh);
         let n_parts = mesh.parts.len();
         let mut root: Vec<usize> = (0..n_parts).collect();
-        for pair in (0..meet.len()).filter(|&pair| meet[pair] > 0.0) {
+        for pair in (0..meet.len()).filter(|&pair| meet[pair] > 0) {
             join(&mut root, pair / n_parts, pair % n_parts);
         }
         let roots: Vec<usize> = (0..n_parts).map(|p| find(&root, p)).collect();
@@ -94,15 +94,15 @@ fn join(root: &mut [usize], a: usize, b: usize) {
 }
 
 /// A part of each node, and for each two parts a number above zero where they share nodes. Collective.
-fn parts_of_nodes(comm: &Comm, mesh: &Mesh) -> (Vec<usize>, Vec<f64>) {
+fn parts_of_nodes(comm: &Comm, mesh: &Mesh) -> (Vec<usize>, Vec<u8>) {
     let n_parts = mesh.parts.len();
     // 0 where no tetrahedron of this rank's tells: nodes that have a name are on ranks without their tetrahedra.
-    let (mut part_of, mut meet) = (vec![0_usize; mesh.nodes.len()], vec![0.0; n_parts * n_parts]);
+    let (mut part_of, mut meet) = (vec![0_usize; mesh.nodes.len()], vec![0_u8; n_parts * n_parts]);
     for (tet, &part) in mesh.tets.iter().zip(&mesh.tet_part) {
         for &n in tet {
             let known = std::mem::replace(&mut part_of[n as usize], part as usize + 1);
             if known > 0 {
-                meet[n_parts * (known - 1) + part as usize] = 1.0;
+                meet[n_parts * (known - 1) + part as usize] = 1;
             }
         }
     }
@@ -110,9 +110,9 @@ fn parts_of_nodes(comm: &Comm, mesh: &Mesh) -> (Vec<usize>, Vec<f64>) {
     let mut named: Vec<u32> = mesh.named_nodes().collect();
     named.sort_unstable();
     named.dedup();
-    let mut parts: Vec<f64> = named.iter().map(|&n| part_of[n as usize] as f64).collect();
+    let mut parts: Vec<usize> = named.iter().map(|&n| part_of[n as usize]).collect();
     comm.max_all(&mut parts);
-    named.iter().zip(parts).for_each(|(&n, part)| part_of[n as usize] = part as usize);
+    named.iter().zip(parts).for_each(|(&n, part)| part_of[n as usize] = part);
     (part_of.into_iter().map(|part| part - 1).collect(), meet)
 }
 

@@ -13,7 +13,7 @@ impl Ranked<'_> {
     /// The numbers of this rank and all others. Collective.
     pub fn new(comm: &Comm, mut own: Vec<f64>) -> Ranked<'_> {
         own.sort_unstable_by(f64::total_cmp);
-        let n = comm.sum(own.len() as f64) as usize;
+        let n = comm.sum(own.len());
         Ranked { comm, own, n }
     }
 
@@ -27,7 +27,7 @@ impl Ranked<'_> {
         let (mut low, mut high) = (-1.0, 1.0);
         for _ in 0..f64::MANTISSA_DIGITS {
             let middle = 0.5 * (low + high);
-            let up_to = self.comm.sum(self.own.partition_point(|&x| x <= middle) as f64) as usize;
+            let up_to = self.comm.sum(self.own.partition_point(|&x| x <= middle));
             if up_to > k { high = middle } else { low = middle }
         }
         high

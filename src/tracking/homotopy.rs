@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::eigen::eigen;
 use super::matching::{State, matched};
+use crate::native::lapack::{Eigen, eigen};
 
 /// Eigenvalues along `A(s)`, s from 0 to 1, in the order of the modes at s = 0.
 pub struct Path {
@@ -51,7 +51,7 @@ pub fn follow(
     let at = |s: f64| {
         let mut matrix = &at_end * Complex64::from(s);
         a.iter().enumerate().for_each(|(i, &lambda)| matrix[(i, i)] += lambda * (1.0 - s));
-        eigen(matrix)
+        eigen(matrix).ok()
     };
     let (mut samples, mut sharing) = (vec![(0.0, start.values.clone())], vec![1.0]);
     let (mut s, mut state, mut step) = (0.0, start, LONGEST);
@@ -102,7 +102,7 @@ fn advance(
     state: &State,
     longest: f64,
     resolution: f64,
-    at: &impl Fn(f64) -> Option<super::eigen::Eigen>,
+    at: &impl Fn(f64) -> Option<Eigen>,
 ) -> Option<(f64, State)> {
     let mut step = longest;
     let mut may_leap = true;
@@ -124,12 +124,7 @@ fn advance(
 }
 
 /// A step across a veering that is narrower than the resolution.
-fn leap(
-    s: f64,
-    state: &State,
-    resolution: f64,
-    at: &impl Fn(f64) -> Option<super::eigen::Eigen>,
-) -> Option<Option<(f64, State)>> {
+fn leap(s: f64, state: &State, resolution: f64, at: &impl Fn(f64) -> Option<Eigen>) -> Option<Option<(f64, State)>> {
     let goal = (s + 2.0 * resolution).min(1.0);
     let found = matched(state, at(goal)?);
     Some(found.clear.then_some((goal, found.state)))

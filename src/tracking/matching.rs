@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::eigen::Eigen;
+use crate::native::lapack::Eigen;
 
 /// Eigenvalues and vectors, in the order of the branches.
 #[derive(Clone)]
@@ -146,7 +146,7 @@ fn is_swapped(before: &[Complex64], after: &[Complex64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tracking::eigen::eigen;
+    use crate::native::lapack::eigen;
 
     fn c(re: f64, im: f64) -> Complex64 {
         Complex64::new(re, im)

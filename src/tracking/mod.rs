@@ -27,7 +27,6 @@
 //! become two real eigenvalues.
 
 mod diagram;
-mod eigen;
 mod homotopy;
 mod hunt;
 mod matching;

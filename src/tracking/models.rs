@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::eigen::{Eigen, eigen};
 use super::{Family, Options};
 use crate::Result;
+use crate::native::lapack::{Eigen, eigen};
 
 pub type Real = DMatrix<f64>;
 
@@ -81,7 +81,10 @@ impl<F: FnMut(f64) -> [Real; 3]> Family for Model<F> {
     fn solve(&mut self, value: f64) -> Result<Modes> {
         self.solved.push(value);
         let [m, c, k] = (self.matrices)(value);
-        let Eigen { values, vectors } = eigen(companion(&m, &c, &k)).unwrap();
+        let Eigen { mut values, vectors } = eigen(companion(&m, &c, &k)).unwrap();
+        // Real eigenvalues of a real matrix are real.
+        let rounding = 1e-13 * values.iter().fold(0.0_f64, |largest, z| largest.max(z.norm()));
+        values.iter_mut().filter(|z| z.im.abs() <= rounding).for_each(|z| z.im = 0.0);
         let transposed = eigen(companion(&m.transpose(), &c.transpose(), &k.transpose())).unwrap();
         let left = left_of(&values, transposed);
         let [m, c] = [m, c].map(|a| a.map(Complex64::from));

@@ -1,4 +1,10 @@
 //! Blocks of vectors: one pass over a matrix or a factor for many right-hand sides.
+//!
+//! Why not SLEPc's BV, which has products and orthogonalisation of blocks: its columns are those of a PETSc matrix or
+//! vectors, and each pass over a factor would copy them into MUMPS's packed right-hand sides and back. Here the columns
+//! lie packed, as MUMPS and BLAS read them: 0.022 s a right-hand side with 32 at once on the full demo brake (two
+//! ranks, single precision) in place of 0.045 s with 8, and `dgemm` with 28 to 39 Gflop/s. Figures:
+//! docs/engineering-log.md, "Factorisation and orderings" and "Modes of large models".
 
 mod noise;
 mod product;
@@ -63,8 +69,8 @@ impl View {
 }
 
 impl Block {
-    /// Right-hand sides in a pass over a factor: on the full demo brake, two ranks, single precision, 0.045 s each with 8, 0.022 s with 32, 0.024 s
-    /// with 64.
+    /// Right-hand sides in a pass over a factor: on the full demo brake, two ranks, single precision, 0.045 s each with
+    /// 8, 0.022 s with 32, 0.024 s with 64.
     pub const AT_ONCE: usize = 32;
 
     /// A block of zeros with `n_local` rows on this rank. Not collective.
@@ -277,9 +283,9 @@ impl Block {
         self.leading_combined(self.n_columns, coefficients, n_columns)
     }
 
-    /// Coefficients (column-major) and number of the combinations that make an orthonormal basis of the columns' span; directions smaller
-    /// than `negligible` times the largest are dropped, columns taken at length 1. Its accuracy is the square of that ratio's: twice is
-    /// enough. Collective.
+    /// Coefficients (column-major) and number of the combinations that make an orthonormal basis of the columns' span;
+    /// directions smaller than `negligible` times the largest are dropped, columns taken at length 1. Its accuracy is
+    /// the square of that ratio's: twice is enough. Collective.
     ///
     /// # Errors
     /// [`crate::Error::NotConverged`] where LAPACK's eigensolver fails.
@@ -335,8 +341,8 @@ impl Block {
         product
     }
 
-    /// `self = self coefficients` with a column-major square matrix, a strip of rows at a time, so that no second block is needed.
-    /// Not collective.
+    /// `self = self coefficients` with a column-major square matrix, a strip of rows at a time, so that no second block
+    /// is needed. Not collective.
     ///
     /// # Panics
     /// Where the matrix is not square of as many rows as this block has columns.

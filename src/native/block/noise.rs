@@ -1,4 +1,8 @@
 //! Random numbers that do not depend on the number of ranks.
+//!
+//! No generator of a crate does that by itself: a stream gives each rank other numbers when the rows are shared out
+//! otherwise. Here a number is a hash of the dof's label and of the vector's count, so that one rank and several search
+//! with the same vectors, and modes agree to the accuracy of the eigensolver (tests/parallel.rs).
 
 use std::f64::consts::TAU;
 

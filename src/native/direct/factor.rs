@@ -1,5 +1,5 @@
-//! Direct factors: of sparse matrices by MUMPS, analysed once for a pattern and factorised again as often as values change; of
-//! densely stored ones by LAPACK.
+//! Direct factors: of sparse matrices by MUMPS, analysed once for a pattern and factorised again as often as values
+//! change; of densely stored ones by LAPACK.
 
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
@@ -21,7 +21,8 @@ pub enum FactorKind {
 /// What a factor costs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FactorStats {
-    /// Ordering used, MUMPS's number (1 is METIS's, which is given, 3 SCOTCH, 4 PORD); none where the matrix is dense and LAPACK factorises it.
+    /// Ordering used, MUMPS's number (1 is METIS's, which is given, 3 SCOTCH, 4 PORD); none where the matrix is dense
+    /// and LAPACK factorises it.
     pub ordering: Option<i32>,
     /// Whether it is in single precision.
     pub single: bool,
@@ -61,8 +62,8 @@ impl FactorStats {
     }
 }
 
-/// Whether double precision may do where this one did not: pivots that rounding makes zero, or so small that pivoting outgrows its
-/// workspace. All else (PETSc's errors, short memory, an empty matrix) fails in double precision, too.
+/// Whether double precision may do where this one did not: pivots that rounding makes zero, or so small that pivoting
+/// outgrows its workspace. All else (PETSc's errors, short memory, an empty matrix) fails in double precision, too.
 fn needs_double(precision: Precision, error: &Error) -> bool {
     precision == Precision::Single && error.is_numerical()
 }
@@ -84,7 +85,8 @@ pub struct Factor {
 /// Percentage of extra workspace over MUMPS's estimate, and how often it is doubled when pivoting needs more.
 const WORKSPACE: i32 = 30;
 const WORKSPACE_TRIES: usize = 4;
-/// What a factorisation touches of the memory that MUMPS estimates, extra workspace included: 0.78 to 0.80 on the demo brakes.
+/// What a factorisation touches of the memory that MUMPS estimates, extra workspace included: 0.78 to 0.80 on the demo
+/// brakes.
 const TOUCHED: f64 = 0.82;
 
 impl Factor {
@@ -94,7 +96,8 @@ impl Factor {
         Factor { kind, precision: Precision::Double, sparse: None, stats, dense: None, left_mb: 0.0, solves }
     }
 
-    /// Goes on in another precision, which a densely stored matrix's factor does not have: what is factorised is released. Collective.
+    /// Goes on in another precision, which a densely stored matrix's factor does not have: what is factorised is
+    /// released. Collective.
     pub fn set_precision(&mut self, precision: Precision) {
         if self.precision != precision {
             self.precision = precision;
@@ -102,7 +105,8 @@ impl Factor {
         }
     }
 
-    /// Whether solutions are as exact as the matrix's condition lets them be, and not only good for preconditioning. Not collective.
+    /// Whether solutions are as exact as the matrix's condition lets them be, and not only good for preconditioning.
+    /// Not collective.
     pub fn is_exact(&self) -> bool {
         self.precision == Precision::Double || self.dense.is_some()
     }
@@ -140,7 +144,8 @@ impl Factor {
         machine::require(a.comm(), self.stats.estimated_mb)
     }
 
-    /// From now on an analysis chooses to keep the factor out of core unless so much memory is left beside it, MB. Not collective.
+    /// From now on an analysis chooses to keep the factor out of core unless so much memory is left beside it, MB. Not
+    /// collective.
     pub fn leave_mb(&mut self, mb: f64) {
         self.left_mb = mb;
     }
@@ -155,8 +160,8 @@ impl Factor {
         self.sparse = None;
     }
 
-    /// Factorises the values of `a`, whose pattern is that of all earlier calls. Workspace is enlarged where pivoting needs it, and where single
-    /// precision does not do, double precision serves from then on.
+    /// Factorises the values of `a`, whose pattern is that of all earlier calls. Workspace is enlarged where pivoting
+    /// needs it, and where single precision does not do, double precision serves from then on.
     ///
     /// # Errors
     /// PETSc's, and MUMPS's with its code.
@@ -264,13 +269,14 @@ impl Factor {
         Ok(self.sparse.as_ref().expect("factorised before").borrow().infog(12) as usize)
     }
 
-    /// Price of a right-hand side among many, in single solves: an eighth on the full demo brake, two ranks, in either precision.
+    /// Price of a right-hand side among many, in single solves: an eighth on the full demo brake, two ranks, in either
+    /// precision.
     pub const PRICE_AMONG_MANY: f64 = 0.15;
 
     /// How many solves cost about as much as one factorisation. A factorisation is bound by arithmetic and a solve, two
-    /// operations an entry, by memory, which is taken for the time of 33 operations an entry: an estimate on the low side (18 for the medium
-    /// demo brake, where `make bench` gave 2.32 s against 0.086 s, a ratio of 27). From counts and not from clocks, so that a run
-    /// repeats itself. Not collective.
+    /// operations an entry, by memory, which is taken for the time of 33 operations an entry: an estimate on the low
+    /// side (18 for the medium demo brake, where `make bench` gave 2.32 s against 0.086 s, a ratio of 27). From counts
+    /// and not from clocks, so that a run repeats itself. Not collective.
     pub fn solves_per_factorisation(&self) -> f64 {
         self.stats.flops / (33.0 * self.stats.entries.max(1.0))
     }

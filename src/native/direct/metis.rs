@@ -4,21 +4,24 @@ use std::ptr;
 
 use squeal_sys as sys;
 
+use crate::native::petsc::int;
 use crate::{Error, Result};
 
 /// Nodes that two 10-node tetrahedra share at a face.
 const NODES_OF_A_FACE: i32 = 6;
 
-/// Shares out the nodes of a mesh of 10-node tetrahedra, about as many to each part and with few tetrahedra across parts; gives each
-/// node its part. Tetrahedra are neighbours where they share a face. Not collective; the same on every rank.
+/// Shares out the nodes of a mesh of 10-node tetrahedra, about as many to each part and with few tetrahedra across
+/// parts; gives each node its part. Tetrahedra are neighbours where they share a face. Not collective; the same on
+/// every rank.
 ///
 /// # Errors
-/// METIS's, with its code.
+/// [`Error::Input`] where the mesh has more than METIS's 32-bit numbers count; METIS's, with its code.
 pub fn partition(tets: &[[u32; 10]], n_nodes: usize, n_parts: usize) -> Result<Vec<u32>> {
     if n_parts == 1 {
         return Ok(vec![0; n_nodes]);
     }
-    let (mut n_tets, mut n, mut parts) = (tets.len() as i32, n_nodes as i32, n_parts as i32);
+    int("nodes of the tetrahedra", 10 * tets.len())?;
+    let (mut n_tets, mut n, mut parts) = (tets.len() as i32, int("nodes", n_nodes)?, n_parts as i32);
     let mut offsets: Vec<i32> = (0..=n_tets).map(|e| 10 * e).collect();
     let mut nodes: Vec<i32> = tets.as_flattened().iter().map(|&n| n as i32).collect();
     let (mut of_tets, mut of_nodes) = (vec![0_i32; tets.len()], vec![0_i32; n_nodes]);
@@ -56,7 +59,10 @@ pub(in crate::native) struct Graph {
 
 impl Graph {
     /// Two vertices are neighbours where one of them lists the other; lists rise and do not name their owner.
-    pub(in crate::native) fn undirected(lists: &[Vec<u32>]) -> Graph {
+    ///
+    /// # Errors
+    /// [`Error::Input`] where there are more neighbours than METIS's 32-bit numbers count.
+    pub(in crate::native) fn undirected(lists: &[Vec<u32>]) -> Result<Graph> {
         let mut listed_by = vec![Vec::new(); lists.len()];
         for (vertex, list) in lists.iter().enumerate() {
             list.iter().for_each(|&other| listed_by[other as usize].push(vertex as u32));
@@ -69,9 +75,9 @@ impl Graph {
                 all.dedup();
             }
             neighbours.extend(all.into_iter().map(|vertex| vertex as i32));
-            offsets.push(neighbours.len() as i32);
+            offsets.push(int("neighbours in the matrix's graph", neighbours.len())?);
         }
-        Graph { offsets, neighbours }
+        Ok(Graph { offsets, neighbours })
     }
 }
 
@@ -82,7 +88,8 @@ impl Graph {
 pub(in crate::native) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Result<Vec<i32>> {
     let mut n = weights.len() as i32;
     let (mut order, mut places) = (vec![0_i32; weights.len()], vec![0_i32; weights.len()]);
-    // SAFETY: METIS reads the graph and the weights, and writes the two permutations; null means "default" for the options.
+    // SAFETY: METIS reads the graph and the weights, and writes the two permutations; null means "default" for the
+    // options.
     let status = unsafe {
         sys::METIS_NodeND(
             &mut n,
@@ -104,8 +111,8 @@ pub(in crate::native) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Re
 mod tests {
     use super::*;
 
-    /// A chain of tetrahedra, each with a face in common with the next: the six nodes that all but the first and last four of
-    /// neighbours' lists share.
+    /// A chain of tetrahedra, each with a face in common with the next: the six nodes that all but the first and last
+    /// four of neighbours' lists share.
     #[test]
     fn a_chain_is_cut_once_and_evenly() {
         let chain: Vec<[u32; 10]> = (0..40).map(|e| std::array::from_fn(|a| 4 * e + a as u32)).collect();
@@ -123,7 +130,7 @@ mod tests {
         let clique = |first: u32| (first..first + 5).map(move |v| (first..first + 5).filter(|&w| w != v).collect());
         let mut lists: Vec<Vec<u32>> = clique(0).chain(clique(5)).collect();
         lists.push(vec![4, 5]);
-        let graph = Graph::undirected(&lists);
+        let graph = Graph::undirected(&lists).unwrap();
         assert_eq!(graph.neighbours[graph.offsets[4] as usize..graph.offsets[5] as usize], [0, 1, 2, 3, 10]);
         let order = nested_dissection(&graph, &[1; 11]).unwrap();
         let mut sorted = order.clone();

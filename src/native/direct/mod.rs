@@ -3,7 +3,9 @@
 mod factor;
 mod metis;
 mod mumps;
+mod mumps_data;
 mod ordering;
+mod route;
 
 pub use factor::{Factor, FactorKind, FactorStats};
 pub use metis::partition;

@@ -1,12 +1,19 @@
-//! MUMPS through its own interface: matrices, right-hand sides and solutions distributed over the ranks, in double or single precision.
+//! MUMPS through its own interface: matrices, right-hand sides and solutions distributed over the ranks, in double or
+//! single precision.
 //!
-//! PETSc's interface to MUMPS knows no single precision, cannot pass an ordering on several ranks, and sorts the numbers of all entries of
-//! all solutions anew with every call. Here the way of the solutions to their owners ([`Route`]) is planned once for a factor.
+//! PETSc's interface to MUMPS knows no single precision, cannot pass an ordering on several ranks, and sorts the
+//! numbers of all entries of all solutions with every call. Here the way of the solutions to their owners ([`Route`])
+//! is planned once for a factor: on the full demo brake, two ranks, a right-hand side of 32 takes 0.056 s in place of
+//! 0.102 s, in single precision 0.022 s. Single precision halves time and memory of an LU (7.8 s and 2.8 GB of 15.6 s
+//! and 5.3 GB).
 
 use squeal_sys as sys;
 
+use super::mumps_data::{Data, Real, Run, both};
+use super::route::Route;
 use super::{FactorKind, ordering};
 use crate::native::petsc::error::check;
+use crate::native::petsc::int;
 use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
@@ -20,68 +27,6 @@ pub enum Precision {
     Single,
 }
 
-/// MUMPS's data, which it finds where they were: they stay in their box.
-enum Data {
-    Double(Box<sys::DMUMPS_STRUC_C>),
-    Single(Box<sys::SMUMPS_STRUC_C>),
-}
-
-/// The same for both precisions.
-macro_rules! both {
-    ($data:expr, $id:ident => $body:expr) => {
-        match $data {
-            Data::Double($id) => $body,
-            Data::Single($id) => $body,
-        }
-    };
-}
-
-/// A number of either precision.
-trait Real: Copy {
-    fn of(x: f64) -> Self;
-    fn to(self) -> f64;
-}
-
-impl Real for f64 {
-    fn of(x: f64) -> f64 {
-        x
-    }
-    fn to(self) -> f64 {
-        self
-    }
-}
-
-impl Real for f32 {
-    fn of(x: f64) -> f32 {
-        x as f32
-    }
-    fn to(self) -> f64 {
-        f64::from(self)
-    }
-}
-
-/// MUMPS's data of either precision.
-trait Run {
-    /// Runs a job whose arrays are in place.
-    fn run(&mut self, job: i32);
-}
-
-impl Run for sys::DMUMPS_STRUC_C {
-    fn run(&mut self, job: i32) {
-        self.job = job;
-        // SAFETY: what the job reads and writes is in place.
-        unsafe { sys::dmumps_c(self) };
-    }
-}
-
-impl Run for sys::SMUMPS_STRUC_C {
-    fn run(&mut self, job: i32) {
-        self.job = job;
-        // SAFETY: what the job reads and writes is in place.
-        unsafe { sys::smumps_c(self) };
-    }
-}
-
 /// Jobs by MUMPS's numbers.
 const START: i32 = -1;
 const END: i32 = -2;
@@ -92,6 +37,9 @@ const SOLVE: i32 = 3;
 /// Orderings by MUMPS's numbers: one that is given, and METIS's, which this MUMPS does not have.
 const GIVEN: i32 = 1;
 const METIS: i32 = 5;
+
+/// MUMPS's own name for the folder of factors that do not fit into memory.
+const OUT_OF_CORE: &str = "MUMPS_OOC_TMPDIR";
 
 /// How many parameters of either kind there are.
 const N_ICNTL: i32 = 60;
@@ -144,6 +92,7 @@ impl Mumps {
             id.sym = if kind == FactorKind::Symmetric { 2 } else { 0 };
         });
         new.run(START);
+        new.keep_factors_in(OUT_OF_CORE);
         // Silent, unless the user asks for more.
         (1..=3).for_each(|stream| new.set_icntl(stream, -1));
         new.set_icntl(4, 0);
@@ -155,6 +104,15 @@ impl Mumps {
             new.set_icntl(number, value);
         }
         Ok(new)
+    }
+
+    /// Where MUMPS puts factors that do not fit into memory: where the environment says, else the system's temporary
+    /// folder.
+    fn keep_factors_in(&mut self, variable: &str) {
+        if std::env::var_os(variable).is_none() {
+            let folder = std::env::temp_dir();
+            both!(&mut self.data, id => copy_text(folder.as_os_str().as_encoded_bytes(), &mut id.ooc_tmpdir));
+        }
     }
 
     /// Takes what the user wants of MUMPS, by PETSc's names for it.
@@ -189,7 +147,8 @@ impl Mumps {
         both!(&mut self.data, id => id.icntl[number as usize - 1] = value);
     }
 
-    /// A global information number, numbered from 1; large counts, which MUMPS gives as negative millions, are turned into counts.
+    /// A global information number, numbered from 1; large counts, which MUMPS gives as negative millions, are turned
+    /// into counts.
     pub fn infog(&self, number: i32) -> f64 {
         let value = both!(&self.data, id => id.infog[number as usize - 1]);
         let counts = [3, 20, 29].contains(&number);
@@ -217,7 +176,7 @@ impl Mumps {
     pub fn analyse(&mut self, a: &Matrix) -> Result<()> {
         let first = a.first_row()?;
         self.equations = (0..a.n_local()).map(|i| (first + i) as i32 + 1).collect();
-        let n = self.comm.sum(a.n_local() as f64) as i32;
+        let n = int("a matrix's rows", self.comm.sum(a.n_local()))?;
         let by_metis = both!(&self.data, id => id.icntl[6] == METIS);
         let mut places = if by_metis { ordering::nested_dissection(a)? } else { Vec::new() };
         both!(&mut self.data, id => {
@@ -232,8 +191,8 @@ impl Mumps {
         Ok(())
     }
 
-    /// Factorises a matrix of the pattern analysed: as `S A S`, `s_i = 1/sqrt(max_j |a_ij|)`, in which units and the materials' stiffness make no
-    /// difference to pivots, and symmetry and inertia are A's. Collective.
+    /// Factorises a matrix of the pattern analysed: as `S A S`, `s_i = 1/sqrt(max_j |a_ij|)`, in which units and the
+    /// materials' stiffness make no difference to pivots, and symmetry and inertia are A's. Collective.
     ///
     /// # Errors
     /// PETSc's; [`Mumps::verdict`] tells MUMPS's.
@@ -247,7 +206,8 @@ impl Mumps {
         self.with_entries(a, FACTORISE, &|row, column, value| all[row] * value * all[column])
     }
 
-    /// Runs a job with the entries of this rank's rows, given by `entry` of row, column and value: the upper triangle for a symmetric factor.
+    /// Runs a job with the entries of this rank's rows, given by `entry` of row, column and value: the upper triangle
+    /// for a symmetric factor.
     fn with_entries(&mut self, a: &Matrix, job: i32, entry: &dyn Fn(usize, usize, f64) -> f64) -> Result<()> {
         let upper = self.kind == FactorKind::Symmetric;
         let n = a.with_parts(|parts| parts.iter().map(|part| part.values.len()).sum::<usize>())?;
@@ -313,18 +273,11 @@ impl Mumps {
     }
 }
 
-/// From MUMPS's codes to errors. `estimated_mb`: what the analysis has estimated, zero before it.
-fn verdict(phase: &'static str, code: i32, detail: i32, estimated_mb: f64) -> Result<()> {
-    let codes = || format!("MUMPS's {phase}, INFOG(1) = {code}, INFOG(2) = {detail}");
-    match code {
-        0.. => Ok(()),
-        -5 | -7 | -13 => {
-            let needed_mb = Some(estimated_mb).filter(|mb| *mb > 0.0);
-            let needs = needed_mb.map_or(String::new(), |mb| format!("; the factor needs about {:.2} GB", mb / 1024.0));
-            Err(Error::OutOfMemory { what: codes() + &needs, needed_mb })
-        }
-        -6 | -10 => Err(Error::Singular { found_by: codes() }),
-        _ => Err(Error::Mumps { phase, code, detail }),
+/// Copies a text, with a zero at its end, where it fits; else nothing, and MUMPS takes its own default.
+fn copy_text(text: &[u8], field: &mut [std::ffi::c_char]) {
+    if text.len() < field.len() {
+        let with_end = text.iter().chain(&[0]);
+        field.iter_mut().zip(with_end).for_each(|(to, &from)| *to = from as std::ffi::c_char);
     }
 }
 
@@ -347,59 +300,18 @@ fn largest(column: &[f64], rows: &[f64]) -> f64 {
     column.iter().zip(rows).fold(0.0, |largest, (x, s)| (x * s).abs().max(largest))
 }
 
-/// How the unknowns get from where MUMPS has them to the ranks that own them.
-struct Route {
-    /// Of this rank: where MUMPS has the unknown, and its row.
-    own: Vec<(usize, usize)>,
-    /// For each other rank, where MUMPS has its unknowns here.
-    sent: Vec<Vec<usize>>,
-    /// For each other rank, the rows of the unknowns that it has for this one.
-    received: Vec<Vec<usize>>,
-}
-
-impl Route {
-    /// For unknowns by their global numbers from 1; this rank owns `n` from the `first` on. Collective.
-    fn new(comm: &Comm, unknowns: &[i32], first: usize, n: usize) -> Route {
-        let ends = comm.join(&[(first + n) as f64]);
-        let (mut own, mut sent) = (Vec::new(), vec![Vec::new(); comm.size()]);
-        for (place, &unknown) in unknowns.iter().enumerate() {
-            let row = unknown as usize - 1;
-            let owner = ends.partition_point(|&end| end as usize <= row);
-            if owner == comm.rank() {
-                own.push((place, row - first));
-            } else {
-                sent[owner].push(place);
-            }
+/// From MUMPS's codes to errors. `estimated_mb`: what the analysis has estimated, zero before it.
+fn verdict(phase: &'static str, code: i32, detail: i32, estimated_mb: f64) -> Result<()> {
+    let codes = || format!("MUMPS's {phase}, INFOG(1) = {code}, INFOG(2) = {detail}");
+    match code {
+        0.. => Ok(()),
+        -5 | -7 | -13 => {
+            let needed_mb = Some(estimated_mb).filter(|mb| *mb > 0.0);
+            let needs = needed_mb.map_or(String::new(), |mb| format!("; the factor needs about {:.2} GB", mb / 1024.0));
+            Err(Error::OutOfMemory { what: codes() + &needs, needed_mb })
         }
-        let rows = |places: &Vec<usize>| places.iter().map(|&place| f64::from(unknowns[place] - 1)).collect();
-        let received = comm.exchange(&sent.iter().map(rows).collect::<Vec<_>>());
-        let rows = |numbers: Vec<f64>| numbers.iter().map(|&row| row as usize - first).collect();
-        Route { own, sent, received: received.into_iter().map(rows).collect() }
-    }
-
-    /// Brings solutions, times their scales and those of the rows. Collective.
-    fn bring<T: Real>(
-        &self,
-        comm: &Comm,
-        solution: &[T],
-        n_unknowns: usize,
-        x: &mut [f64],
-        [scales, of_rows]: [&[f64]; 2],
-    ) {
-        let n = of_rows.len();
-        let column = |j: usize| &solution[j * n_unknowns..(j + 1) * n_unknowns];
-        let packed = |places: &Vec<usize>| -> Vec<f64> {
-            (0..scales.len()).flat_map(|j| places.iter().map(move |&place| column(j)[place].to())).collect()
-        };
-        let others = comm.exchange(&self.sent.iter().map(packed).collect::<Vec<_>>());
-        for (j, &scale) in scales.iter().enumerate() {
-            let x = &mut x[j * n..(j + 1) * n];
-            self.own.iter().for_each(|&(place, row)| x[row] = scale * of_rows[row] * column(j)[place].to());
-            for (rows, values) in self.received.iter().zip(&others) {
-                let values = &values[j * rows.len()..(j + 1) * rows.len()];
-                rows.iter().zip(values).for_each(|(&row, value)| x[row] = scale * of_rows[row] * value);
-            }
-        }
+        -6 | -10 => Err(Error::Singular { found_by: codes() }),
+        _ => Err(Error::Mumps { phase, code, detail }),
     }
 }
 
@@ -422,5 +334,15 @@ mod tests {
         let short = verdict("factorisation", -13, 7, 512.0).unwrap_err().to_string();
         assert!(short.contains("needs about 0.50 GB"), "{short}");
         assert!(!verdict("analysis", -7, 7, 0.0).unwrap_err().to_string().contains("needs about"));
+    }
+
+    #[test]
+    fn a_folder_that_does_not_fit_leaves_mumps_its_default() {
+        let mut field = [1 as std::ffi::c_char; 5];
+        copy_text(b"/tmp", &mut field);
+        assert_eq!(field.map(|c| c as u8), *b"/tmp\0");
+        let mut field = [1 as std::ffi::c_char; 4];
+        copy_text(b"/tmp", &mut field);
+        assert_eq!(field, [1; 4]);
     }
 }

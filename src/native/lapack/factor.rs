@@ -2,9 +2,10 @@
 
 use std::ffi::CStr;
 
+use num_complex::Complex64;
 use squeal_sys as sys;
 
-use super::FEW;
+use super::product::FEW;
 use crate::native::FactorKind;
 use crate::{Error, Result};
 
@@ -43,7 +44,8 @@ impl DenseFactor {
         }
     }
 
-    /// Overwrites right-hand sides, column by column, with the solutions, of the transposed matrix where that is asked for.
+    /// Overwrites right-hand sides, column by column, with the solutions, of the transposed matrix where that is asked
+    /// for.
     pub(in crate::native) fn solve(&self, columns: &mut [f64], transposed: bool) {
         match self.kind {
             FactorKind::Unsymmetric if columns.len() <= FEW * self.n => {
@@ -115,6 +117,26 @@ impl DenseFactor {
     }
 }
 
+/// Solves `A X = B` for a complex column-major A of `n x n`, which is destroyed; X overwrites B. False where A is
+/// singular. Not collective.
+///
+/// # Panics
+/// Where A is not `n x n`, or B has not n rows.
+pub fn solve_complex(n: usize, a: &mut [Complex64], b: &mut [Complex64]) -> bool {
+    assert!(a.len() == n * n && b.len().is_multiple_of(n));
+    if b.is_empty() {
+        return true;
+    }
+    let (size, columns, mut info) = (n as i32, (b.len() / n) as i32, 0);
+    let mut pivots = vec![0; n];
+    // SAFETY: sizes are those of the arrays; Complex64 has the layout of Fortran's COMPLEX*16.
+    unsafe {
+        let (a, b) = (a.as_mut_ptr().cast(), b.as_mut_ptr().cast());
+        sys::zgesv_(&size, &columns, a, &size, pivots.as_mut_ptr(), b, &size, &mut info);
+    }
+    info == 0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,5 +173,16 @@ mod tests {
         assert_eq!(DenseFactor::new(FactorKind::Symmetric, 3, minus).unwrap().n_negative(), 2);
         let singular = DenseFactor::new(FactorKind::Unsymmetric, 2, vec![1.0, 1.0, 1.0, 1.0]).err().unwrap();
         assert_eq!(singular.kind(), crate::ErrorKind::Singular);
+    }
+
+    #[test]
+    fn complex_systems_are_solved_in_place() {
+        let z = Complex64::new;
+        // [i 2; 0 1] (1, i) = (3i, i)
+        let mut a = [z(0.0, 1.0), z(0.0, 0.0), z(2.0, 0.0), z(1.0, 0.0)];
+        let mut b = [z(0.0, 3.0), z(0.0, 1.0)];
+        assert!(solve_complex(2, &mut a, &mut b));
+        assert!((b[0] - 1.0).norm() < 1e-15 && (b[1] - z(0.0, 1.0)).norm() < 1e-15, "{b:?}");
+        assert!(!solve_complex(1, &mut [z(0.0, 0.0)], &mut [z(1.0, 0.0)]));
     }
 }

@@ -113,8 +113,9 @@ pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(us
     collect(&pep, &comm, problem.k.n_local(), n_solves)
 }
 
-/// [`solve`], or none where LAPACK could not reorder the projected problem (xTREXC, info 1: blocks too close to swap, as the
-/// defective zeros of several rigid motions are). Another search space does not meet the same blocks. Collective.
+/// [`solve`], or none where LAPACK could not reorder the projected problem (xTREXC, info 1: blocks too close to swap,
+/// as the defective zeros of several rigid motions are). Another search space does not meet the same blocks.
+/// Collective.
 ///
 /// # Errors
 /// PETSc's.
@@ -181,14 +182,16 @@ unsafe fn use_inverse(pep: sys::PEP, shift: f64, context: *mut c_void) -> Result
 
 unsafe extern "C" fn apply(pc: sys::PC, b: sys::Vec, x: sys::Vec) -> sys::PetscErrorCode {
     let mut pointer: *mut c_void = ptr::null_mut();
+    // SAFETY: the shell is alive.
+    let code = unsafe { sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast()) };
+    if code != 0 {
+        return code;
+    }
     // SAFETY: the context is the one that `use_inverse` set; PEP runs its callbacks one at a time.
-    let context = unsafe {
-        sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast());
-        &mut *pointer.cast::<Context>()
-    };
+    let context = unsafe { &mut *pointer.cast::<Context>() };
     context.n_solves += 1;
     let (inverse, comm) = (context.inverse, &context.comm);
-    context.trap.guard(c"solve", || inverse(&Borrowed::new(b, comm), Borrowed::new(x, comm).get_mut()))
+    context.trap.guard(c"solve", || inverse(&*Borrowed::new(b, comm)?, Borrowed::new(x, comm)?.get_mut()))
 }
 
 unsafe extern "C" fn monitor(

@@ -30,8 +30,8 @@ impl Drop for Ksp {
     }
 }
 
-/// Solves `A x = b` by GMRES, right-preconditioned with the factor of a neighbour of A, from `x = 0` to a relative residual of
-/// `tolerance`. Gives the number of iterations, or none where `max_iterations` did not do. Collective.
+/// Solves `A x = b` by GMRES, right-preconditioned with the factor of a neighbour of A, from `x = 0` to a relative
+/// residual of `tolerance`. Gives the number of iterations, or none where `max_iterations` did not do. Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's.
@@ -72,11 +72,13 @@ pub fn gmres(
 
 unsafe extern "C" fn apply(pc: sys::PC, b: sys::Vec, x: sys::Vec) -> sys::PetscErrorCode {
     let mut pointer: *mut c_void = ptr::null_mut();
+    // SAFETY: the shell is alive.
+    let code = unsafe { sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast()) };
+    if code != 0 {
+        return code;
+    }
     // SAFETY: the context is the one that `gmres` set; KSP runs its callbacks one at a time.
-    let context = unsafe {
-        sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast());
-        &mut *pointer.cast::<Context>()
-    };
+    let context = unsafe { &mut *pointer.cast::<Context>() };
     let (inverse, comm) = (&mut context.inverse, &context.comm);
-    context.trap.guard(c"solve", || inverse(&Borrowed::new(b, comm), Borrowed::new(x, comm).get_mut()))
+    context.trap.guard(c"solve", || inverse(&*Borrowed::new(b, comm)?, Borrowed::new(x, comm)?.get_mut()))
 }

@@ -19,31 +19,6 @@ pub struct Matrix {
     ghosts: OnceCell<Gather>,
 }
 
-/// Some columns of this rank's rows, compressed by rows.
-#[derive(Clone, Copy)]
-pub(in crate::native) struct Part<'a> {
-    /// Where each row starts, and the end of the last.
-    pub offsets: &'a [i32],
-    /// Columns, counted within the part.
-    pub columns: &'a [i32],
-    /// The entries.
-    pub values: &'a [f64],
-}
-
-impl Part<'_> {
-    /// Visits the entries: row and column, counted within the part, and value.
-    fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) {
-        for (row, bounds) in self.offsets.windows(2).enumerate() {
-            let entries = bounds[0] as usize..bounds[1] as usize;
-            let pairs = self.columns[entries.clone()].iter().zip(&self.values[entries]);
-            pairs.for_each(|(&column, &value)| visit(row, column as usize, value));
-        }
-    }
-}
-
-/// The part of a rank that needs no columns of others.
-const NOTHING: Part = Part { offsets: &[], columns: &[], values: &[] };
-
 impl Drop for Matrix {
     fn drop(&mut self) {
         // SAFETY: this handle owns the matrix and the session is alive.
@@ -55,9 +30,12 @@ impl Matrix {
     /// A square matrix of zeros on the rows of this rank.
     ///
     /// # Errors
-    /// PETSc's.
+    /// [`Error::Input`](crate::Error::Input) where there are more rows, or entries on a rank, than PETSc's 32-bit
+    /// numbers count; PETSc's.
     pub fn zeros(comm: &Comm, mut rows: Rows) -> Result<Matrix> {
-        let n = rows.own.offsets.len() as i32 - 1;
+        let n_rows = comm.sum(rows.n_rows());
+        comm.agree(rows.check(n_rows))?;
+        let n = rows.n_rows() as i32;
         // Never read: PETSc wants values even where it is to copy the pattern alone.
         let mut unused = [vec![0.0; rows.own.columns.len()], vec![0.0; rows.other.columns.len()]];
         let [v, other_v] = unused.each_mut().map(|values| values.as_mut_ptr());
@@ -107,47 +85,15 @@ impl Matrix {
         Ok(copy)
     }
 
-    /// Changes the values of several matrices: `change` has for each those in columns of this rank and those in all others, in the
-    /// order of the [`Rows`] that it was made of.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn change_values(matrices: &mut [&mut Matrix], change: impl FnOnce(&mut [[&mut [f64]; 2]])) -> Result<()> {
-        let mut values = Vec::new();
-        for matrix in matrices.iter_mut() {
-            values.push(matrix.values()?);
-        }
-        change(&mut values);
-        matrices.iter_mut().try_for_each(|matrix| matrix.finish())
-    }
-
-    /// The values of the one or two sequential matrices behind this one.
-    fn values<'a>(&mut self) -> Result<[&'a mut [f64]; 2]> {
-        let (own, other, _) = self.sequential()?;
-        Ok([values(own)?, values(other)?])
-    }
-
-    /// The matrix of the columns that this rank owns, that of others' columns, and the global numbers of the latter's; the last two are null
-    /// on one rank.
-    fn sequential(&self) -> Result<(sys::Mat, sys::Mat, *const i32)> {
+    /// The matrix of the columns that this rank owns, that of others' columns, and the global numbers of the latter's;
+    /// the last two are null on one rank.
+    pub(super) fn sequential(&self) -> Result<(sys::Mat, sys::Mat, *const i32)> {
         let (mut own, mut other, mut numbers) = (self.raw, ptr::null_mut(), ptr::null());
         if self.comm.size() > 1 {
             // SAFETY: the matrix is of the parallel type; it keeps its two parts and the numbers.
             check(unsafe { sys::MatMPIAIJGetSeqAIJ(self.raw, &mut own, &mut other, &mut numbers) })?;
         }
         Ok((own, other, numbers))
-    }
-
-    /// Lends this rank's rows: the columns that it owns, and all others. Not collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub(in crate::native) fn with_parts<T>(&self, look: impl FnOnce([Part; 2]) -> T) -> Result<T> {
-        let (own, other, _) = self.sequential()?;
-        with_part(own, |own| match other.is_null() {
-            true => Ok(look([own, NOTHING])),
-            false => with_part(other, |other| Ok(look([own, other]))),
-        })
     }
 
     /// What brings the entries of a vector like `from` that other ranks own and this rank's rows need. Collective.
@@ -163,7 +109,7 @@ impl Matrix {
     }
 
     /// Global numbers of the columns that this rank's rows have and other ranks own. Not collective.
-    fn other_columns(&self) -> Result<&[i32]> {
+    pub(super) fn other_columns(&self) -> Result<&[i32]> {
         let (_, other, numbers) = self.sequential()?;
         if other.is_null() {
             return Ok(&[]);
@@ -185,18 +131,6 @@ impl Matrix {
         // SAFETY: the handle is alive.
         check(unsafe { sys::MatGetOwnershipRange(self.raw, &mut first, &mut end) })?;
         Ok(first as usize)
-    }
-
-    /// Visits the stored entries of this rank's rows: global row and column, value. Not collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub(in crate::native) fn visit_entries(&self, mut visit: impl FnMut(usize, usize, f64)) -> Result<()> {
-        let (first, others) = (self.first_row()?, self.other_columns()?);
-        self.with_parts(|[own, other]| {
-            own.visit(|row, column, value| visit(first + row, first + column, value));
-            other.visit(|row, column, value| visit(first + row, others[column] as usize, value));
-        })
     }
 
     /// A full square matrix of `n` rows from its values by rows, on one rank.
@@ -232,7 +166,8 @@ impl Matrix {
         Ok(matrix)
     }
 
-    /// Stores all entries, also zeros, without column numbers: worth it where most are not zero. On one rank; on several nothing changes.
+    /// Stores all entries, also zeros, without column numbers: worth it where most are not zero. On one rank; on
+    /// several nothing changes.
     ///
     /// # Errors
     /// PETSc's.
@@ -255,29 +190,6 @@ impl Matrix {
         // SAFETY: the handle is alive and the name static.
         check(unsafe { sys::PetscObjectTypeCompare(self.raw.cast(), c"seqdense".as_ptr(), &mut is_dense) })?;
         Ok(is_dense == sys::PetscBool::PETSC_TRUE)
-    }
-
-    /// The entries by columns where they are stored densely. Not collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn dense_values(&self) -> Result<Option<Vec<f64>>> {
-        self.with_dense_values(<[f64]>::to_vec)
-    }
-
-    /// Lends the entries by columns where they are stored densely. Not collective.
-    pub(in crate::native) fn with_dense_values<T>(&self, look: impl FnOnce(&[f64]) -> T) -> Result<Option<T>> {
-        if !self.is_dense()? {
-            return Ok(None);
-        }
-        let mut pointer = ptr::null();
-        // SAFETY: the array is valid between Get and Restore, for `n_local` columns of as many rows.
-        unsafe {
-            check(sys::MatDenseGetArrayRead(self.raw, &mut pointer))?;
-            let outcome = look(std::slice::from_raw_parts(pointer, self.n_local * self.n_local));
-            check(sys::MatDenseRestoreArrayRead(self.raw, &mut pointer))?;
-            Ok(Some(outcome))
-        }
     }
 
     fn set_option(&self, option: sys::MatOption, on: bool) -> Result<()> {
@@ -306,31 +218,6 @@ impl Matrix {
     /// Number of rows on this rank. Not collective.
     pub fn n_local(&self) -> usize {
         self.n_local
-    }
-
-    /// Visits the rows of this rank in their order: global number, columns and values of the stored entries. Not collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn visit_rows(&self, mut visit: impl FnMut(usize, &[i32], &[f64])) -> Result<()> {
-        let first = self.first_row()? as i32;
-        for row in first..first + self.n_local as i32 {
-            let (mut n, mut columns, mut values) = (0, ptr::null(), ptr::null());
-            // SAFETY: the arrays have n entries between Get and Restore; they may be null where n is 0.
-            unsafe {
-                check(sys::MatGetRow(self.raw, row, &mut n, &mut columns, &mut values))?;
-                match n {
-                    0 => visit(row as usize, &[], &[]),
-                    _ => visit(
-                        row as usize,
-                        std::slice::from_raw_parts(columns, n as usize),
-                        std::slice::from_raw_parts(values, n as usize),
-                    ),
-                }
-                check(sys::MatRestoreRow(self.raw, row, &mut n, &mut columns, &mut values))?;
-            }
-        }
-        Ok(())
     }
 
     /// Number of stored entries over all ranks.
@@ -372,8 +259,8 @@ impl Matrix {
         check(unsafe { sys::MatAXPY(self.raw, a, x.raw, sys::MatStructure::SUBSET_NONZERO_PATTERN) })
     }
 
-    /// Adds a dense row-major block at the global `indices` (both ways). Negative indices and rows of other ranks are skipped.
-    /// Not collective; [`Matrix::finish`] is.
+    /// Adds a dense row-major block at the global `indices` (both ways). Negative indices and rows of other ranks are
+    /// skipped. Not collective; [`Matrix::finish`] is.
     ///
     /// # Errors
     /// PETSc's, where an entry is outside the pattern.
@@ -428,47 +315,5 @@ impl Matrix {
         // SAFETY: the handle is alive.
         check(unsafe { sys::MatNorm(self.raw, sys::NormType::NORM_INFINITY, &mut value) })?;
         Ok(value)
-    }
-}
-
-/// The values of a sequential matrix; none where there is no matrix.
-fn values<'a>(raw: sys::Mat) -> Result<&'a mut [f64]> {
-    let (mut info, mut pointer) = (sys::MatInfo::default(), ptr::null_mut());
-    if raw.is_null() {
-        return Ok(&mut []);
-    }
-    // SAFETY: PETSc's array has as many entries as the matrix, and stays where it is as long as the matrix lives.
-    unsafe {
-        check(sys::MatGetInfo(raw, sys::MatInfoType::MAT_LOCAL, &mut info))?;
-        check(sys::MatSeqAIJGetArray(raw, &mut pointer))?;
-        let array = pointer;
-        check(sys::MatSeqAIJRestoreArray(raw, &mut pointer))?;
-        let n = info.nz_used as usize;
-        Ok(if n == 0 { &mut [] } else { std::slice::from_raw_parts_mut(array, n) })
-    }
-}
-
-/// Lends a sequential matrix.
-fn with_part<T>(raw: sys::Mat, look: impl FnOnce(Part) -> Result<T>) -> Result<T> {
-    let (no, mut done) = (sys::PetscBool::PETSC_FALSE, sys::PetscBool::PETSC_FALSE);
-    let (mut n, mut offsets, mut columns, mut values) = (0, ptr::null(), ptr::null(), ptr::null());
-    // SAFETY: the arrays belong to the matrix and stay where they are until they are given back.
-    unsafe {
-        check(sys::MatGetRowIJ(raw, 0, no, no, &mut n, &mut offsets, &mut columns, &mut done))?;
-        check(sys::MatSeqAIJGetArrayRead(raw, &mut values))?;
-        let offsets_read = std::slice::from_raw_parts(offsets, n as usize + 1);
-        let n_entries = offsets_read[n as usize] as usize;
-        let part = match n_entries {
-            0 => Part { offsets: offsets_read, ..NOTHING },
-            _ => Part {
-                offsets: offsets_read,
-                columns: std::slice::from_raw_parts(columns, n_entries),
-                values: std::slice::from_raw_parts(values, n_entries),
-            },
-        };
-        let outcome = look(part);
-        check(sys::MatSeqAIJRestoreArrayRead(raw, &mut values))?;
-        check(sys::MatRestoreRowIJ(raw, 0, no, no, &mut n, &mut offsets, &mut columns, &mut done))?;
-        outcome
     }
 }

@@ -1,9 +1,11 @@
 //! PETSc and SLEPc: vectors, matrices, and what KSP, SNES and PEP solve on the caller's trait objects.
 //!
-//! [`Vector`] and [`Matrix`] own one PETSc object each. [`linear`], [`nonlinear`] and [`eigen`] register callbacks inside `solve`, which are
-//! forgotten when it returns.
+//! [`Vector`] and [`Matrix`] own one PETSc object each; their arrays are lent to closures. [`linear`], [`nonlinear`]
+//! and [`eigen`] register callbacks inside `solve`, which are forgotten when it returns. Every call goes through one
+//! checked door, [`error`]'s `check`, but the destructors: nobody could act on their codes.
 
 pub mod eigen;
+mod entries;
 pub mod error;
 pub mod linear;
 mod matrix;
@@ -11,8 +13,9 @@ pub mod nonlinear;
 mod pattern;
 mod vector;
 
+pub(in crate::native) use entries::Part;
 pub use matrix::Matrix;
-pub(in crate::native) use matrix::Part;
+pub(in crate::native) use pattern::int;
 pub use pattern::{Csr, Rows};
 pub use vector::{Gather, Vector};
 

@@ -157,7 +157,7 @@ unsafe fn with_context(
 
 unsafe extern "C" fn evaluate(_: sys::SNES, u: sys::Vec, r: sys::Vec, pointer: *mut c_void) -> sys::PetscErrorCode {
     let body = |problem: &mut dyn Problem, comm: &Comm| {
-        problem.residual(&Borrowed::new(u, comm), Borrowed::new(r, comm).get_mut())
+        problem.residual(&*Borrowed::new(u, comm)?, Borrowed::new(r, comm)?.get_mut())
     };
     // SAFETY: see `with_context`.
     unsafe { with_context(pointer, c"residual", body) }
@@ -170,7 +170,7 @@ unsafe extern "C" fn linearise(
     _: sys::Mat,
     pointer: *mut c_void,
 ) -> sys::PetscErrorCode {
-    let body = |problem: &mut dyn Problem, comm: &Comm| problem.linearise(&Borrowed::new(u, comm));
+    let body = |problem: &mut dyn Problem, comm: &Comm| problem.linearise(&*Borrowed::new(u, comm)?);
     // SAFETY: see `with_context`.
     unsafe { with_context(pointer, c"linearise", body) }
 }
@@ -178,12 +178,14 @@ unsafe extern "C" fn linearise(
 unsafe extern "C" fn correct(pc: sys::PC, r: sys::Vec, du: sys::Vec) -> sys::PetscErrorCode {
     let mut pointer: *mut c_void = ptr::null_mut();
     let body = |problem: &mut dyn Problem, comm: &Comm| {
-        problem.correct(&Borrowed::new(r, comm), Borrowed::new(du, comm).get_mut())
+        problem.correct(&*Borrowed::new(r, comm)?, Borrowed::new(du, comm)?.get_mut())
     };
     // SAFETY: the context is the one that `use_corrections` set.
     unsafe {
-        sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast());
-        with_context(pointer, c"correct", body)
+        match sys::PCShellGetContext(pc, ptr::from_mut(&mut pointer).cast()) {
+            0 => with_context(pointer, c"correct", body),
+            code => code,
+        }
     }
 }
 

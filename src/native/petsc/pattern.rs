@@ -1,6 +1,9 @@
 //! Which entries a distributed matrix stores.
 
-/// The pattern of some rows, compressed by rows.
+use crate::{Error, Result};
+
+/// The pattern of some rows, compressed by rows. Offsets wrap beyond 2^31 entries; [`Rows::check`] looks at the
+/// columns' number.
 #[derive(Debug, Clone)]
 pub struct Csr {
     /// Where each row starts, and the end of the last.
@@ -36,5 +39,43 @@ impl Rows {
     pub fn push(&mut self, own: &[i32], other: &[i32]) {
         self.own.push(own);
         self.other.push(other);
+    }
+
+    /// Number of rows.
+    pub fn n_rows(&self) -> usize {
+        self.own.offsets.len() - 1
+    }
+
+    /// Refuses what PETSc's 32-bit numbers do not count: before they are used, whatever has wrapped. `n_rows` is that
+    /// of all ranks.
+    pub(super) fn check(&self, n_rows: usize) -> Result<()> {
+        int("a matrix's rows", n_rows)?;
+        int("a matrix's entries on one rank", self.own.columns.len().max(self.other.columns.len()))?;
+        Ok(())
+    }
+}
+
+/// A number as PETSc, MUMPS and METIS count.
+///
+/// # Errors
+/// [`Error::Input`] where it is beyond 32 bits.
+pub(in crate::native) fn int(what: &str, n: usize) -> Result<i32> {
+    let text = || format!("{what}: {n} are more than 32-bit numbers count. Use more ranks or a coarser mesh");
+    i32::try_from(n).map_err(|_| Error::input(text()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_rows_or_entries_than_can_be_counted_are_refused() {
+        let mut rows = Rows::default();
+        rows.push(&[0], &[]);
+        let most = i32::MAX as usize;
+        assert!(rows.check(most).is_ok());
+        let error = rows.check(most + 1).unwrap_err();
+        assert!(error.to_string().contains("rows: 2147483648"), "{error}");
+        assert_eq!((int("rows", most).ok(), int("rows", most + 1).ok()), (Some(i32::MAX), None));
     }
 }

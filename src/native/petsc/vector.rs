@@ -7,6 +7,7 @@ use std::ptr;
 use squeal_sys as sys;
 
 use super::error::check;
+use super::int;
 use crate::Result;
 use crate::native::Comm;
 
@@ -35,11 +36,11 @@ impl Deref for Borrowed {
 }
 
 impl Borrowed {
-    pub(in crate::native) fn new(raw: sys::Vec, comm: &Comm) -> Borrowed {
+    pub(in crate::native) fn new(raw: sys::Vec, comm: &Comm) -> Result<Borrowed> {
         let mut n_local = 0;
         // SAFETY: `raw` comes from PETSc in a callback.
-        unsafe { sys::VecGetLocalSize(raw, &mut n_local) };
-        Borrowed(ManuallyDrop::new(Vector { raw, comm: comm.clone(), n_local: n_local as usize }))
+        check(unsafe { sys::VecGetLocalSize(raw, &mut n_local) })?;
+        Ok(Borrowed(ManuallyDrop::new(Vector { raw, comm: comm.clone(), n_local: n_local as usize })))
     }
     pub(in crate::native) fn get_mut(&mut self) -> &mut Vector {
         &mut self.0
@@ -60,8 +61,9 @@ impl Vector {
     /// PETSc's.
     pub fn zeros(comm: &Comm, n_local: usize) -> Result<Vector> {
         let mut raw = ptr::null_mut();
+        let n = int("a vector's rows on this rank", n_local)?;
         // SAFETY: sizes are consistent over the ranks by contract; PETSc sums them.
-        check(unsafe { sys::VecCreateMPI(comm.raw(), n_local as i32, super::DETERMINE, &mut raw) })?;
+        check(unsafe { sys::VecCreateMPI(comm.raw(), n, super::DETERMINE, &mut raw) })?;
         Ok(Vector { raw, comm: comm.clone(), n_local })
     }
 
@@ -219,7 +221,7 @@ impl Gather {
     /// PETSc's.
     pub fn new(from: &Vector, indices: &[i32]) -> Result<Gather> {
         let (mut target, mut set, mut scatter) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
-        let n = indices.len() as i32;
+        let n = int("gathered entries", indices.len())?;
         // SAFETY: PETSc copies the indices; the index set is destroyed once the scatter holds what it needs.
         unsafe {
             let own = sys::squeal_comm_self();
