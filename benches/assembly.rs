@@ -23,7 +23,7 @@ fn main() -> Result<()> {
     let others = if launched { None } else { Some(dolfinx(&path)?) };
     let comm = Session::start(&[])?;
     let brake = FullModel::read(&comm, &path)?;
-    let n_tets = comm.sum(brake.own_tets().count() as f64);
+    let n_tets = comm.sum(brake.own_tets().count()) as f64;
     if comm.is_root() {
         println!("{}: {n_tets} tetrahedra on {} ranks", path.display(), comm.size());
     }

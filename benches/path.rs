@@ -28,7 +28,7 @@ fn main() -> squeal::Result<()> {
     };
     let start = Instant::now();
     let brake = FullModel::read(&comm, &path)?;
-    let (nodes, tets) = (brake.nodes.n_global(), comm.sum(brake.own_tets().count() as f64));
+    let (nodes, tets) = (brake.nodes.n_global(), comm.sum(brake.own_tets().count()) as f64);
     tell(format!("{}: {nodes} nodes, {tets} tetrahedra, {} ranks", path.display(), comm.size()));
     tell(format!("read, checked, contact found    {:8.2} s", start.elapsed().as_secs_f64()));
 

@@ -10,7 +10,7 @@ use crate::matrices::family::MatrixFamily;
 use crate::native::{Comm, Vector};
 use crate::results::{ExternalMode, ExternalResults, ExternalValue};
 use crate::stability::Mode;
-use crate::{Error, ErrorKind, Result};
+use crate::{ErrorKind, Result};
 
 use super::external_sweep::{ExternalModes, ExternalSweep};
 use super::observer::{Event, Observer};

@@ -30,7 +30,7 @@ use crate::native::{Comm, Session};
 use crate::output::json;
 use crate::results::Results;
 use crate::structure::StructureOptions;
-use crate::{Error, ErrorKind, Result};
+use crate::{Error, Result};
 use values::FrictionValues;
 
 /// Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake.
@@ -388,7 +388,7 @@ fn tell_error(what: &str, error: &Error, as_json: bool) {
     let text = match (as_json, error.kind()) {
         (true, _) => json!({"error": error.to_string(), "exit_code": error.exit_code()}).to_string(),
         // That a run was stopped is no mistake.
-        (false, ErrorKind::Interrupted { .. }) => error.to_string(),
+        (false, crate::ErrorKind::Interrupted { .. }) => error.to_string(),
         (false, _) => format!("{what}: {error}"),
     };
     let _ = writeln!(io::stderr(), "{text}");
