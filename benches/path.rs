@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use squeal::analysis::Sweep;
 use squeal::native::{Block, Factor, FactorKind, Matrix, Precision, Session, Vector};
-use squeal::stability::Pencil;
+use squeal::stability::QuadraticProblem;
 use squeal::structure::FullModel;
 
 /// Friction of the equilibrium whose matrices are factorised.
@@ -52,12 +52,12 @@ fn main() -> squeal::Result<()> {
 
     let mut sweep = Sweep::new(&system, &brake.interface, false)?;
     let equilibrium = sweep.equilibrium(FRICTION, &mut ())?;
-    sweep.linearise(&equilibrium, |pencil| {
+    sweep.linearise(&equilibrium, |problem| {
         let (double, single) = (Precision::Double, Precision::Single);
         for (kind, precision) in
             [(FactorKind::Unsymmetric, double), (FactorKind::Unsymmetric, single), (FactorKind::Symmetric, double)]
         {
-            factor(pencil, kind, precision, brake.model.band[1], &tell)?;
+            factor(problem, kind, precision, brake.model.band[1], &tell)?;
         }
         Ok(())
     })?;
@@ -80,22 +80,22 @@ fn main() -> squeal::Result<()> {
         "modes of the band               {:8.2} s  {} modes, {} solves",
         costs.modes_seconds,
         band.modes.len(),
-        band.n_solves
+        band.report.n_solves
     ));
     Ok(())
 }
 
 /// What a factor costs, and solves with it: of the stiffness with the tangent of contact and friction, or of what counts the modes.
 fn factor(
-    pencil: &Pencil,
+    problem: &QuadraticProblem,
     kind: FactorKind,
     precision: Precision,
     end: f64,
     tell: &impl Fn(String),
 ) -> squeal::Result<()> {
     let matrix = match kind {
-        FactorKind::Unsymmetric => pencil.k.duplicate()?,
-        FactorKind::Symmetric => counted(pencil, TAU * end)?,
+        FactorKind::Unsymmetric => problem.matrices.k.duplicate()?,
+        FactorKind::Symmetric => counted(problem, TAU * end)?,
     };
     let mut factor = Factor::new(kind);
     factor.set_precision(precision);
@@ -113,7 +113,7 @@ fn factor(
         if cost.out_of_core { ", out of core" } else { "" },
         cost.ordering_name()
     ));
-    let n_local = pencil.k.n_local();
+    let n_local = problem.matrices.k.n_local();
     let load: Vec<f64> = (0..n_local).map(|row| 1.0 + (row % 7) as f64).collect();
     let b = Vector::from_local(matrix.comm(), &load)?;
     let [mut x, mut residual] = [b.duplicate()?, b.duplicate()?];
@@ -138,9 +138,9 @@ fn factor(
 }
 
 /// `S - omega^2 M`, S the stiffness with the tangent of contact without friction's coupling.
-fn counted(pencil: &Pencil, omega: f64) -> squeal::Result<Matrix> {
-    let mut matrix = pencil.symmetric_stiffness()?;
-    matrix.axpy(-omega * omega, pencil.m)?;
+fn counted(problem: &QuadraticProblem, omega: f64) -> squeal::Result<Matrix> {
+    let mut matrix = problem.symmetric_stiffness()?;
+    matrix.axpy(-omega * omega, problem.matrices.m)?;
     matrix.declare_symmetric()?;
     Ok(matrix)
 }

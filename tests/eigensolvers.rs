@@ -73,8 +73,8 @@ fn in_blocks_along(comm: &Comm, frictions: &[f64]) -> Band {
 fn a_search_starts_from_the_modes_of_another_friction() {
     let comm = Session::start(&[]).unwrap();
     let [alone, after] = [in_blocks_along(&comm, &[0.6]), in_blocks_along(&comm, &[0.5, 0.6])];
-    println!("{} and {} solves", alone.n_solves, after.n_solves);
-    assert!(4 * after.n_solves < 3 * alone.n_solves);
+    println!("{} and {} solves", alone.report.n_solves, after.report.n_solves);
+    assert!(4 * after.report.n_solves < 3 * alone.report.n_solves);
     assert!(alone.count.agrees() && after.count.agrees());
     assert!(distance(&[alone.modes, after.modes]) < 1e-9);
 }

@@ -36,15 +36,15 @@ fn solve(comm: &Comm) {
     let system = brake.assemble(comm, &families).unwrap();
     let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let equilibrium = sweep.equilibrium(0.5, &mut ()).unwrap();
-    let look = |pencil: &squeal::stability::Pencil| {
+    let look = |problem: &squeal::stability::QuadraticProblem| {
         let mut factor = Factor::new(FactorKind::Unsymmetric);
-        factor.factorise(pencil.k)?;
-        let [direct, transposed] = residuals(pencil.k, &factor);
+        factor.factorise(problem.matrices.k)?;
+        let [direct, transposed] = residuals(problem.matrices.k, &factor);
         assert!(factor.is_exact() && direct < 1e-10 && transposed < 1e-10, "double: {direct:e} {transposed:e}");
         let double = factor.stats();
         factor.set_precision(Precision::Single);
-        factor.factorise(pencil.k)?;
-        let [direct, transposed] = residuals(pencil.k, &factor);
+        factor.factorise(problem.matrices.k)?;
+        let [direct, transposed] = residuals(problem.matrices.k, &factor);
         assert!(!factor.is_exact() && direct < 0.05 && transposed < 0.05, "single: {direct:e} {transposed:e}");
         assert!(direct > 1e-9, "it is in single precision: {direct:e}");
         let single = factor.stats();

@@ -20,13 +20,14 @@ use squeal::analysis::Sweep;
 use squeal::assembly::System;
 use squeal::contact::{Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
+use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
 use squeal::model::NormalLaw;
-use squeal::native::{Block as Columns, Comm, Factor, FactorKind, Session};
+use squeal::native::{Block as Columns, Comm, Precision, Session};
 use squeal::reduction::craig_bampton::{self, Structure};
 use squeal::reduction::super_element::{Origin, SuperElement};
 use squeal::reduction::{contacts, craig_bampton::Reduced};
-use squeal::stability::{self, Pencil, Solver};
+use squeal::stability::{BandRequest, BandSolver, EigenOptions, QuadraticProblem};
 use squeal::structure::FullModel;
 
 const MODEL: &str = r#"
@@ -196,13 +197,15 @@ fn modal_coordinates_of_one_friction_serve_the_others() {
     for friction in [FRICTION, 0.2] {
         let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
         let modes = sweep.modes(&equilibrium, WIDE, &mut ()).unwrap().modes;
-        let (left, _) = sweep.left_vectors(&modes, |_| 1e-7).unwrap();
-        let look = |pencil: &Pencil| {
-            let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(1.0));
-            let direct = stability::solve(pencil, &mut lu, &mut solver, WIDE, &mut |_, _, _| ())?.modes;
+        let left = sweep.left_vectors(&modes, |_| 1e-7).unwrap();
+        let look = |problem: &QuadraticProblem| {
+            let mut solver = BandSolver::new(EigenOptions::default(), Vec::new());
+            let (mut factor, request) =
+                (LabelledFactor::new(Precision::Double), BandRequest { band: WIDE, shift: 1.0 });
+            let direct = solver.solve_band(problem, &mut factor, &request, &mut |_| ())?.modes;
             let [found, exact] =
                 [&modes, &direct].map(|modes| modes.iter().map(|mode| mode.lambda).collect::<Vec<_>>());
-            let errors = transposed_errors(pencil, &found, &left)?;
+            let errors = transposed_errors(problem, &found, &left)?;
             let (right, left) = (largest_error(&found, &exact), errors.into_iter().fold(0.0, f64::max));
             println!("friction {friction}: {} modes, right {right:.1e}, left {left:.1e}", found.len());
             assert!(found.len() > 6 && right < 1e-9 && left < 1e-10, "{right} {left}");
@@ -213,9 +216,9 @@ fn modal_coordinates_of_one_friction_serve_the_others() {
 }
 
 /// `|P(lambda)^T v| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |v|)`, `v = conj(y)`, largest components.
-fn transposed_errors(pencil: &Pencil, lambdas: &[Complex64], y: &Columns) -> Result<Vec<f64>> {
-    let products = [pencil.k, pencil.c, pencil.m].map(|a| y.multiplied_by_transpose(a));
-    let norms = [pencil.k.norm_inf()?, pencil.c.norm_inf()?, pencil.m.norm_inf()?];
+fn transposed_errors(problem: &QuadraticProblem, lambdas: &[Complex64], y: &Columns) -> Result<Vec<f64>> {
+    let products = [problem.matrices.k, problem.matrices.c, problem.matrices.m].map(|a| y.multiplied_by_transpose(a));
+    let norms = [problem.matrices.k.norm_inf()?, problem.matrices.c.norm_inf()?, problem.matrices.m.norm_inf()?];
     let [k, c, m] = products;
     let products = [k?, c?, m?];
     let largest = |column: &dyn Fn(usize) -> Complex64| (0..y.n_local()).map(|i| column(i).norm()).fold(0.0, f64::max);

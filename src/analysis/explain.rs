@@ -52,7 +52,7 @@ impl Sweep<'_> {
         vectors: [Complex; 2],
     ) -> Result<Vec<Forms>> {
         let mut forms = of_elements(self.system, families, n_named, vectors)?;
-        let contacts = self.path.contacts_mut();
+        let contacts = self.path.contacts();
         let frictions = contacts.interface().frictions_at(equilibrium.friction);
         forms.extend(of_contacts(contacts, equilibrium, &frictions, self.friction_damping, vectors)?);
         Ok(forms)
@@ -60,9 +60,9 @@ impl Sweep<'_> {
 
     /// The forms of `dP / d mu` of each contact pair: K and friction damping are linear in mu.
     fn friction_forms(&mut self, equilibrium: &Equilibrium, vectors: [Complex; 2]) -> Result<Vec<Forms>> {
-        let mut at = |mu: f64| {
+        let at = |mu: f64| {
             let frictions = vec![mu; self.path.contacts().interface().pairs.len()];
-            of_contacts(self.path.contacts_mut(), equilibrium, &frictions, self.friction_damping, vectors)
+            of_contacts(self.path.contacts(), equilibrium, &frictions, self.friction_damping, vectors)
         };
         let (one, none) = (at(1.0)?, at(0.0)?);
         let difference = |(a, b): (&Forms, &Forms)| Forms { m: a.m - b.m, c: a.c - b.c, k: a.k - b.k };

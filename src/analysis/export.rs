@@ -121,11 +121,11 @@ impl Export<'_> {
         let equilibrium = sweep.equilibrium(friction, observer)?;
         observer.event(Event::Stage("writing"));
         sweep.linearise(&equilibrium, |problem| {
-            let mut contact = problem.k.duplicate()?;
+            let mut contact = problem.matrices.k.duplicate()?;
             contact.axpy(-1.0, &system.k)?;
-            self.matrix(&MASS, problem.m)?;
-            self.matrix(&DAMPING, problem.c)?;
-            self.matrix(&STIFFNESS, problem.k)?;
+            self.matrix(&MASS, problem.matrices.m)?;
+            self.matrix(&DAMPING, problem.matrices.c)?;
+            self.matrix(&STIFFNESS, problem.matrices.k)?;
             self.matrix(&CONTACT, &contact)
         })
     }

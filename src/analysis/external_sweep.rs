@@ -6,17 +6,21 @@ use num_complex::Complex64;
 
 use super::family::{FrictionFamily, Snapshot, Vectors, widened};
 use super::observer::{Event, Observer};
+use crate::equilibrium::LabelledFactor;
 use crate::matrices::{ExternalMatrices, Sums};
-use crate::native::{Factor, FactorKind};
-use crate::stability::{self, Band, Evidence, Pencil, Problem, Solver, condition};
+use crate::native::{Factor, FactorKind, Mck, Precision};
+use crate::stability::{
+    self, Band, BandRequest, BandSolver, EigenOptions, EigenProgress, Evidence, QuadraticProblem, condition,
+    condition_at,
+};
 use crate::tracking::{Diagram, Options, track};
 use crate::{Error, Result};
 
-/// ExternalMatrices matrices under analysis at one value after the other.
+/// External matrices under analysis at one value after the other.
 pub struct ExternalSweep<'a> {
     given: &'a ExternalMatrices,
-    solver: Solver,
-    lu: Factor,
+    solver: BandSolver,
+    lu: LabelledFactor,
     band: [f64; 2],
     evidence: Evidence,
 }
@@ -57,11 +61,12 @@ impl<'a> ExternalSweep<'a> {
     pub fn new(given: &'a ExternalMatrices, band: [f64; 2]) -> ExternalSweep<'a> {
         let symmetry = given.symmetry;
         let evidence = match (symmetry.mass, symmetry.damping && symmetry.stiffness) {
-            (true, true) => Evidence::Inertia,
+            (true, true) => Evidence::SturmCount,
             (estimated, _) => Evidence::Repetition { estimated },
         };
-        let solver = Solver::given(given.n, given.labels(), symmetry.mass && symmetry.damping, evidence);
-        ExternalSweep { given, solver, lu: Factor::new(FactorKind::Unsymmetric), band, evidence }
+        let options = EigenOptions { evidence, ..EigenOptions::default() };
+        let solver = BandSolver::new(options, given.labels());
+        ExternalSweep { given, solver, lu: LabelledFactor::new(Precision::Double), band, evidence }
     }
 
     /// What shows that no mode is missing.
@@ -72,35 +77,36 @@ impl<'a> ExternalSweep<'a> {
     /// All modes of the band at a value of the parameter. Collective.
     ///
     /// # Errors
-    /// [`Error::Input`] where the pencil is singular; see [`stability::solve`].
+    /// [`Error::Input`] where the problem is singular; see [`BandSolver::solve_band`].
     pub fn modes(&mut self, value: f64, observer: &mut dyn Observer) -> Result<ExternalModes> {
         let sums = self.given.at(value)?;
         self.modes_of(&sums, self.band, observer)
     }
 
     fn modes_of(&mut self, sums: &Sums, band: [f64; 2], observer: &mut dyn Observer) -> Result<ExternalModes> {
-        let pencil = self.pencil(sums);
-        let (shift, condition) = self.choose_shift(&pencil)?;
-        let band =
-            stability::solve(&pencil, &mut self.lu, &mut self.solver, band, &mut |n_converged, n_wanted, n_solves| {
-                observer.event(Event::Modes { n_converged, n_wanted, n_solves });
-            })?;
+        let problem = self.problem(sums);
+        let (shift, condition) = self.choose_shift(&problem)?;
+        let mut progress = |EigenProgress { n_converged, n_wanted, n_solves }: EigenProgress| {
+            observer.event(Event::Modes { n_converged, n_wanted, n_solves });
+        };
+        let band = self.solver.solve_band(&problem, &mut self.lu, &BandRequest { band, shift }, &mut progress)?;
         Ok(ExternalModes { band, condition, shift })
     }
 
-    fn pencil<'s>(&self, sums: &'s Sums) -> Pencil<'s> {
+    fn problem<'s>(&self, sums: &'s Sums) -> QuadraticProblem<'s> {
         let Sums { m, c, k, k_symmetric } = sums;
         let symmetric_mc = self.given.symmetry.mass && self.given.symmetry.damping;
-        Pencil { m, c, k, k_symmetric: k_symmetric.as_ref().unwrap_or(k), points: None, symmetric_mc }
+        let k_symmetric = k_symmetric.as_ref().unwrap_or(k);
+        QuadraticProblem { matrices: Mck { m, c, k }, k_symmetric, points: None, symmetric_mc }
     }
 
     /// The first shift at which `P(shift)` can be inverted, and the condition number there.
-    fn choose_shift(&mut self, pencil: &Pencil) -> Result<(f64, f64)> {
+    fn choose_shift(&mut self, problem: &QuadraticProblem) -> Result<(f64, f64)> {
         let mut best = (0.0, f64::INFINITY);
         let enough = if self.given.n <= SMALL { GOOD } else { NEARLY_SINGULAR };
         for share in SHIFTS {
             let shift = share * TAU * self.band[1];
-            let condition = self.solver.search_about(shift, pencil, &mut self.lu)?;
+            let condition = condition_at(shift, problem, &mut self.lu)?;
             if condition <= enough {
                 return Ok((shift, condition));
             }
@@ -114,7 +120,6 @@ impl<'a> ExternalSweep<'a> {
                  vector. Hold or leave out what neither mass nor stiffness resists",
             ));
         }
-        self.solver.search_about(best.0, pencil, &mut self.lu)?;
         Ok(best)
     }
 
@@ -135,9 +140,7 @@ impl<'a> ExternalSweep<'a> {
             let modes = self.modes_of(&sums, widened(band), observer)?;
             each(value, &modes)?;
             let found = &modes.band.modes;
-            let (pencil, labels) = (self.pencil(&sums), given.labels());
-            let problem = Problem { pencil: &pencil, factor: &self.lu, labels: &labels };
-            let (left, _) = self.solver.left_vectors(&problem, found, |_| ACCURACY)?;
+            let left = self.solver.left_vectors(&self.problem(&sums), &mut self.lu, found, |_| ACCURACY)?;
             let right = stability::right_vectors(&sums.m, found)?;
             Ok(Snapshot::of(&modes.band, band[1], Vectors { right, left, c: Some(sums.c), m: Some(sums.m) }))
         };

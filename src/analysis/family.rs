@@ -43,7 +43,7 @@ pub struct Vectors {
     pub m: Option<Matrix>,
 }
 
-/// Pencils along the friction of the swept pairs.
+/// Problems along the friction of the swept pairs.
 pub struct FrictionFamily<'f> {
     /// Finds equilibrium and modes.
     pub solutions: &'f mut dyn Solutions,
@@ -118,7 +118,7 @@ impl Snapshot {
     /// Collective.
     ///
     /// # Errors
-    /// See [`crate::stability::Solver::left_vectors`].
+    /// See [`crate::stability::BandSolver::left_vectors`].
     pub fn new(sweep: &mut Sweep, band: &Band, end: f64) -> Result<Snapshot> {
         Snapshot::with(sweep, band, end, RECOGNISES)
     }
@@ -126,15 +126,14 @@ impl Snapshot {
     /// As [`Snapshot::new`], where only unstable modes need left vectors: those of the others are not computed. Collective.
     ///
     /// # Errors
-    /// See [`crate::stability::Solver::left_vectors`].
+    /// See [`crate::stability::BandSolver::left_vectors`].
     pub fn of_unstable(sweep: &mut Sweep, band: &Band, end: f64) -> Result<Snapshot> {
         Snapshot::with(sweep, band, end, f64::INFINITY)
     }
 
     /// With the accuracy of stable modes' left vectors.
     fn with(sweep: &mut Sweep, band: &Band, end: f64, of_stable: f64) -> Result<Snapshot> {
-        let (left, _) =
-            sweep.left_vectors(&band.modes, |mode| if mode.is_unstable() { EXPLAINS } else { of_stable })?;
+        let left = sweep.left_vectors(&band.modes, |mode| if mode.is_unstable() { EXPLAINS } else { of_stable })?;
         let right = sweep.right_vectors(&band.modes)?;
         Ok(Snapshot::of(band, end, Vectors { right, left, c: sweep.own_damping()?, m: None }))
     }

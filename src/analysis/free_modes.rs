@@ -8,11 +8,12 @@ use nalgebra::DMatrix;
 
 use crate::Result;
 use crate::assembly::System;
-use crate::native::{Comm, Factor, FactorKind, MaxLoc};
+use crate::equilibrium::LabelledFactor;
+use crate::native::{Comm, MaxLoc, Mck, Precision};
 use crate::output::fields::write_free_mode;
 use crate::output::folder::Folder;
 use crate::results::{FreeMode, FreeModes, MeasuredComparison};
-use crate::stability::{self, Mode, Pencil, Solver};
+use crate::stability::{Band, BandRequest, BandSolver, EigenOptions, EigenProgress, Mode, QuadraticProblem};
 use crate::structure::{FullModel, RigidMotions};
 
 use super::measured::{self, Measured};
@@ -82,14 +83,16 @@ pub fn free_modes(
 }
 
 /// All modes up to the band's end, rigid motions among them. Collective.
-fn solve(system: &System, band: [f64; 2], observer: &mut dyn Observer) -> Result<stability::Band> {
-    let (m, k, undamped) = (&system.m, &system.k, system.c.zeros_like()?);
-    let pencil = Pencil { m, c: &undamped, k, k_symmetric: k, points: None, symmetric_mc: true };
-    let mut lu = Factor::new(FactorKind::Unsymmetric);
-    let mut solver = Solver::shifted(SHIFT_RATIO * TAU * band[1]);
-    stability::solve(&pencil, &mut lu, &mut solver, [0.0, band[1]], &mut |n_converged, n_wanted, n_solves| {
+fn solve(system: &System, band: [f64; 2], observer: &mut dyn Observer) -> Result<Band> {
+    let undamped = system.c.zeros_like()?;
+    let problem = QuadraticProblem::symmetric(Mck { c: &undamped, ..system.matrices() });
+    let mut factor = LabelledFactor::new(Precision::Double);
+    let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
+    let request = BandRequest { band: [0.0, band[1]], shift: SHIFT_RATIO * TAU * band[1] };
+    let mut progress = |EigenProgress { n_converged, n_wanted, n_solves }: EigenProgress| {
         observer.event(Event::Modes { n_converged, n_wanted, n_solves });
-    })
+    };
+    solver.solve_band(&problem, &mut factor, &request, &mut progress)
 }
 
 /// MAC of each measured mode with each computed one. Collective.

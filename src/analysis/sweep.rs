@@ -9,15 +9,17 @@ use super::observer::{Event, Observer};
 use crate::Result;
 use crate::assembly::System;
 use crate::contact::interface::Interface;
-use crate::equilibrium::{Equilibrium, Path};
+use crate::equilibrium::{Equilibrium, LinearSystem, Path};
 use crate::native::{Block, FactorStats, Matrix, Precision, Vector};
-use crate::stability::{self, Band, Count, Linearised, Mode, Pencil, Problem, Solver};
+use crate::stability::{
+    self, Band, BandSolver, Count, EigenOptions, EigenProgress, Linearised, Mode, QuadraticProblem,
+};
 
 /// A structure under analysis at one friction after the other.
 pub struct Sweep<'a> {
     pub(super) system: &'a System,
     pub(super) path: Path<'a>,
-    solver: Solver,
+    solver: BandSolver,
     linearised: Linearised,
     /// Whether friction that turns with the velocity damps the modes.
     pub(super) friction_damping: bool,
@@ -51,7 +53,7 @@ impl<'a> Sweep<'a> {
         Ok(Sweep {
             system,
             path: Path::new(system, interface)?,
-            solver: Solver::for_system(system),
+            solver: BandSolver::new(EigenOptions::default(), system.dofs.labels()),
             linearised: Linearised::default(),
             friction_damping,
             seconds: [0.0; 3],
@@ -65,7 +67,7 @@ impl<'a> Sweep<'a> {
     pub fn equilibrium(&mut self, friction: f64, observer: &mut dyn Observer) -> Result<Equilibrium> {
         let start = Instant::now();
         // Its memory is needed.
-        self.solver.forget();
+        self.solver.release_search_space();
         let outcome = self.path.advance(friction, &mut |label, iteration, iterate| {
             observer.event(Event::Newton { label, iteration, iterate });
         });
@@ -76,16 +78,16 @@ impl<'a> Sweep<'a> {
     /// All modes of a band (Hz) about an equilibrium. Collective.
     ///
     /// # Errors
-    /// See [`stability::solve`].
+    /// See [`BandSolver::solve_band`].
     pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], observer: &mut dyn Observer) -> Result<Band> {
         let start = Instant::now();
-        let linearised = &mut self.linearised;
-        linearised.update(self.system, self.path.lend_tangent(), equilibrium, self.friction_damping)?;
-        let (contacts, k, lu) = self.path.lend_factor(linearised.frozen().to_vec());
-        let pencil = linearised.pencil(self.system, contacts, k);
-        let outcome = stability::solve(&pencil, lu, &mut self.solver, band, &mut |n_converged, n_wanted, n_solves| {
+        let LinearSystem { contacts, tangent, factor } = self.path.linear_system();
+        self.linearised = Linearised::new(self.system, contacts, equilibrium, self.friction_damping, tangent)?;
+        let problem = self.linearised.problem(self.system, contacts, tangent);
+        let mut progress = |EigenProgress { n_converged, n_wanted, n_solves }: EigenProgress| {
             observer.event(Event::Modes { n_converged, n_wanted, n_solves });
-        });
+        };
+        let outcome = self.solver.solve_band(&problem, factor, &band.into(), &mut progress);
         self.seconds[1] += start.elapsed().as_secs_f64();
         outcome
     }
@@ -94,29 +96,32 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// PETSc's; those of `look`.
-    pub fn linearise<T>(&mut self, equilibrium: &Equilibrium, look: impl FnOnce(&Pencil) -> Result<T>) -> Result<T> {
-        let linearised = &mut self.linearised;
-        linearised.update(self.system, self.path.lend_tangent(), equilibrium, self.friction_damping)?;
-        let (contacts, k, _) = self.path.lend_factor(linearised.frozen().to_vec());
-        look(&linearised.pencil(self.system, contacts, k))
+    pub fn linearise<T>(
+        &mut self,
+        equilibrium: &Equilibrium,
+        look: impl FnOnce(&QuadraticProblem) -> Result<T>,
+    ) -> Result<T> {
+        let LinearSystem { contacts, tangent, .. } = self.path.linear_system();
+        self.linearised = Linearised::new(self.system, contacts, equilibrium, self.friction_damping, tangent)?;
+        look(&self.linearised.problem(self.system, contacts, tangent))
     }
 
-    /// Goes about it as for a large structure, whatever the size: with blocks of right-hand sides ([`Solver::blocked`]) and factors in single
+    /// Goes about it as for a large structure, whatever the size: with blocks of right-hand sides ([`EigenOptions::always_blocked`]) and factors in single
     /// precision. Collective.
     pub fn solve_as_large(&mut self) {
-        self.solver = Solver::blocked(self.system);
+        self.solver = BandSolver::new(EigenOptions::always_blocked(), self.system.dofs.labels());
         self.path.set_precision(Precision::Single);
     }
 
     /// Left vectors of the modes of the last [`Sweep::modes`], each to the accuracy asked for. Collective.
     ///
     /// # Errors
-    /// See [`Solver::left_vectors`].
-    pub fn left_vectors(&mut self, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<(Block, usize)> {
+    /// See [`BandSolver::left_vectors`].
+    pub fn left_vectors(&mut self, modes: &[Mode], accuracy: impl Fn(&Mode) -> f64) -> Result<Block> {
         let start = Instant::now();
-        let pencil = self.linearised.pencil(self.system, self.path.contacts(), self.path.tangent());
-        let problem = Problem { pencil: &pencil, factor: self.path.factor(), labels: &self.system.dofs.labels() };
-        let outcome = self.solver.left_vectors(&problem, modes, accuracy);
+        let LinearSystem { contacts, tangent, factor } = self.path.linear_system();
+        let problem = self.linearised.problem(self.system, contacts, tangent);
+        let outcome = self.solver.left_vectors(&problem, factor, modes, accuracy);
         self.seconds[2] += start.elapsed().as_secs_f64();
         outcome
     }
@@ -142,7 +147,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// PETSc's.
     pub fn damping_at(&mut self, friction: f64, u: &Vector) -> Result<Option<Matrix>> {
-        let contacts = self.path.contacts_mut();
+        let contacts = self.path.contacts();
         let responses = contacts.respond(u, &contacts.interface().stage(friction))?;
         let damped = || stability::with_friction_damping(self.system, contacts, friction, &responses);
         self.friction_damping.then(damped).transpose()
@@ -156,7 +161,7 @@ impl<'a> Sweep<'a> {
     /// Puts the path back to where it was ([`Path::restore`]), and the count of modes to where the last one was taken.
     pub fn restore(&mut self, states: Vec<(f64, Vector)>, count: Option<&Count>) {
         self.path.restore(states);
-        count.into_iter().for_each(|count| self.solver.go_on_from(count));
+        count.into_iter().for_each(|count| self.solver.resume(count));
     }
 
     /// The last state tried, for output after a failure.
@@ -172,7 +177,7 @@ impl<'a> Sweep<'a> {
             left_seconds: self.seconds[2],
             lu: self.path.factor().stats(),
             n_iterations: self.path.n_iterations(),
-            symmetric: self.solver.inertia.stats(),
+            symmetric: self.solver.count_stats(),
         }
     }
 }

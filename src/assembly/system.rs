@@ -8,7 +8,7 @@ use super::scatter::{Places, Scatter};
 use super::{DofMap, Pattern};
 use crate::Result;
 use crate::mesh::Numbering;
-use crate::native::{Comm, Gather, Matrix, Vector};
+use crate::native::{Comm, Gather, Matrix, Mck, Vector};
 
 /// Anything that couples lists of nodes.
 pub trait Connectivity {
@@ -120,6 +120,11 @@ impl System {
                 }
             }
         })
+    }
+
+    /// M, C and K.
+    pub fn matrices(&self) -> Mck<&Matrix> {
+        Mck { m: &self.m, c: &self.c, k: &self.k }
     }
 
     /// A vector of zeros in the system's layout.

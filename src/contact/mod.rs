@@ -36,6 +36,7 @@ mod motion;
 mod pairing;
 mod projection;
 pub mod search;
+mod tangent_change;
 #[cfg(test)]
 pub(crate) mod testing;
 
@@ -43,3 +44,4 @@ pub use gap_operator::GapOperator;
 pub use interface::{ContactPair, ContactPoint, Interface, Stage, Statistics, TangentialKind};
 pub use law::{PointLaw, Response, Status, Tangential};
 pub use motion::sliding;
+pub use tangent_change::{Dyad, Tangent, TangentChange};

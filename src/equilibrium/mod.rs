@@ -8,11 +8,18 @@
 
 mod balance;
 mod contacts;
+mod continuation;
+mod labelled_factor;
 mod newton;
 mod path;
 mod step_factor;
+#[cfg(test)]
+pub(crate) mod testing;
+mod woodbury;
 
 pub use balance::{Balance, PairForces, Wrench};
 pub use contacts::{Contacts, Counts};
+pub use labelled_factor::{Label, LabelledFactor};
 pub use newton::{Iteration, Step};
-pub use path::{Equilibrium, Path, tangent_precision};
+pub use path::{Equilibrium, LinearSystem, Path, tangent_precision};
+pub use woodbury::Woodbury;

@@ -9,14 +9,14 @@ use crate::contact::{Response, Stage};
 use crate::native::petsc::nonlinear::{self, Problem, Verdict};
 use crate::native::{Matrix, Vector};
 
-use super::step_factor::StepFactor;
+use super::step_factor::{StepFactor, StepSystem};
 
 /// Residual at which an equilibrium counts as converged, relative to the larger of the loads and the contact forces.
 const TOLERANCE: f64 = 1e-9;
-/// A step's linear residual relative to the step's own.
-const FORCING: f64 = 1e-2;
+/// Residual of a step's linear system relative to the step's own.
+const LINEAR_TOLERANCE: f64 = 1e-2;
 /// The last step need not go further below the equilibrium's tolerance than this.
-const ENOUGH: f64 = 0.1;
+const LAST_STEP_SHARE: f64 = 0.1;
 /// Newton steps at most.
 const MAX_ITERATIONS: usize = 40;
 
@@ -34,7 +34,7 @@ pub struct Iteration {
 /// The report of one solve.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// What was solved, for people.
+    /// What was solved.
     pub label: String,
     /// Whether it converged.
     pub converged: bool,
@@ -52,50 +52,47 @@ impl Step {
     }
 }
 
-struct Newton<'a, 'b> {
-    system: &'a System,
-    contacts: &'b mut Contacts<'a>,
-    factor: &'b mut StepFactor,
-    tangent: &'b mut Matrix,
-    stage: &'b Stage,
+struct Newton<'a, 'b, 'c> {
+    workspace: &'c mut Workspace<'a, 'b>,
+    stage: &'c Stage,
     work: Vector,
     load_norm: f64,
     force_norm: f64,
     responses: Vec<Response>,
     accepted: Vec<Response>,
     iterations: Vec<Iteration>,
-    progress: &'b mut dyn FnMut(usize, &Iteration),
+    progress: &'c mut dyn FnMut(usize, &Iteration),
 }
 
-impl Problem for Newton<'_, '_> {
+impl Problem for Newton<'_, '_, '_> {
     /// `r = K u - B^T f(B u) - F_ext`
     fn residual(&mut self, u: &Vector, r: &mut Vector) -> Result<()> {
-        self.responses = self.contacts.respond(u, self.stage)?;
+        self.responses = self.workspace.contacts.respond(u, self.stage)?;
         self.work.scale(0.0)?;
-        self.contacts.add_forces(&self.responses, -1.0, &mut self.work)?;
+        self.workspace.contacts.add_forces(&self.responses, -1.0, &mut self.work)?;
         self.force_norm = self.work.norm()?;
-        self.system.k.multiply(u, r)?;
+        self.workspace.system.k.multiply(u, r)?;
         r.axpy(1.0, &self.work)?;
-        r.axpy(-1.0, &self.system.load)
+        r.axpy(-1.0, &self.workspace.system.load)
     }
 
     /// `J = K + B^T D(B u) B`
     fn linearise(&mut self, u: &Vector) -> Result<()> {
-        let responses = self.contacts.respond(u, self.stage)?;
-        self.tangent.copy_from(&self.system.k)?;
-        self.contacts.add_blocks(responses.iter().map(|r| r.tangent), self.tangent)?;
-        self.factor.adopt(responses);
+        let responses = self.workspace.contacts.respond(u, self.stage)?;
+        self.workspace.tangent.copy_from(&self.workspace.system.k)?;
+        self.workspace.contacts.add_blocks(responses.iter().map(|r| r.tangent), self.workspace.tangent)?;
+        self.workspace.factor.set_points(responses);
         Ok(())
     }
 
     fn jacobian(&self) -> &Matrix {
-        self.tangent
+        self.workspace.tangent
     }
 
     fn correct(&mut self, r: &Vector, du: &mut Vector) -> Result<()> {
-        let residual = self.iterations.last().map_or(1.0, |it| it.residual);
-        let tolerance = FORCING.max(ENOUGH * TOLERANCE / residual);
-        self.factor.solve(self.tangent, r, du, tolerance, self.contacts)
+        let tolerance = linear_tolerance(self.iterations.last().map_or(1.0, |it| it.residual));
+        let system = StepSystem { a: self.workspace.tangent, contacts: self.workspace.contacts, tolerance };
+        self.workspace.factor.solve(&system, r, du)
     }
 
     fn judge(&mut self, iteration: usize, residual: f64, _step: f64) -> Verdict {
@@ -105,19 +102,29 @@ impl Problem for Newton<'_, '_> {
         (self.progress)(iteration, &entry);
         self.iterations.push(entry);
         self.accepted.clone_from(&self.responses);
-        match relative {
-            r if r.is_nan() => Verdict::Diverged,
-            r if r <= TOLERANCE => Verdict::Converged,
-            _ if iteration >= MAX_ITERATIONS => Verdict::Diverged,
-            _ => Verdict::Continue,
-        }
+        verdict(iteration, relative)
     }
 }
 
-impl Newton<'_, '_> {
+/// A step's linear residual relative to the step's own, after an iterate with this residual.
+fn linear_tolerance(residual: f64) -> f64 {
+    LINEAR_TOLERANCE.max(LAST_STEP_SHARE * TOLERANCE / residual)
+}
+
+/// What an iterate with this residual, relative to the larger of the loads and the contact forces, means.
+fn verdict(iteration: usize, residual: f64) -> Verdict {
+    match residual {
+        r if r.is_nan() => Verdict::Diverged,
+        r if r <= TOLERANCE => Verdict::Converged,
+        _ if iteration >= MAX_ITERATIONS => Verdict::Diverged,
+        _ => Verdict::Continue,
+    }
+}
+
+impl Newton<'_, '_, '_> {
     fn flips(&self) -> Vec<usize> {
         let changed = |a: usize| self.accepted.get(a).is_some_and(|r| r.status != self.responses[a].status);
-        let pairs = &self.contacts.interface().pairs;
+        let pairs = &self.workspace.contacts.interface().pairs;
         pairs.iter().map(|pair| pair.points.clone().filter(|&a| changed(a)).count()).collect()
     }
 }
@@ -125,35 +132,73 @@ impl Newton<'_, '_> {
 /// What a solve works with and keeps for the next.
 pub(super) struct Workspace<'a, 'b> {
     pub system: &'a System,
-    pub contacts: &'b mut Contacts<'a>,
+    pub contacts: &'b Contacts<'a>,
     pub factor: &'b mut StepFactor,
     pub tangent: &'b mut Matrix,
 }
 
+/// What a solve came to.
+pub(super) struct Outcome {
+    pub converged: bool,
+    pub iterations: Vec<Iteration>,
+    /// What every point does at the last iterate.
+    pub responses: Vec<Response>,
+}
+
 /// Newton's method from `u` under one stage's laws; `u` ends as the last iterate.
 pub(super) fn solve(
-    workspace: Workspace,
+    workspace: &mut Workspace,
     u: &mut Vector,
     stage: &Stage,
-    label: String,
     progress: &mut dyn FnMut(usize, &Iteration),
-) -> Result<(Step, Vec<Response>)> {
-    let Workspace { system, contacts, factor, tangent } = workspace;
+) -> Result<Outcome> {
+    let (work, load_norm) = (workspace.system.zeros()?, workspace.system.load.norm()?);
     let mut newton = Newton {
-        system,
-        contacts,
-        factor,
-        tangent,
+        workspace,
         stage,
-        work: system.zeros()?,
-        load_norm: system.load.norm()?,
+        work,
+        load_norm,
         force_norm: 0.0,
         responses: Vec::new(),
         accepted: Vec::new(),
         iterations: Vec::new(),
         progress,
     };
-    let outcome = nonlinear::solve(&mut newton, u, MAX_ITERATIONS)?;
-    let Newton { iterations, accepted, .. } = newton;
-    Ok((Step { label, converged: outcome.converged, iterations }, accepted))
+    let converged = nonlinear::solve(&mut newton, u, MAX_ITERATIONS)?.converged;
+    Ok(Outcome { converged, iterations: newton.iterations, responses: newton.accepted })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_iterate_is_judged_by_its_residual_and_its_number() {
+        assert_eq!(verdict(0, 1e-9), Verdict::Converged);
+        assert_eq!(verdict(0, 1.01e-9), Verdict::Continue);
+        assert_eq!(verdict(MAX_ITERATIONS - 1, 1e-3), Verdict::Continue);
+        assert_eq!(verdict(MAX_ITERATIONS, 1e-3), Verdict::Diverged);
+        assert_eq!(verdict(MAX_ITERATIONS, 1e-10), Verdict::Converged);
+        assert_eq!(verdict(3, f64::NAN), Verdict::Diverged);
+    }
+
+    #[test]
+    fn the_last_step_is_solved_no_further_than_a_tenth_of_the_tolerance() {
+        assert_eq!(linear_tolerance(1.0), 1e-2);
+        assert!((linear_tolerance(1e-9) - 0.1).abs() < 1e-15);
+        assert!((linear_tolerance(1e-10) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_pair_that_changes_most_in_the_last_iterates_flickers() {
+        let iteration =
+            |flips: [usize; 2]| Iteration { residual: 1.0, counts: Counts::default(), flips: flips.to_vec() };
+        let mut iterations = vec![iteration([50, 0])];
+        iterations.extend((0..8).map(|_| iteration([1, 2])));
+        let step = Step { label: String::new(), converged: false, iterations };
+        let names = ["a".to_string(), "b".to_string()];
+        assert_eq!(step.flickering(&names).unwrap(), "b (16 changes in 8 iterations)");
+        let calm = Step { iterations: vec![iteration([0, 0])], ..step };
+        assert_eq!(calm.flickering(&names), None);
+    }
 }

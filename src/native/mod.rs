@@ -19,11 +19,13 @@ pub mod block;
 pub mod direct;
 pub mod lapack;
 pub mod machine;
+mod mck;
 pub mod mpi;
 pub mod petsc;
 
 pub use block::{Block, Noise};
 pub use direct::{Factor, FactorKind, FactorStats, Precision, partition};
+pub use mck::Mck;
 pub use mpi::{Comm, MaxLoc, Session, libraries};
 pub use petsc::{Csr, Gather, Matrix, Rows, Vector};
 

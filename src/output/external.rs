@@ -99,15 +99,15 @@ fn modes_text(modes: &[ExternalMode]) -> String {
 fn count_text(count: &Count, results: &ExternalResults) -> String {
     let Count { below, expected, found } = *count;
     let how = match (results.evidence, count.agrees()) {
-        (Evidence::Inertia, true) if !results.is_damped => {
+        (Evidence::SturmCount, true) if !results.is_damped => {
             "as many as K - omega^2 M has negative eigenvalues by Sylvester's law of inertia: none is missing".into()
         }
-        (Evidence::Inertia, true) => {
+        (Evidence::SturmCount, true) => {
             "as many as the undamped problem has by Sylvester's law of inertia, which damping may \
              shift across the end"
                 .into()
         }
-        (Evidence::Inertia, false) => format!(
+        (Evidence::SturmCount, false) => format!(
             "but {expected} negative eigenvalues of K - omega^2 M: not confirmed (massless dofs, strong damping or an \
              indefinite M change the count)"
         ),

@@ -1,43 +1,35 @@
-//! All modes of a frequency band, none missed.
+//! All modes of a frequency band, none missed: choose a solver, search, count, widen.
 
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 
-use super::search;
-use super::solver::{Evidence, Search, Solver, factorise_shifted, n_equations};
-use super::{Mode, Pencil};
+use super::blocked::Blocked;
+use super::count::{Count, Expected, ModeCounter};
+use super::eigensolver::{Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
+use super::left;
+use super::memory::MemoryBudget;
+use super::modal::Modal;
+use super::space::FactoredProblem;
+use super::toar::Toar;
+use super::{EigenOptions, Mode, QuadraticProblem};
+use crate::equilibrium::LabelledFactor;
 use crate::native::petsc::eigen::Pair;
-use crate::native::{Factor, machine};
+use crate::native::{Block, FactorStats};
 use crate::{Error, Result};
 
-/// Memory of a symmetric factor over that of an LU on the same pattern: 3.0 GB over 5.3 GB on the full demo brake, or over 2.8 GB in single
-/// precision.
-const SYMMETRIC_OVER_LU: [f64; 2] = [0.6, 1.1];
-/// By this factor the shift moves where TOAR gave up: about another shift it does not meet the same blocks.
-const ELSEWHERE: f64 = 1.3;
-/// How often the search is widened before the band is given up.
-const TRIES: u32 = 4;
-/// The blocked search goes this much beyond the band's end, so that the count finds a gap; farther where friction has carried a mode
-/// across that gap; then it is TOAR's turn.
-const BEYOND: [f64; 2] = [1.03, 1.12];
-
-/// How many modes the symmetric problem has below a frequency, and how many were found there.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Count {
-    /// The frequency, Hz: the band's end, or a gap between modes near it.
-    pub below: f64,
-    /// By the inertia of `K_symmetric - omega^2 M`, or by a search before ([`Evidence`]).
-    pub expected: usize,
-    /// By the eigensolver.
-    pub found: usize,
+/// What is searched for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandRequest {
+    /// First and last frequency, Hz.
+    pub band: [f64; 2],
+    /// Real shift at which the problem is inverted, 1/s: 0, unless the structure has rigid-body modes.
+    pub shift: f64,
 }
 
-impl Count {
-    /// Whether no mode is missing.
-    pub fn agrees(&self) -> bool {
-        self.expected == self.found
+impl From<[f64; 2]> for BandRequest {
+    fn from(band: [f64; 2]) -> BandRequest {
+        BandRequest { band, shift: 0.0 }
     }
 }
 
@@ -47,151 +39,544 @@ pub struct Band {
     pub modes: Vec<Mode>,
     /// The check of their number.
     pub count: Count,
-    /// Solves with the factor.
+    /// What was done.
+    pub report: BandReport,
+}
+
+/// What was done for a band.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandReport {
+    /// Who found the modes.
+    pub solver: SolverKind,
+    /// Number of searches.
+    pub n_attempts: usize,
+    /// Solves with the factor in all searches that came to an end.
     pub n_solves: usize,
+    /// Shift of the last search, 1/s.
+    pub shift: f64,
 }
 
-/// Finds all modes of `band` (Hz) of a pencil, sorted by frequency, vectors scaled to a largest entry of 1. `progress` hears of
-/// (converged, wanted, solves). `lu` becomes the factor of the pencil's stiffness (shifted, where the solver shifts). Collective.
-///
-/// # Errors
-/// PETSc's and MUMPS's; [`Error::NotConverged`] where the band could not be completed.
-pub fn solve(
-    pencil: &Pencil,
-    lu: &mut Factor,
-    solver: &mut Solver,
-    band: [f64; 2],
-    progress: &mut dyn FnMut(usize, usize, usize),
-) -> Result<Band> {
-    let (below, expected) = prepare(pencil, lu, solver, band[1])?;
-    let (mut n_solves, mut last, mut gave_up) = (0, None, false);
-    for attempt in 0..TRIES {
-        let margin = (4 + expected / 20) * 3_usize.pow(attempt);
-        solver.make_room_for_search(pencil, expected + margin);
-        let beyond = BEYOND.get(attempt as usize).filter(|_| !gave_up);
-        let Some(search) = solver.search(pencil, lu, expected + margin, band[1], beyond, progress)? else {
-            gave_up = true;
-            if solver.shift != 0.0 {
-                solver.shift *= ELSEWHERE;
-                factorise_shifted(pencil, lu, solver.shift)?;
-            }
-            continue;
-        };
-        n_solves += search.n_solves;
-        let before = last.as_ref().map(|(_, count): &(Search, Count)| count.found);
-        let count = match solver.evidence {
-            Evidence::Inertia => count(pencil, solver, &search, band[1], (below, expected))?,
-            Evidence::Repetition { estimated } => {
-                repeated(&search, below, before.or(if estimated { Some(expected) } else { None }))
-            }
-        };
-        if let Some(count) = count {
+/// The solvers for problems of one pattern, with what one problem's solution leaves for the next.
+pub struct BandSolver {
+    options: EigenOptions,
+    memory: MemoryBudget,
+    counter: ModeCounter,
+    blocked: Blocked,
+    modal: Modal,
+    toar: Box<dyn Eigensolver>,
+}
+
+impl BandSolver {
+    /// Nothing is left from an earlier problem. `labels` has a number for each of this rank's dofs that does not depend on the ranks.
+    pub fn new(options: EigenOptions, labels: Vec<u64>) -> BandSolver {
+        BandSolver {
+            options,
+            memory: MemoryBudget::default(),
+            counter: ModeCounter::default(),
+            blocked: Blocked::new(options, labels),
+            modal: Modal::new(options),
+            toar: Box::new(Toar { options }),
+        }
+    }
+
+    /// Finds all modes of a band, sorted by frequency, vectors scaled to a largest entry of 1. Where the solver needs a factor, `factor` becomes
+    /// that of the problem at the shift of the report. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and MUMPS's; [`Error::NotConverged`] where the band could not be completed.
+    pub fn solve_band(
+        &mut self,
+        problem: &QuadraticProblem,
+        factor: &mut LabelledFactor,
+        request: &BandRequest,
+        progress: &mut OnProgress,
+    ) -> Result<Band> {
+        let &BandRequest { band, mut shift } = request;
+        let expected = self.prepare(problem, factor, band[1])?;
+        let (mut n_solves, mut last): (usize, Option<(SearchResult, Count, BandReport)>) = (0, None);
+        for attempt in 0..self.options.n_attempts {
+            let n_modes = expected.n + self.options.n_margin(expected.n, attempt);
+            let request = SearchRequest { n_modes, end: band[1], shift, attempt };
+            let Some(search) = self.search(problem, factor, &request, progress)? else {
+                shift *= self.options.shift_growth;
+                continue;
+            };
+            n_solves += search.n_solves;
+            let before = last.as_ref().map(|(_, count, _)| *count);
+            let Some(count) = self.counter.count(problem, self.options.evidence, &search, expected, before)? else {
+                continue;
+            };
+            let report = BandReport { solver: search.solver, n_attempts: attempt + 1, n_solves, shift };
+            last = Some((search, count, report));
             if count.agrees() {
-                return finish(search, band, count, n_solves);
+                break;
             }
-            last = Some((search, count));
-            solver.start_anew();
+            // What the search started from may lack a mode.
+            self.blocked.drop_start();
         }
+        let (search, count, report) = last.ok_or_else(|| not_converged(band, expected))?;
+        Ok(Band { modes: modes_of(search, band)?, count, report })
     }
-    match last {
-        Some((search, count)) => finish(search, band, count, n_solves),
-        None => Err(Error::not_converged(format!(
-            "the eigensolver did not reach the end of the band {}-{} Hz, with {expected} modes expected. Try a narrower band \
-             ([stability] band)",
-            band[0], band[1]
-        ))),
-    }
-}
 
-/// About how many modes there are below a frequency (Hz), the band's end or the gap beyond it where the last count was taken, and the factor
-/// about which is searched; where both do not fit into memory, the factor that counts and the one that solves make room for one another, and
-/// the latter leaves room for the search.
-fn prepare(pencil: &Pencil, lu: &mut Factor, solver: &mut Solver, end: f64) -> Result<(f64, usize)> {
-    solver.forget();
-    let has_mb = |needed| machine::has_mb(pencil.k.comm(), needed);
-    let symmetric_over_lu = SYMMETRIC_OVER_LU[usize::from(!lu.is_exact())];
-    if !solver.inertia.is_made() {
-        solver.make_room(pencil, symmetric_over_lu * lu.stats().used_mb);
-        if !has_mb(symmetric_over_lu * lu.stats().used_mb) {
-            lu.release();
+    /// About how many modes there are; the factor that counts and the one that solves give way to one another where memory is short.
+    fn prepare(&mut self, problem: &QuadraticProblem, factor: &mut LabelledFactor, end: f64) -> Result<Expected> {
+        self.release_search_space();
+        if !self.counter.sturm.is_made() {
+            self.memory.before_count(problem, factor, &mut self.blocked);
         }
-    }
-    let below = solver.gap.filter(|gap| (end..BEYOND[0] * end).contains(gap)).unwrap_or(end);
-    let expected = solver.estimate(pencil, below)?;
-    if !lu.is_made() {
-        let search_mb = search::needs_mb(expected, n_equations(pencil));
-        if !has_mb(solver.inertia.stats().used_mb / symmetric_over_lu + search_mb) {
-            solver.inertia.release();
+        let expected = self.counter.expect(problem, &self.options, end)?;
+        if !factor.factor().is_made() {
+            let search_mb = self.blocked.needs_mb(expected.n, problem.n_dofs());
+            self.memory.before_factor(problem, factor, &mut self.counter.sturm, search_mb);
         }
-        lu.leave_mb(search_mb);
+        Ok(expected)
     }
-    factorise_shifted(pencil, lu, solver.shift)?;
-    Ok((below, expected))
-}
 
-/// How many modes were found below a frequency at the band's `end` or beyond it, and how many there should be; none where the search did not
-/// get there.
-///
-/// Friction may carry a mode across that frequency, where the two problems then differ by one: the count is taken again
-/// in the widest gap between modes above the band's end.
-fn count(
-    pencil: &Pencil,
-    solver: &mut Solver,
-    search: &Search,
-    end: f64,
-    (below, expected): (f64, usize),
-) -> Result<Option<Count>> {
-    if search.reach <= below {
-        return Ok(None);
-    }
-    let mut moduli: Vec<f64> = search.pairs.iter().map(|pair| pair.lambda.norm() / TAU).collect();
-    moduli.extend(Some(search.reach).filter(|reach| reach.is_finite()));
-    moduli.sort_by(f64::total_cmp);
-    let count = Count { below, expected, found: search.n_below(below) };
-    match widest_gap(&moduli, end).filter(|_| !count.agrees()) {
-        Some(gap) => {
-            let expected = solver.inertia.n_below(pencil, gap)?;
-            solver.gap = Some(gap);
-            Ok(Some(Count { below: gap, expected, found: search.n_below(gap) }))
+    /// The eigenpairs by the first solver that does not give up; none where all do.
+    fn search(
+        &mut self,
+        problem: &QuadraticProblem,
+        factor: &mut LabelledFactor,
+        request: &SearchRequest,
+        progress: &mut OnProgress,
+    ) -> Result<Option<SearchResult>> {
+        for kind in self.choose(problem, request)? {
+            let solver: &mut dyn Eigensolver = match kind {
+                SolverKind::Blocked => &mut self.blocked,
+                SolverKind::Modal => &mut self.modal,
+                SolverKind::Toar => &mut *self.toar,
+            };
+            if let Some(result) = solver.search(problem, factor, request, progress)? {
+                return Ok(Some(result));
+            }
         }
-        None => Ok(Some(count)),
+        Ok(None)
+    }
+
+    /// The solvers for a request, the fastest first. TOAR is the last resort.
+    fn choose(&mut self, problem: &QuadraticProblem, request: &SearchRequest) -> Result<Vec<SolverKind>> {
+        let mut kinds = Vec::new();
+        if self.blocked.reach(problem, request).is_some() {
+            let search_mb = self.blocked.needs_mb(request.n_modes, problem.n_dofs());
+            if self.memory.before_search(problem, &mut self.blocked, &mut self.counter.sturm, search_mb) {
+                kinds.push(SolverKind::Blocked);
+            }
+        }
+        if self.modal.suits(problem, request)? {
+            kinds.push(SolverKind::Modal);
+        }
+        kinds.push(SolverKind::Toar);
+        Ok(kinds)
+    }
+
+    /// Left vectors of modes that the last [`BandSolver::solve_band`] has found for the problem: columns `2i` and `2i + 1` are the real and
+    /// imaginary part of mode i, `y^H M y = 1`, with the relative `accuracy` that each is to have; where it is infinite, the columns need be no
+    /// left vector. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy.
+    pub fn left_vectors(
+        &mut self,
+        problem: &QuadraticProblem,
+        factor: &mut LabelledFactor,
+        modes: &[Mode],
+        accuracy: impl Fn(&Mode) -> f64,
+    ) -> Result<Block> {
+        let basis = self.blocked.take_basis();
+        let accuracies: Vec<f64> = modes.iter().map(accuracy).collect();
+        let n_sought = accuracies.iter().filter(|accuracy| accuracy.is_finite()).count();
+        if n_sought == 0 {
+            return left::right_vectors(problem.matrices.m, modes);
+        }
+        if n_sought > self.options.n_left_one_by_one
+            && let Some(vectors) = self.modal.left_vectors(problem, modes)?
+        {
+            return left::normalised_left(problem.matrices.m, vectors);
+        }
+        let shift = factor.shift().unwrap_or(0.0);
+        let factor = problem.factorise(shift, factor)?;
+        let searched = FactoredProblem { problem, factor, labels: self.blocked.labels() };
+        left::left_vectors(searched, modes, basis, &accuracies, self.options.max_left_rounds)
+    }
+
+    /// The next count begins where this one was taken, as it would for the solver that took it. Not collective.
+    pub fn resume(&mut self, count: &Count) {
+        self.counter.resume(count);
+    }
+
+    /// Gives the memory of the last search's space back, but for what the next one starts from.
+    pub fn release_search_space(&mut self) {
+        self.blocked.take_basis();
+    }
+
+    /// What the symmetric factor, which counts modes, has cost. Not collective.
+    pub fn count_stats(&self) -> FactorStats {
+        self.counter.sturm.stats()
     }
 }
 
-/// How many modes were found below the band's end, now and before; none where the search did not get there.
-fn repeated(search: &Search, end: f64, before: Option<usize>) -> Option<Count> {
-    let found = search.n_below(end);
-    let expected = if search.reach.is_finite() { before.unwrap_or(usize::MAX) } else { found };
-    (search.reach > end).then_some(Count { below: end, expected, found })
+fn not_converged(band: [f64; 2], expected: Expected) -> Error {
+    Error::not_converged(format!(
+        "the eigensolver did not reach the end of the band {}-{} Hz, with {} modes expected. Try a narrower band ([stability] band)",
+        band[0], band[1], expected.n
+    ))
 }
 
-/// The middle of the widest gap between neighbours of which the upper is above `from`.
-fn widest_gap(sorted: &[f64], from: f64) -> Option<f64> {
-    let gaps = sorted.windows(2).filter(|w| w[1] > from);
-    gaps.max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0]))).map(|w| 0.5 * (w[0] + w[1]))
-}
-
-fn finish(search: Search, band: [f64; 2], count: Count, n_solves: usize) -> Result<Band> {
-    let pairs = search.pairs;
+/// The modes of a search that are in the band.
+fn modes_of(search: SearchResult, band: [f64; 2]) -> Result<Vec<Mode>> {
     // A real eigenvalue has no frequency: it belongs to the band where its modulus does.
     let frequency = |lambda: Complex64| if lambda.im == 0.0 { lambda.norm() } else { lambda.im } / TAU;
     let within = |(pair, _): &(Pair, f64)| frequency(pair.lambda) <= band[1] && pair.lambda.im / TAU >= band[0];
     let mut modes = Vec::new();
-    for (Pair { lambda, re, im }, backward_error) in pairs.into_iter().zip(search.backward_errors).filter(within) {
+    for (Pair { lambda, re, im }, backward_error) in search.pairs.into_iter().zip(search.backward_errors).filter(within)
+    {
         let mut mode = Mode { lambda, backward_error, re, im };
         mode.normalise()?;
         modes.push(mode);
     }
     sort(&mut modes);
-    Ok(Band { modes, count, n_solves })
+    Ok(modes)
 }
 
 /// Sorts by frequency; modes of one frequency, such as the growing and the decaying one of a pair, by growth. What counts as one
 /// frequency stands above rounding, so that modes have the same numbers on any number of ranks.
 fn sort(modes: &mut [Mode]) {
-    const SAME: f64 = 1e-9;
+    const FREQUENCY_ROUNDING: f64 = 1e-9;
     modes.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im));
-    for same in modes.chunk_by_mut(|a, b| b.lambda.im - a.lambda.im <= SAME * b.lambda.im) {
+    for same in modes.chunk_by_mut(|a, b| b.lambda.im - a.lambda.im <= FREQUENCY_ROUNDING * b.lambda.im) {
         same.sort_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+    use std::collections::VecDeque;
+    use std::rc::Rc;
+
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::native::{Comm, Mck, Precision, Session};
+    use crate::stability::testing::{Blocks, dense, diagonal, eigenvalues, found, masses};
+    use crate::stability::{BlockedOptions, Evidence};
+
+    /// A solver that finds what it was told, and keeps the requests.
+    struct Scripted {
+        results: VecDeque<Option<SearchResult>>,
+        requests: Rc<RefCell<Vec<SearchRequest>>>,
+    }
+
+    impl Eigensolver for Scripted {
+        fn search(
+            &mut self,
+            _: &QuadraticProblem,
+            _: &mut LabelledFactor,
+            request: &SearchRequest,
+            _: &mut OnProgress,
+        ) -> Result<Option<SearchResult>> {
+            self.requests.borrow_mut().push(*request);
+            Ok(self.results.pop_front().expect("one more result than asked for"))
+        }
+    }
+
+    /// Solves for the modes below 4 Hz of masses with modes at 1, 2, 3 and 5 Hz, with searches that find what is given.
+    fn scripted(comm: &Comm, shift: f64, results: Vec<Option<SearchResult>>) -> (Result<Band>, Vec<SearchRequest>) {
+        let requests = Rc::new(RefCell::new(Vec::new()));
+        let mut solver = BandSolver::new(EigenOptions::default(), Vec::new());
+        solver.toar = Box::new(Scripted { results: results.into(), requests: requests.clone() });
+        let matrices = masses(comm, &[1.0, 2.0, 3.0, 5.0]);
+        let (problem, request) =
+            (QuadraticProblem::symmetric(matrices.as_ref()), BandRequest { band: [0.0, 4.0], shift });
+        let band = solver.solve_band(&problem, &mut LabelledFactor::new(Precision::Double), &request, &mut |_| ());
+        let requests = requests.borrow().clone();
+        (band, requests)
+    }
+
+    #[test]
+    fn a_search_that_misses_no_mode_is_the_only_one() {
+        let comm = Session::start(&[]).unwrap();
+        let (band, requests) = scripted(&comm, 0.0, vec![Some(found(&comm, &[1.0, 2.0, 3.0, 5.0], 5.0))]);
+        let Band { modes, count, report } = band.unwrap();
+        assert_eq!(modes.iter().map(|mode| mode.frequency().round()).collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
+        assert_eq!(count, Count { below: 4.0, expected: 3, found: 3 });
+        assert_eq!(report, BandReport { solver: SolverKind::Toar, n_attempts: 1, n_solves: 5, shift: 0.0 });
+        assert_eq!((requests.len(), requests[0].n_modes, requests[0].end), (1, 3 + 4, 4.0));
+    }
+
+    #[test]
+    fn a_count_that_disagrees_widens_the_search() {
+        let comm = Session::start(&[]).unwrap();
+        let missing = || Some(found(&comm, &[1.0, 3.0, 5.0], 5.0));
+        let (band, requests) =
+            scripted(&comm, 0.0, vec![missing(), missing(), Some(found(&comm, &[1.0, 2.0, 3.0, 5.0], 5.0))]);
+        let band = band.unwrap();
+        assert!(band.count.agrees() && band.modes.len() == 3);
+        assert_eq!((band.report.n_attempts, band.report.n_solves), (3, 15));
+        assert_eq!(requests.iter().map(|r| r.n_modes).collect::<Vec<_>>(), [3 + 4, 3 + 12, 3 + 36]);
+    }
+
+    #[test]
+    fn a_search_that_does_not_reach_the_end_widens_the_next() {
+        let comm = Session::start(&[]).unwrap();
+        let (band, requests) =
+            scripted(&comm, 0.0, vec![Some(found(&comm, &[1.0], 1.0)), Some(found(&comm, &[1.0, 2.0, 3.0, 5.0], 5.0))]);
+        assert!(band.unwrap().count.agrees() && requests.len() == 2);
+    }
+
+    #[test]
+    fn a_mode_that_stays_missing_is_told_with_what_was_found() {
+        let comm = Session::start(&[]).unwrap();
+        let missing = || Some(found(&comm, &[1.0, 3.0, 5.0], 5.0));
+        // The last attempt does not even get there: the one before counts.
+        let last = Some(found(&comm, &[1.0], 1.0));
+        let (band, requests) = scripted(&comm, 0.0, vec![missing(), missing(), missing(), last]);
+        let band = band.unwrap();
+        assert!(!band.count.agrees() && band.modes.len() == 2);
+        assert_eq!((requests.len(), band.report.n_attempts), (4, 3));
+    }
+
+    #[test]
+    fn where_a_search_gives_up_the_shift_moves() {
+        let comm = Session::start(&[]).unwrap();
+        let all = || Some(found(&comm, &[1.0, 2.0, 3.0, 5.0], 5.0));
+        let (band, requests) = scripted(&comm, 2.0, vec![None, None, all()]);
+        let shifts: Vec<f64> = requests.iter().map(|r| r.shift).collect();
+        assert!(shifts.iter().zip([2.0, 2.6, 3.38]).all(|(a, b)| (a - b).abs() < 1e-12), "{shifts:?}");
+        assert_eq!(band.unwrap().report.shift, shifts[2]);
+        let (_, requests) = scripted(&comm, 0.0, vec![None, all()]);
+        assert_eq!(requests.iter().map(|r| r.shift).collect::<Vec<_>>(), [0.0, 0.0], "K is inverted as it is");
+    }
+
+    #[test]
+    fn a_band_that_no_search_completes_is_an_error() {
+        let comm = Session::start(&[]).unwrap();
+        let (band, requests) = scripted(&comm, 0.0, vec![None, None, None, None]);
+        let text = band.err().unwrap().to_string();
+        assert!(text.contains("0-4 Hz") && text.contains("3 modes expected") && requests.len() == 4, "{text}");
+    }
+
+    /// Who is chosen for an attempt at a problem.
+    fn choice(solver: &mut BandSolver, problem: &QuadraticProblem, shift: f64, attempt: usize) -> Vec<SolverKind> {
+        solver.choose(problem, &SearchRequest { n_modes: 3, end: 10.0, shift, attempt }).unwrap()
+    }
+
+    #[test]
+    fn solvers_are_chosen_by_size_storage_shift_attempt_and_memory() {
+        use SolverKind::{Blocked, Modal, Toar};
+        let comm = Session::start(&[]).unwrap();
+        let (sparse, stored_densely) = (Blocks::new(&comm, 8), Blocks::dense(&comm, 8));
+        let mut small = BandSolver::new(EigenOptions::default(), Vec::new());
+        assert_eq!(sparse.with(0.5, &[], |problem| choice(&mut small, problem, 0.0, 0)), [Toar]);
+        assert_eq!(stored_densely.with(0.5, &[], |problem| choice(&mut small, problem, 0.0, 0)), [Modal, Toar]);
+        assert_eq!(stored_densely.with(0.5, &[], |problem| choice(&mut small, problem, 1.0, 0)), [Toar]);
+        let limits = |n: usize| EigenOptions { blocked_from: n, ..EigenOptions::default() };
+        sparse.with(0.5, &[], |problem| {
+            let choose = |options: EigenOptions, shift: f64, attempt: usize| {
+                choice(&mut BandSolver::new(options, Vec::new()), problem, shift, attempt)
+            };
+            assert_eq!(choose(limits(24), 0.0, 0), [Blocked, Toar]);
+            assert_eq!(choose(limits(25), 0.0, 0), [Toar]);
+            assert_eq!(choose(limits(0), 1.0, 0), [Toar]);
+            assert_eq!(choose(limits(0), 0.0, 1), [Blocked, Toar]);
+            assert_eq!(choose(limits(0), 0.0, 2), [Toar]);
+            let unsymmetric = QuadraticProblem { symmetric_mc: false, ..*problem };
+            assert_eq!(choice(&mut BandSolver::new(limits(0), Vec::new()), &unsymmetric, 0.0, 0), [Toar]);
+            let mut short = BandSolver::new(limits(0), Vec::new());
+            short.memory.has_mb = Box::new(|_, _| false);
+            assert_eq!(choice(&mut short, problem, 0.0, 0), [Toar]);
+        });
+    }
+
+    #[test]
+    fn a_search_for_nearly_all_modes_of_a_dense_problem_is_not_in_modal_coordinates() {
+        let comm = Session::start(&[]).unwrap();
+        let mut solver = BandSolver::new(EigenOptions::default(), Vec::new());
+        let kinds = Blocks::dense(&comm, 2).with(0.5, &[], |problem| {
+            solver.choose(problem, &SearchRequest { n_modes: 5, end: 10.0, shift: 0.0, attempt: 0 }).unwrap()
+        });
+        assert_eq!(kinds, [SolverKind::Toar]);
+    }
+
+    /// The modes below 6 Hz of blocks, by a solver of its own.
+    fn solved(blocks: &Blocks, options: EigenOptions, mu: f64) -> Band {
+        let mut solver = BandSolver::new(options, blocks.system.dofs.labels());
+        let mut factor = LabelledFactor::new(Precision::Double);
+        blocks.with(mu, &[], |problem| {
+            let band = solver.solve_band(problem, &mut factor, &[0.0, 6.0].into(), &mut |_| ()).unwrap();
+            compare(&band.modes, &eigenvalues(problem, 6.0));
+            band
+        })
+    }
+
+    /// The same eigenvalues, to nine digits.
+    fn compare(modes: &[Mode], expected: &[Complex64]) {
+        assert_eq!(modes.len(), expected.len());
+        for expected in expected {
+            let nearest = modes.iter().map(|mode| (mode.lambda - expected).norm()).fold(f64::INFINITY, f64::min);
+            assert!(nearest <= 1e-9 * expected.norm(), "{expected}: {nearest:e}");
+        }
+    }
+
+    #[test]
+    fn three_solvers_find_the_same_modes() {
+        let comm = Session::start(&[]).unwrap();
+        let (sparse, stored_densely) = (Blocks::new(&comm, 10), Blocks::dense(&comm, 10));
+        for (blocks, options, solver) in [
+            (&sparse, EigenOptions::default(), SolverKind::Toar),
+            (&sparse, EigenOptions::always_blocked(), SolverKind::Blocked),
+            (&stored_densely, EigenOptions::default(), SolverKind::Modal),
+        ] {
+            let band = solved(blocks, options, 0.8);
+            assert_eq!(band.report.solver, solver);
+            assert!(band.count.agrees() && band.modes.iter().any(Mode::is_unstable));
+            assert!(band.modes.iter().all(|mode| mode.backward_error < 1e-10));
+        }
+    }
+
+    #[test]
+    fn a_blocked_search_that_does_not_converge_leaves_it_to_toar() {
+        let comm = Session::start(&[]).unwrap();
+        let options = EigenOptions::always_blocked();
+        let hasty = EigenOptions { blocked: BlockedOptions { max_rounds: 1, ..options.blocked }, ..options };
+        let band = solved(&Blocks::new(&comm, 10), hasty, 0.8);
+        assert_eq!((band.report.solver, band.report.n_attempts), (SolverKind::Toar, 1));
+    }
+
+    #[test]
+    fn modal_coordinates_that_cost_digits_leave_it_to_toar() {
+        let comm = Session::start(&[]).unwrap();
+        let strict = EigenOptions { backward_error: 0.0, ..EigenOptions::default() };
+        assert_eq!(solved(&Blocks::dense(&comm, 10), strict, 0.8).report.solver, SolverKind::Toar);
+    }
+
+    #[test]
+    fn a_factor_in_single_precision_is_made_again_for_toar() {
+        let comm = Session::start(&[]).unwrap();
+        let blocks = Blocks::new(&comm, 6);
+        let mut solver = BandSolver::new(EigenOptions::default(), blocks.system.dofs.labels());
+        let mut factor = LabelledFactor::new(Precision::Single);
+        blocks.with(0.8, &[], |problem| {
+            let band = solver.solve_band(problem, &mut factor, &[0.0, 6.0].into(), &mut |_| ()).unwrap();
+            compare(&band.modes, &eigenvalues(problem, 6.0));
+        });
+        assert!(factor.factor().is_exact());
+    }
+
+    #[test]
+    fn a_blocked_search_starts_from_the_last_one() {
+        let comm = Session::start(&[]).unwrap();
+        let blocks = Blocks::new(&comm, 40);
+        let mut solver = BandSolver::new(EigenOptions::always_blocked(), blocks.system.dofs.labels());
+        let mut factor = LabelledFactor::new(Precision::Double);
+        let mut n_solves = Vec::new();
+        for (mu, open) in [(0.5, &[][..]), (0.51, &[]), (0.52, &[3, 5])] {
+            blocks.with(mu, open, |problem| {
+                let band = solver.solve_band(problem, &mut factor, &[0.0, 6.0].into(), &mut |_| ()).unwrap();
+                compare(&band.modes, &eigenvalues(problem, 6.0));
+                n_solves.push(band.report.n_solves);
+            });
+        }
+        assert!(n_solves[1] < n_solves[0], "{n_solves:?}");
+    }
+
+    #[test]
+    fn real_and_double_eigenvalues_are_found() {
+        let comm = Session::start(&[]).unwrap();
+        // Two equal masses; one that does not swing, -1/s and -100/s; one beyond the band.
+        let omega2 = |f: f64| (TAU * f).powi(2);
+        let k = diagonal(&comm, &[omega2(1.0), omega2(1.0), 100.0, omega2(9.0)]);
+        let (m, c) = (diagonal(&comm, &[1.0; 4]), diagonal(&comm, &[0.1, 0.1, 101.0, 0.1]));
+        let problem = QuadraticProblem::symmetric(Mck { m: &m, c: &c, k: &k });
+        let mut solver = BandSolver::new(EigenOptions::default(), vec![0, 1, 2, 3]);
+        let mut factor = LabelledFactor::new(Precision::Double);
+        let band = solver.solve_band(&problem, &mut factor, &[0.0, 5.0].into(), &mut |_| ()).unwrap();
+        let real: Vec<f64> = band.modes.iter().filter(|m| m.lambda.im == 0.0).map(|m| m.lambda.re).collect();
+        assert!(real.len() == 1 && (real[0] + 1.0).abs() < 1e-9, "{real:?}");
+        let double: Vec<f64> = band.modes.iter().filter(|m| m.lambda.im > 0.0).map(Mode::frequency).collect();
+        assert!(double.len() == 2 && double.iter().all(|f| (f - 1.0).abs() < 1e-3), "{double:?}");
+        // Left vectors of all of them, the real one's imaginary part being zero.
+        let left = solver.left_vectors(&problem, &mut factor, &band.modes, |_| 1e-8).unwrap();
+        require_left(&problem, &band.modes, &left, 1e-8);
+    }
+
+    /// `|P(lambda)^T v| / sum |matrices|` of `v = conj(y)`, y of length 1 in M, is small for all modes.
+    fn require_left(problem: &QuadraticProblem, modes: &[Mode], y: &Block, accuracy: f64) {
+        let [m, c, k] = problem.matrices.map(crate::stability::testing::entries).into_array();
+        for (i, mode) in modes.iter().enumerate() {
+            let v = DMatrix::from_fn(m.nrows(), 1, |row, _| {
+                Complex64::new(y.column(2 * i)[row], -y.column(2 * i + 1)[row])
+            });
+            let complex = |a: &DMatrix<f64>| a.transpose().map(Complex64::from);
+            let p = complex(&m) * (mode.lambda * mode.lambda) + complex(&c) * mode.lambda + complex(&k);
+            let residual = (&p * &v).norm() / (p.norm() * v.norm());
+            assert!(residual < accuracy, "mode {i}: {residual:e}");
+            let size = (v.adjoint() * m.map(Complex64::from) * &v)[(0, 0)];
+            assert!((size - 1.0).norm() < 1e-9, "y^H M y = {size}");
+        }
+    }
+
+    #[test]
+    fn left_vectors_are_as_accurate_as_asked_for_by_every_way() {
+        let comm = Session::start(&[]).unwrap();
+        let one_by_one = EigenOptions { n_left_one_by_one: usize::MAX, ..EigenOptions::default() };
+        for (blocks, options) in [
+            (Blocks::new(&comm, 8), EigenOptions::default()),
+            (Blocks::new(&comm, 8), EigenOptions::always_blocked()),
+            (Blocks::dense(&comm, 8), EigenOptions::default()),
+            (Blocks::dense(&comm, 8), one_by_one),
+        ] {
+            let mut solver = BandSolver::new(options, blocks.system.dofs.labels());
+            let mut factor = LabelledFactor::new(Precision::Double);
+            blocks.with(0.8, &[], |problem| {
+                let band = solver.solve_band(problem, &mut factor, &[0.0, 7.0].into(), &mut |_| ()).unwrap();
+                let left = solver.left_vectors(problem, &mut factor, &band.modes, |_| 1e-7).unwrap();
+                assert!(band.modes.len() > 6);
+                require_left(problem, &band.modes, &left, 1e-7);
+            });
+        }
+    }
+
+    #[test]
+    fn left_vectors_that_do_not_converge_are_an_error_and_those_nobody_needs_cost_nothing() {
+        let comm = Session::start(&[]).unwrap();
+        let blocks = Blocks::new(&comm, 8);
+        let hasty = EigenOptions { max_left_rounds: 1, ..EigenOptions::default() };
+        let mut solver = BandSolver::new(hasty, blocks.system.dofs.labels());
+        let mut factor = LabelledFactor::new(Precision::Double);
+        blocks.with(0.8, &[], |problem| {
+            let band = solver.solve_band(problem, &mut factor, &[0.0, 5.0].into(), &mut |_| ()).unwrap();
+            let n_solves = factor.factor().stats().n_solves;
+            let none = solver.left_vectors(problem, &mut factor, &band.modes, |_| f64::INFINITY).unwrap();
+            assert_eq!((none.n_columns(), factor.factor().stats().n_solves), (2 * band.modes.len(), n_solves));
+            let error = solver.left_vectors(problem, &mut factor, &band.modes, |_| 1e-12).err().unwrap();
+            assert!(error.kind() == crate::ErrorKind::NotConverged, "{error}");
+        });
+    }
+
+    #[test]
+    fn matrices_of_any_structure_are_searched_twice() {
+        let comm = Session::start(&[]).unwrap();
+        // Gyroscopic: C skew. More dofs than are solved for completely.
+        let n = 2 * Evidence::ALL_UP_TO;
+        let k = DMatrix::from_fn(n, n, |i, j| if i == j { (TAU * (1.0 + 0.1 * i as f64)).powi(2) } else { 0.0 });
+        let c = DMatrix::from_fn(n, n, |i, j| {
+            if i + 1 == j {
+                0.1
+            } else if j + 1 == i {
+                -0.1
+            } else {
+                0.0
+            }
+        });
+        let [m, c, k] = [DMatrix::identity(n, n), c, k].map(|a| dense(&comm, &a));
+        let matrices = Mck { m: &m, c: &c, k: &k };
+        let problem = QuadraticProblem { symmetric_mc: false, ..QuadraticProblem::symmetric(matrices) };
+        let evidence = Evidence::Repetition { estimated: false };
+        let mut solver = BandSolver::new(EigenOptions { evidence, ..EigenOptions::default() }, (0..n as u64).collect());
+        let mut factor = LabelledFactor::new(Precision::Double);
+        let band = solver.solve_band(&problem, &mut factor, &[0.0, 1.55].into(), &mut |_| ()).unwrap();
+        assert!(band.count.agrees() && band.report.n_attempts == 2, "{:?} {:?}", band.count, band.report);
+        compare(&band.modes, &eigenvalues(&problem, 1.55));
     }
 }

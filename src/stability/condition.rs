@@ -1,10 +1,29 @@
 //! How ill-conditioned a factorised matrix is.
 
-use crate::Result;
+use super::QuadraticProblem;
+use crate::equilibrium::LabelledFactor;
 use crate::native::{Block, Factor, Matrix};
+use crate::{ErrorKind, Result};
 
 /// Rounds at most: the estimate rarely grows after the third.
-const ROUNDS: usize = 5;
+const MAX_ROUNDS: usize = 5;
+
+/// Estimates the condition number of `P(shift)`, which `factor` becomes the factor of: infinite where the matrix is singular. Collective.
+///
+/// # Errors
+/// PETSc's and MUMPS's.
+pub fn condition_at(shift: f64, problem: &QuadraticProblem, factor: &mut LabelledFactor) -> Result<f64> {
+    match problem.factorise(shift, factor) {
+        Ok(factor) if shift == 0.0 => condition(problem.matrices.k, factor),
+        Ok(factor) => condition(&problem.shifted(shift)?, factor),
+        Err(error) if error.kind() == ErrorKind::Singular => {
+            // MUMPS takes no other values after it has failed.
+            factor.release();
+            Ok(f64::INFINITY)
+        }
+        Err(error) => Err(error),
+    }
+}
 
 /// Estimates the condition number `|A| |A^-1|` in the maximum norm, from below and rarely by more than a factor of three. Collective.
 ///
@@ -21,7 +40,7 @@ pub fn condition(a: &Matrix, factor: &Factor) -> Result<f64> {
         x = Block::zeros(comm, 0, 1);
     }
     let mut estimate = 0.0_f64;
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let y = x.solved_by_transpose(factor)?;
         let norm: f64 = comm.sum(y.values().iter().map(|y| y.abs()).sum());
         if !norm.is_finite() {

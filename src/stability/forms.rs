@@ -79,12 +79,12 @@ fn summed(system: &System, mut sums: Vec<Forms>) -> Vec<Forms> {
 }
 
 /// The forms of the contact pairs, linearised about an equilibrium with a friction for each pair: `g_y^H D g_x`, and friction
-/// damping in C where that is in the pencil. Collective.
+/// damping in C where that is in the problem. Collective.
 ///
 /// # Errors
 /// PETSc's.
 pub fn of_contacts(
-    contacts: &mut Contacts,
+    contacts: &Contacts,
     equilibrium: &Equilibrium,
     frictions: &[f64],
     friction_damping: bool,

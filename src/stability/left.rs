@@ -2,50 +2,48 @@
 //!
 //! With `v = conj(y)` that is `P(lambda)^T v = 0`, the transposed problem at an eigenvalue that is known. Friction alone makes
 //! K differ from its transpose, so the right vectors span a start V; better still, the space in which they were found, whose projections serve
-//! transposed. A round finds each vector anew in V, by inverse iteration with
+//! transposed. A round computes each vector again in V, by inverse iteration with
 //! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as the search for the right
-//! vectors does ([`super::search`]). A vector is found when a round hardly moves it.
+//! vectors does ([`super::blocked`]). A vector is found when a round hardly moves it.
+//!
+//! Why it is written by hand: SLEPc's PEP has no left vectors.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::Mode;
-use super::space::{Basis, Problem, Ritz, Space};
+use super::space::{Basis, FactoredProblem, Ritz, Space};
 use crate::native::{Block, Matrix, lapack};
 use crate::{Error, Result};
 
-/// Rounds of corrections at most. A round wins a factor of about five.
-const ROUNDS: usize = 40;
-
 /// Relative steps away from an eigenvalue at which the problem is not singular.
-const NEIGHBOURS: [f64; 3] = [0.0, 1e-14, 1e-12];
+const LAMBDA_STEPS: [f64; 3] = [0.0, 1e-14, 1e-12];
 
-/// Left vectors of `modes`, found in the space whose `basis` is given, columns `2i` and `2i + 1` the real and imaginary part of mode i, `y^H M y = 1`, with the `accuracy` that each is to
-/// have: relative, by the last round's change; where it is infinite, the columns are no left vector. Gives the number of solves, too. Collective.
+/// Left vectors of `modes`, found in the space whose `basis` is given: columns `2i` and `2i + 1` are the real and imaginary part of mode i,
+/// `y^H M y = 1`, with the accuracy that each is to have: relative, by the last round's change; where it is infinite, the columns are no
+/// left vector. Collective.
 ///
 /// # Errors
-/// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy.
+/// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy in `max_rounds`.
 pub(super) fn left_vectors(
-    problem: &Problem,
+    searched: FactoredProblem,
     modes: &[Mode],
     basis: Option<Basis>,
-    accuracy: impl Fn(&Mode) -> f64,
-) -> Result<(Block, usize)> {
-    let m = problem.pencil.m;
+    accuracies: &[f64],
+    max_rounds: usize,
+) -> Result<Block> {
+    let m = searched.problem.matrices.m;
     let start = right_vectors(m, modes)?;
-    let mut open: Vec<usize> = (0..modes.len()).filter(|&i| accuracy(&modes[i]).is_finite()).collect();
-    if open.is_empty() {
-        return Ok((start, 0));
-    }
     let mut space = match basis {
-        Some(basis) => Space::of_left_vectors(*problem, basis),
-        None => Space::spanned(*problem, start.clone())?,
+        Some(basis) => Space::of_left_vectors(searched, basis),
+        None => Space::spanned(searched, start.clone())?,
     };
     let mut vectors = start_from(&space, modes, &start);
-    for round in 0..ROUNDS {
+    let mut open: Vec<usize> = (0..modes.len()).filter(|&i| accuracies[i].is_finite()).collect();
+    for round in 0..max_rounds {
         open.retain(|&i| {
             let moved = improve(&space, &mut vectors[i]);
-            round == 0 || moved > accuracy(&modes[i])
+            round == 0 || moved > accuracies[i]
         });
         let before = space.v.n_columns();
         if !open.is_empty() {
@@ -54,11 +52,11 @@ pub(super) fn left_vectors(
             space.extend_by_solves(&residuals)?;
         }
         if space.v.n_columns() == before {
-            return Ok((normalised_left(m, space.vectors(&vectors))?, space.n_solves));
+            return normalised_left(m, space.vectors(&vectors));
         }
     }
     Err(Error::not_converged(format!(
-        "left vectors of the modes: after {ROUNDS} rounds of corrections {} of {} are not accurate. A narrower band may help \
+        "left vectors of the modes: after {max_rounds} rounds of corrections {} of {} are not accurate. A narrower band may help \
          ([stability] band)",
         open.len(),
         modes.len()
@@ -82,8 +80,8 @@ fn improve(space: &Space, vector: &mut Ritz) -> f64 {
         _ => Complex64::default(),
     };
     let start = normalise((0..space.v.n_columns()).map(entry).collect());
-    // Where lambda is an eigenvalue to the last digit, a neighbour serves.
-    let found = NEIGHBOURS.iter().find_map(|step| inverse_iterate(space, vector.lambda * (1.0 + step), &start));
+    // Where lambda is an eigenvalue to the last digit, a number beside it serves.
+    let found = LAMBDA_STEPS.iter().find_map(|step| inverse_iterate(space, vector.lambda * (1.0 + step), &start));
     let x = normalise(found.unwrap_or_else(|| start.clone()));
     let overlap: Complex64 = start.iter().zip(&x).map(|(a, b)| a.conj() * b).sum();
     let moved = start.iter().zip(&x).map(|(a, b)| (b - overlap * a).norm_sqr()).sum::<f64>().sqrt();
@@ -95,7 +93,8 @@ fn improve(space: &Space, vector: &mut Ritz) -> f64 {
 fn inverse_iterate(space: &Space, lambda: Complex64, start: &[Complex64]) -> Option<Vec<Complex64>> {
     let n = start.len();
     let mut matrix = DMatrix::from_element(n, n, Complex64::default());
-    for (power, projected) in [(lambda * lambda, &space.m), (lambda, &space.c), (1.0.into(), &space.a)] {
+    let powers = [lambda * lambda, lambda, 1.0.into()];
+    for (power, projected) in powers.into_iter().zip(space.projected.as_ref().into_array()) {
         matrix.zip_apply(projected, |z, x| *z += power * x);
     }
     let mut x = start.to_vec();

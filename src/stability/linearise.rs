@@ -1,74 +1,67 @@
-//! From an equilibrium to the pencil about it.
+//! From an equilibrium to the quadratic eigenproblem about it.
 
 use crate::Result;
 use crate::assembly::System;
-use crate::contact::{Response, Status, Tangential};
+use crate::contact::{Response, Status, Tangent, Tangential};
 use crate::equilibrium::{Contacts, Equilibrium};
-use crate::native::Matrix;
+use crate::native::{Matrix, Mck};
 
-use super::{Pencil, Points};
+use super::{FrozenPoints, QuadraticProblem};
 
-/// A system linearised about an equilibrium with the status of every point frozen; its stiffness has a place elsewhere.
+/// A system linearised about an equilibrium with the status of every point frozen; its stiffness is kept elsewhere.
 #[derive(Default)]
 pub struct Linearised {
     /// `C`, with friction damping where it is asked for.
     pub c: Option<Matrix>,
     /// What each contact point has without friction's coupling.
-    symmetric: Vec<[[f64; 3]; 3]>,
-    /// The same with it.
-    tangents: Vec<[[f64; 3]; 3]>,
+    symmetric: Vec<Tangent>,
     /// What each contact point does, its tangent that of the stiffness.
     frozen: Vec<Response>,
 }
 
 impl Linearised {
-    /// Linearises about `equilibrium`, with `k = K + B^T D B`: open points give nothing, closed sliding points `(dp/dd)(n n^T + mu t n^T)`,
-    /// all other closed points stick. With `friction_damping`, C is [`with_friction_damping`]. Collective.
+    /// Linearises about `equilibrium`, and writes `k = K + B^T D B`: open points give nothing, closed sliding points
+    /// `(dp/dd)(n n^T + mu t n^T)`, all other closed points stick. With `friction_damping`, C is [`with_friction_damping`]. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn update(
-        &mut self,
+    pub fn new(
         system: &System,
-        (contacts, k): (&mut Contacts, &mut Matrix),
+        contacts: &Contacts,
         equilibrium: &Equilibrium,
         friction_damping: bool,
-    ) -> Result<()> {
+        k: &mut Matrix,
+    ) -> Result<Linearised> {
         let interface = contacts.interface();
         let gaps = contacts.gaps(&equilibrium.u)?;
         let (frictions, none) = (interface.frictions_at(equilibrium.friction), vec![0.0; interface.pairs.len()]);
-        if friction_damping {
-            self.c = Some(with_friction_damping(system, contacts, equilibrium.friction, &equilibrium.responses)?);
-        }
-        let blocks = |frictions: &[f64]| -> Vec<[[f64; 3]; 3]> {
-            let block = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, frictions);
-            (0..gaps.len()).map(block).collect()
+        let damped = || with_friction_damping(system, contacts, equilibrium.friction, &equilibrium.responses);
+        let tangents = |frictions: &[f64]| -> Vec<Tangent> {
+            let tangent = |a: usize| interface.linearise(a, gaps[a], equilibrium.responses[a].status, frictions);
+            (0..gaps.len()).map(tangent).collect()
         };
-        let tangents = blocks(&frictions);
-        self.symmetric = blocks(&none);
-        k.copy_from(&system.k)?;
-        contacts.add_blocks(tangents.iter().copied(), k)?;
-        let freeze = |(a, tangent): (usize, _)| {
+        let freeze = |(a, tangent): (usize, Tangent)| {
             let response = &equilibrium.responses[a];
             let sticks = matches!(interface.points[a].law.tangential, Tangential::StickSlip { .. });
             let status = if sticks && response.status == Status::Slip { Status::Stick } else { response.status };
             Response { tangent, status, ..*response }
         };
-        self.frozen = tangents.iter().copied().enumerate().map(freeze).collect();
-        self.tangents = tangents;
-        Ok(())
+        let frozen: Vec<Response> = tangents(&frictions).into_iter().enumerate().map(freeze).collect();
+        k.copy_from(&system.k)?;
+        contacts.add_blocks(frozen.iter().map(|response| response.tangent), k)?;
+        Ok(Linearised { c: friction_damping.then(damped).transpose()?, symmetric: tangents(&none), frozen })
     }
 
-    /// What each contact point does, its tangent that of the stiffness.
-    pub fn frozen(&self) -> &[Response] {
-        &self.frozen
-    }
-
-    /// The pencil, with the stiffness that [`Linearised::update`] has made.
-    pub fn pencil<'a>(&'a self, system: &'a System, contacts: &'a Contacts<'a>, k: &'a Matrix) -> Pencil<'a> {
-        let c = self.c.as_ref().unwrap_or(&system.c);
-        let points = Some(Points { contacts, tangents: &self.tangents, symmetric: &self.symmetric });
-        Pencil { m: &system.m, c, k, k_symmetric: &system.k, points, symmetric_mc: true }
+    /// The problem, with the stiffness that [`Linearised::new`] has written.
+    pub fn problem<'a>(
+        &'a self,
+        system: &'a System,
+        contacts: &'a Contacts<'a>,
+        k: &'a Matrix,
+    ) -> QuadraticProblem<'a> {
+        let matrices = Mck { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k };
+        let points = Some(FrozenPoints { contacts, responses: &self.frozen, symmetric: &self.symmetric });
+        QuadraticProblem { matrices, k_symmetric: &system.k, points, symmetric_mc: true }
     }
 }
 

@@ -1,29 +1,45 @@
 //! Complex modes about an equilibrium: `(lambda^2 M + lambda C + K) x = 0`, all of a frequency band.
 //!
-//! [`Pencil`] is the linearised problem, with friction's unsymmetric part in K. [`solve`] finds the band's modes by SLEPc's PEP
-//! (TOAR, inverted about a real shift, so that one real factor serves the whole band; for super-elements in modal coordinates), by blocks of
-//! right-hand sides where a model is large, gives each its backward error, and
-//! checks their number against the inertia of the symmetric problem, so that none is missed. [`Solver::left_vectors`] finds their left vectors.
+//! [`QuadraticProblem`] is the linearised problem, with friction's unsymmetric part in K. [`BandSolver::solve_band`] chooses an eigensolver, searches,
+//! counts, and widens the search until no mode is missing:
+//!
+//! | eigensolver | method | used for |
+//! |---|---|---|
+//! | [`blocked`] | a growing subspace, many right-hand sides at a time | large problems |
+//! | [`modal`] | TOAR in the modal coordinates of a reference | super-elements |
+//! | [`toar`] | SLEPc's TOAR, inverted about a real shift, so that one real factor serves the whole band | all others, and the last resort |
+//!
+//! Each mode has its backward error; their number is compared with the Sturm count of the symmetric problem ([`count`]).
+//! [`BandSolver::left_vectors`] finds their left vectors. Tolerances and thresholds are in [`EigenOptions`].
 
 mod band;
+mod blocked;
 mod condition;
+mod count;
+mod eigensolver;
 mod explain;
 mod forms;
-mod inertia;
 mod left;
 mod linearise;
+mod memory;
 mod modal;
 mod mode;
-mod search;
-mod solver;
+mod options;
+mod problem;
 mod space;
+mod sturm;
+#[cfg(test)]
+mod testing;
+mod toar;
 
-pub use band::{Band, Count, solve};
-pub use condition::condition;
+pub use band::{Band, BandReport, BandRequest, BandSolver};
+pub use condition::{condition, condition_at};
+pub use count::Count;
+pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
 pub use explain::{Sensitivity, Share, self_product, sensitivity, shares};
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::right_vectors;
 pub use linearise::{Linearised, with_friction_damping};
-pub use mode::{Mode, Pencil, Points, UNSTABLE_RATIO, growth_threshold};
-pub use solver::{Evidence, Solver};
-pub use space::{Basis, Problem};
+pub use mode::{Mode, UNSTABLE_RATIO, growth_threshold};
+pub use options::{BlockedOptions, EigenOptions, Evidence};
+pub use problem::{FrozenPoints, QuadraticProblem};

@@ -1,105 +1,103 @@
-//! A densely stored pencil in the modal coordinates of a reference.
+//! TOAR in the modal coordinates of a reference, for densely stored problems.
 //!
-//! `K_0 = S + sum B_a^T D_0a B_a` is the symmetric stiffness, without friction's coupling, of the first pencil seen. With its modes, of energy 1,
-//! other pencils of the structure are
+//! `K_0 = S + sum B_a^T D_0a B_a` is the symmetric stiffness, without friction's coupling, of the first problem seen. With its modes, of energy 1,
+//! other problems of the structure are
 //!
 //! ```text
-//! Phi^T K_0 Phi = I      Phi^T M Phi = diag(1 / omega^2)      Phi^T K Phi = I + sum Phi^T B_a^T (D_a - D_0a) B_a Phi = I + U W^T
-//! (I + U W^T)^-1 = I - U (I + W^T U)^-1 W^T
+//! Phi^T K_0 Phi = I      Phi^T M Phi = diag(1 / omega^2)      Phi^T K Phi = I + sum Phi^T B_a^T (D_a - D_0a) B_a Phi = I + U V^T
 //! ```
 //!
-//! (Woodbury), where a sliding point's tangent differs by rank 1. A step of a Krylov method then goes through C, U and W, where it went through
-//! M, C and a factor of K, and no coordinate is left out. That K_0 becomes the identity, and not M, keeps the low modes' digits: rounding is relative
-//! to each mode's energy, and not to the highest mode's.
+//! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s. A step of a Krylov method then goes through C, U and V,
+//! where it went through M, C and a factor of K, and no coordinate is left out. That K_0 becomes the identity, and not M, keeps the low modes'
+//! digits: rounding is relative to each mode's energy, and not to the highest mode's.
+//!
+//! Why it is written by hand: the modes of 81 friction values of the full brake's super-element (782 coordinates) take 18 s where TOAR with the
+//! factor of K took 30 s.
 
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::DMatrix;
 
+use super::eigensolver::{Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
 use super::space::Side;
-use super::{Mode, Pencil, Points};
+use super::toar::{complete, pep_options, with_wanted};
+use super::{EigenOptions, FrozenPoints, Mode, QuadraticProblem};
 use crate::Result;
+use crate::contact::{Dyad, Tangent, TangentChange};
+use crate::equilibrium::{LabelledFactor, Woodbury};
 use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
 use crate::native::{Block, Matrix, Vector, lapack};
 
-/// A change of a point's tangent this much smaller than the tangent itself is none.
-const NEGLIGIBLE: f64 = 1e-15;
+/// An eigenvalue found twice differs by no more, relatively.
+const EIGENVALUE_ROUNDING: f64 = 1e-9;
+/// No other eigenvalue is as near as this, relatively, to one whose left vector is taken from a search of its own.
+const MIN_SEPARATION: f64 = 1e-6;
 
-/// An eigenvalue found twice differs by no more, relatively, and no other is as near as the second.
-const SAME: f64 = 1e-9;
-const APART: f64 = 1e-6;
+/// Solves in modal coordinates, which the first problem gives.
+pub(super) struct Modal {
+    options: EigenOptions,
+    coordinates: Option<Coordinates>,
+    /// Of the last search.
+    last: Option<Options>,
+}
 
-/// The reference, and what of a pencil does not change with friction.
-pub struct Modal {
+/// The reference, and what of a problem does not change with friction.
+struct Coordinates {
     /// Modes of the reference as columns.
     phi: Block,
     /// `Phi^T K_0 Phi` and `Phi^T M Phi`.
     k: Matrix,
     m: Matrix,
     /// `D_0`, N/m.
-    tangents: Vec<[[f64; 3]; 3]>,
+    tangents: Vec<Tangent>,
     /// `Phi^T B_a^T`, three columns for each point.
-    traces: Vec<f64>,
+    gaps: Vec<f64>,
     /// The damping seen last, and `Phi^T C Phi`.
     damping: Option<(Vec<f64>, Matrix)>,
-    /// Of the last search.
-    options: Option<Options>,
 }
 
-/// `U (I + W^T U)^-1` and W, column by column.
-struct Update {
-    u: Vec<f64>,
-    w: Vec<f64>,
+/// `(I + U V^T)^-1`
+struct Inverse {
+    v: Vec<f64>,
+    rank: usize,
+    woodbury: Woodbury,
 }
 
 impl Modal {
-    /// The coordinates that a pencil's symmetric part gives; none where it is not stored densely, or its stiffness not positive definite.
+    pub fn new(options: EigenOptions) -> Modal {
+        Modal { options, coordinates: None, last: None }
+    }
+
+    /// Whether the problem is densely stored and larger than the basis of a search. Not collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn new(pencil: &Pencil) -> Result<Option<Modal>> {
-        let Some(points) = pencil.points else { return Ok(None) };
-        let k_0 = pencil.symmetric_stiffness()?;
-        let (Some(stiffness), Some(mut modes)) = (k_0.dense_values()?, pencil.m.dense_values()?) else {
-            return Ok(None);
-        };
-        let (comm, n) = (pencil.k.comm(), pencil.k.n_local());
-        let Some(flexibilities) = lapack::generalised_eigen(n, &mut modes, stiffness) else { return Ok(None) };
-        let phi = Block::from_columns(comm, n, modes);
-        let unit = |e: usize| std::array::from_fn(|i| if i == e { 1.0 } else { 0.0 });
-        let directions: Vec<(usize, [f64; 3])> =
-            (0..3 * points.symmetric.len()).map(|j| (j / 3, unit(j % 3))).collect();
-        let traces = phi.gram(&points.contacts.loads(comm, &directions));
-        let (k, m) = (Matrix::diagonal(comm, &vec![1.0; n])?, Matrix::diagonal(comm, &flexibilities)?);
-        Ok(Some(Modal { phi, k, m, tangents: points.symmetric.to_vec(), traces, damping: None, options: None }))
+    pub fn suits(&self, problem: &QuadraticProblem, request: &SearchRequest) -> Result<bool> {
+        let dense = request.shift == 0.0
+            && problem.symmetric_mc
+            && problem.points.is_some()
+            && problem.matrices.k.is_dense()?;
+        Ok(dense && self.pep_options(problem, request).n_basis < 2 * problem.n_dofs())
     }
 
-    /// Eigenpairs of a pencil with the same M, S and contact points, as [`eigen::solve_or_none`] finds them.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn solve(
-        &mut self,
-        pencil: &Pencil,
-        options: &Options,
-        progress: &mut dyn FnMut(usize, usize),
-    ) -> Result<Option<Found>> {
-        self.options = Some(*options);
-        self.search(pencil, Side::Right, options, progress)
+    fn pep_options(&self, problem: &QuadraticProblem, request: &SearchRequest) -> Options {
+        let options = pep_options(problem, request, self.options.modal_tolerance);
+        let n_basis = (self.options.modal_basis_ratio * options.n_wanted as f64) as usize;
+        Options { n_basis, scale: std::f64::consts::TAU * request.end, ..options }
     }
 
-    /// `v` with `P(lambda)^T v = 0` for modes of the last pencil solved: columns `2i` and `2i + 1` are the real and imaginary part for mode i. From a
+    /// `v` with `P(lambda)^T v = 0` for modes of the last problem solved: columns `2i` and `2i + 1` are the real and imaginary part for mode i. From a
     /// search of its own with K transposed; none where that does not find each eigenvalue again, apart from all others.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn left_vectors(&mut self, pencil: &Pencil, modes: &[Mode]) -> Result<Option<Block>> {
-        let Some(options) = self.options else { return Ok(None) };
-        let Some(found) = self.search(pencil, Side::Left, &options, &mut |_, _| ())? else { return Ok(None) };
-        let mut vectors = Block::zeros(pencil.k.comm(), pencil.k.n_local(), 2 * modes.len());
+    pub fn left_vectors(&mut self, problem: &QuadraticProblem, modes: &[Mode]) -> Result<Option<Block>> {
+        let (Some(options), Some(coordinates)) = (self.last, &mut self.coordinates) else { return Ok(None) };
+        let Some(found) = coordinates.search(problem, Side::Left, &options, &mut |_, _| ())? else { return Ok(None) };
+        let mut vectors = Block::zeros(problem.comm(), problem.n_local(), 2 * modes.len());
         for (i, mode) in modes.iter().enumerate() {
-            let near = |pair: &&Pair, share: f64| (pair.lambda - mode.lambda).norm() <= share * mode.lambda.norm();
-            let mut neighbours = found.pairs.iter().filter(|pair| near(pair, APART));
-            let (Some(pair), None) = (neighbours.next(), neighbours.next()) else { return Ok(None) };
-            if !near(&pair, SAME) {
+            let is_near = |pair: &&Pair, share: f64| (pair.lambda - mode.lambda).norm() <= share * mode.lambda.norm();
+            let mut near = found.pairs.iter().filter(|pair| is_near(pair, MIN_SEPARATION));
+            let (Some(pair), None) = (near.next(), near.next()) else { return Ok(None) };
+            if !is_near(&pair, EIGENVALUE_ROUNDING) {
                 return Ok(None);
             }
             pair.re.local(|values| vectors.column_mut(2 * i).copy_from_slice(values))?;
@@ -107,22 +105,64 @@ impl Modal {
         }
         Ok(Some(vectors))
     }
+}
 
-    /// Eigenpairs of a pencil, or of the transposed one.
+impl Eigensolver for Modal {
     fn search(
         &mut self,
-        pencil: &Pencil,
+        problem: &QuadraticProblem,
+        _: &mut LabelledFactor,
+        request: &SearchRequest,
+        progress: &mut OnProgress,
+    ) -> Result<Option<SearchResult>> {
+        if self.coordinates.is_none() {
+            self.coordinates = Coordinates::new(problem)?;
+        }
+        let options = self.pep_options(problem, request);
+        self.last = Some(options);
+        let Some(coordinates) = &mut self.coordinates else { return Ok(None) };
+        let mut progress = with_wanted(options.n_wanted, progress);
+        let found = coordinates.search(problem, Side::Right, &options, &mut progress)?;
+        let result = complete(problem, SolverKind::Modal, found)?;
+        let is_accurate =
+            |result: &SearchResult| result.backward_errors.iter().all(|&error| error <= self.options.backward_error);
+        Ok(result.filter(is_accurate))
+    }
+}
+
+impl Coordinates {
+    /// Those that a problem's symmetric part gives; none where it is not stored densely, or its stiffness not positive definite.
+    fn new(problem: &QuadraticProblem) -> Result<Option<Coordinates>> {
+        let Some(points) = problem.points else { return Ok(None) };
+        let k_0 = problem.symmetric_stiffness()?;
+        let (Some(stiffness), Some(mut modes)) = (k_0.dense_values()?, problem.matrices.m.dense_values()?) else {
+            return Ok(None);
+        };
+        let (comm, n) = (problem.comm(), problem.n_local());
+        let Some(flexibilities) = lapack::generalised_eigen(n, &mut modes, stiffness) else { return Ok(None) };
+        let phi = Block::from_columns(comm, n, modes);
+        let unit = |e: usize| std::array::from_fn(|i| if i == e { 1.0 } else { 0.0 });
+        let directions: Vec<(usize, [f64; 3])> =
+            (0..3 * points.symmetric.len()).map(|j| (j / 3, unit(j % 3))).collect();
+        let gaps = phi.gram(&points.contacts.loads(comm, &directions));
+        let (k, m) = (Matrix::diagonal(comm, &vec![1.0; n])?, Matrix::diagonal(comm, &flexibilities)?);
+        Ok(Some(Coordinates { phi, k, m, tangents: points.symmetric.to_vec(), gaps, damping: None }))
+    }
+
+    /// Eigenpairs of a problem with the same M, S and contact points, or of the transposed one.
+    fn search(
+        &mut self,
+        problem: &QuadraticProblem,
         side: Side,
         options: &Options,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Option<Found>> {
-        let Some(points) = pencil.points.filter(|_| pencil.symmetric_mc) else { return Ok(None) };
-        let Some(update) = self.update(&points, side) else { return Ok(None) };
-        self.bring_damping(pencil)?;
+        let Some(inverse) = problem.points.and_then(|points| self.inverse(&points, side)) else { return Ok(None) };
+        self.set_damping(problem)?;
         let Some((_, c)) = &self.damping else { return Ok(None) };
-        let inverse = |b: &Vector, x: &mut Vector| b.local(|b| x.local_mut(|x| update.solve(b, x)))?;
-        let problem = Quadratic { m: &self.m, c, k: &self.k, shift: 0.0, inverse: &inverse };
-        let Some(found) = eigen::solve_or_none(&problem, options, progress)? else { return Ok(None) };
+        let solve = |b: &Vector, x: &mut Vector| b.local(|b| x.local_mut(|x| inverse.solve(b, x)))?;
+        let quadratic = Quadratic { m: &self.m, c, k: &self.k, shift: 0.0, inverse: &solve };
+        let Some(found) = eigen::solve_or_none(&quadratic, options, progress)? else { return Ok(None) };
         let mut coordinates = Vec::new();
         for vector in found.pairs.iter().flat_map(|pair| [&pair.re, &pair.im]) {
             vector.local(|values| coordinates.extend_from_slice(values))?;
@@ -135,58 +175,53 @@ impl Modal {
         Ok(Some(Found { pairs, ..found }))
     }
 
-    /// `Phi^T C Phi`, made anew where C is another.
-    fn bring_damping(&mut self, pencil: &Pencil) -> Result<()> {
-        let Some(values) = pencil.c.dense_values()? else { return Ok(()) };
+    /// `Phi^T C Phi`, projected again where C is another.
+    fn set_damping(&mut self, problem: &QuadraticProblem) -> Result<()> {
+        let c = problem.matrices.c;
+        let Some(values) = c.dense_values()? else { return Ok(()) };
         if self.damping.as_ref().is_none_or(|(last, _)| *last != values) {
-            let projected = self.phi.gram(&self.phi.multiplied_by(pencil.c)?);
+            let projected = self.phi.gram(&self.phi.multiplied_by(c)?);
             let n = self.phi.n_columns();
             // Stored by rows.
             let by_rows = DMatrix::from_vec(n, n, projected).transpose();
-            self.damping = Some((values, Matrix::dense(pencil.c.comm(), n, by_rows.as_slice())?));
+            self.damping = Some((values, Matrix::dense(c.comm(), n, by_rows.as_slice())?));
         }
         Ok(())
     }
 
-    /// What the tangents, or the transposed ones, add to `I`; none where the sum is singular.
-    fn update(&self, points: &Points, side: Side) -> Option<Update> {
-        let n = self.phi.n_columns();
-        let (mut u, mut w) = (Vec::new(), Vec::new());
-        let pairs = self.tangents.iter().zip(points.tangents).enumerate();
-        for (a, (old, new)) in pairs.filter(|(_, (old, new))| old != new) {
-            // Stored by columns: `from` would take these rows for columns.
-            let [old, new] = [old, new].map(|d| Matrix3::from(*d).transpose());
-            let svd = (new - old).svd(true, true);
-            let (left, right) = svd.u.zip(svd.v_t)?;
-            for k in (0..3).filter(|&k| svd.singular_values[k] > NEGLIGIBLE * old.norm().max(new.norm())) {
-                let along = |direction: [f64; 3], columns: &mut Vec<f64>| {
-                    let trace = |i: usize| (0..3).map(|e| self.traces[(3 * a + e) * n + i] * direction[e]).sum::<f64>();
-                    columns.extend((0..n).map(trace));
-                };
-                along((left.column(k) * svd.singular_values[k]).into(), &mut u);
-                along(right.row(k).transpose().into(), &mut w);
-            }
-        }
+    /// The inverse of I with what the tangents, or the transposed ones, add; none where the sum is singular.
+    fn inverse(&self, points: &FrozenPoints, side: Side) -> Option<Inverse> {
+        let pairs = self.tangents.iter().zip(points.responses).enumerate();
+        let change = pairs.map(|(a, (old, new))| (a, old, &new.tangent));
+        let change = TangentChange::between(change, TangentChange::ROUNDING);
+        let (n, rank) = (self.phi.n_columns(), change.rank());
+        let columns = |direction: fn(&Dyad) -> [f64; 3]| -> Vec<f64> {
+            change.dyads.iter().flat_map(|dyad| self.load(dyad.point, direction(dyad))).collect()
+        };
+        let [mut u, mut v] = [columns(|dyad| dyad.left), columns(|dyad| dyad.right)];
         if side == Side::Left {
-            std::mem::swap(&mut u, &mut w);
+            std::mem::swap(&mut u, &mut v);
         }
-        let rank = u.len() / n.max(1);
-        let mut small = vec![0.0; rank * rank];
-        lapack::multiply(true, [rank, n, rank], &w, &u, &mut small);
-        let inverse = (DMatrix::identity(rank, rank) + DMatrix::from_vec(rank, rank, small)).try_inverse()?;
-        let mut scaled = vec![0.0; u.len()];
-        lapack::multiply(false, [n, rank, rank], &u, inverse.as_slice(), &mut scaled);
-        Some(Update { u: scaled, w })
+        let mut projected = vec![0.0; rank * rank];
+        lapack::multiply(true, [rank, n, rank], &v, &u, &mut projected);
+        let w = Block::from_columns(self.phi.comm(), n, u);
+        let woodbury = Woodbury::new(w, DMatrix::from_vec(rank, rank, projected))?;
+        Some(Inverse { v, rank, woodbury })
+    }
+
+    /// `Phi^T B_a^T f`
+    fn load(&self, a: usize, f: [f64; 3]) -> impl Iterator<Item = f64> {
+        let n = self.phi.n_columns();
+        (0..n).map(move |i| (0..3).map(|e| self.gaps[(3 * a + e) * n + i] * f[e]).sum::<f64>())
     }
 }
 
-impl Update {
-    /// `x = b - U (I + W^T U)^-1 W^T b`
+impl Inverse {
+    /// `x = (I + U V^T)^-1 b`
     fn solve(&self, b: &[f64], x: &mut [f64]) {
-        let (n, rank) = (b.len(), self.w.len() / b.len().max(1));
-        let mut coefficients = vec![0.0; rank];
-        lapack::multiply(true, [rank, n, 1], &self.w, b, &mut coefficients);
+        let mut projected = vec![0.0; self.rank];
+        lapack::multiply(true, [self.rank, b.len(), 1], &self.v, b, &mut projected);
         x.copy_from_slice(b);
-        lapack::subtract_product([n, rank, 1], &self.u, &coefficients, x);
+        self.woodbury.correct(&projected, x);
     }
 }

@@ -1,99 +1,16 @@
-//! The linearised problem and one solution of it.
-
-use std::array::from_fn;
+//! A solution of the quadratic eigenproblem, and how well it solves it.
 
 use num_complex::Complex64;
 
+use super::QuadraticProblem;
 use crate::Result;
-use crate::algebra::dot;
-use crate::equilibrium::Contacts;
-use crate::native::{Block, Matrix, Vector};
+use crate::native::{Block, Matrix, Mck, Vector};
 
 /// A mode is called unstable where its growth rate exceeds this fraction of its angular frequency: below is noise.
 pub const UNSTABLE_RATIO: f64 = 1e-6;
 
 /// A real eigenvalue above this, 1/s, is an instability.
-const DIVERGENCE: f64 = 1.0;
-
-/// The matrices of `lambda^2 M + lambda C + K`, K with the contact tangent.
-pub struct Pencil<'a> {
-    /// Mass.
-    pub m: &'a Matrix,
-    /// Damping.
-    pub c: &'a Matrix,
-    /// Stiffness with the tangent of contact and friction.
-    pub k: &'a Matrix,
-    /// Symmetric stiffness, for counting: without friction, and without the points below.
-    pub k_symmetric: &'a Matrix,
-    /// Contact points that add to `k_symmetric`; the count follows their changes.
-    pub points: Option<Points<'a>>,
-    /// Whether M and C are symmetric, so that K alone has to be transposed for left vectors.
-    pub symmetric_mc: bool,
-}
-
-/// Contact points with what each adds to a pencil's symmetric stiffness.
-#[derive(Clone, Copy)]
-pub struct Points<'a> {
-    /// Where the points stand among the equations.
-    pub contacts: &'a Contacts<'a>,
-    /// Tangent D of each point, N/m: with friction's coupling, which is all that makes the stiffness unsymmetric.
-    pub tangents: &'a [[[f64; 3]; 3]],
-    /// Tangent without friction's coupling of each point, N/m.
-    pub symmetric: &'a [[[f64; 3]; 3]],
-}
-
-impl Pencil<'_> {
-    /// The stiffness with the points' tangents without friction's coupling: `S`, symmetric. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn symmetric_stiffness(&self) -> Result<Matrix> {
-        let mut stiffness = self.k_symmetric.duplicate()?;
-        if let Some(points) = self.points {
-            points.contacts.add_blocks(points.symmetric.iter().copied(), &mut stiffness)?;
-        }
-        Ok(stiffness)
-    }
-
-    /// `K^T X - K X`: with contact points `-B^T (D - D^T) B X`, which takes their entries alone. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub(super) fn transposed_less_stiffness_times(&self, x: &Block) -> Result<Block> {
-        let Some(Points { contacts, tangents, .. }) = self.points else {
-            let mut difference = x.multiplied_by_transpose(self.k)?;
-            difference.axpy(-1.0, &x.multiplied_by(self.k)?);
-            return Ok(difference);
-        };
-        let skew = |d: &[[f64; 3]; 3]| -> [[f64; 3]; 3] { from_fn(|i| from_fn(|j| d[j][i] - d[i][j])) };
-        spread(contacts, &tangents.iter().map(skew).collect::<Vec<_>>(), x)
-    }
-}
-
-impl Points<'_> {
-    /// What the points add to the stiffness beyond what they did with other tangents, times X: `B^T (D - D_before) B X`. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub(super) fn change_times(&self, before: &[[[f64; 3]; 3]], x: &Block) -> Result<Block> {
-        let change = |(now, before): (&[[f64; 3]; 3], &[[f64; 3]; 3])| -> [[f64; 3]; 3] {
-            from_fn(|i| from_fn(|j| now[i][j] - before[i][j]))
-        };
-        spread(self.contacts, &self.tangents.iter().zip(before).map(change).collect::<Vec<_>>(), x)
-    }
-}
-
-/// `B^T E B X`, E having a block for each point.
-fn spread(contacts: &Contacts, blocks: &[[[f64; 3]; 3]], x: &Block) -> Result<Block> {
-    let mut product = Block::zeros(x.comm(), x.n_local(), x.n_columns());
-    for j in 0..x.n_columns() {
-        let gaps = contacts.gaps(&x.vector(j)?)?;
-        for (a, block) in blocks.iter().enumerate().filter(|(_, block)| **block != [[0.0; 3]; 3]) {
-            contacts.spread_into(a, block.map(|row| dot(row, gaps[a])), 1.0, product.column_mut(j));
-        }
-    }
-    Ok(product)
-}
+const DIVERGENCE_RATE: f64 = 1.0;
 
 /// An eigenvalue with non-negative frequency, its vector, and how well the two solve the problem.
 pub struct Mode {
@@ -110,7 +27,7 @@ pub struct Mode {
 /// The growth rate (1/s) beyond which an eigenvalue is unstable: [`UNSTABLE_RATIO`] of its angular frequency. A rigid motion's
 /// double zero may come out as a real pair of some 1e-2/s: divergence, a real eigenvalue, counts from 1/s on.
 pub fn growth_threshold(lambda: Complex64) -> f64 {
-    if lambda.im == 0.0 { DIVERGENCE } else { UNSTABLE_RATIO * lambda.im.abs() }
+    if lambda.im == 0.0 { DIVERGENCE_RATE } else { UNSTABLE_RATIO * lambda.im.abs() }
 }
 
 impl Mode {
@@ -170,14 +87,15 @@ const BLOCK: usize = 32;
 ///
 /// # Errors
 /// PETSc's.
-pub(super) fn backward_errors(pencil: &Pencil, lambdas: &[Complex64], x: &Block) -> Result<Vec<f64>> {
-    let norms = [pencil.k.norm_inf()?, pencil.c.norm_inf()?, pencil.m.norm_inf()?];
+pub(super) fn backward_errors(problem: &QuadraticProblem, lambdas: &[Complex64], x: &Block) -> Result<Vec<f64>> {
+    let Mck { m, c, k } = problem.matrices;
+    let norms = problem.matrices.try_map(Matrix::norm_inf)?;
     let mut errors = Vec::new();
     for (part, lambdas) in lambdas.chunks(BLOCK / 2).enumerate() {
         let x = x.columns(BLOCK * part..BLOCK * part + 2 * lambdas.len());
         let n = x.n_columns();
         let mut images = Block::zeros(x.comm(), x.n_local(), 3 * n);
-        images.add_products(&[pencil.k, pencil.c, pencil.m], &x, 0..n)?;
+        images.add_products(&[k, c, m], &x, 0..n)?;
         for (i, lambda) in lambdas.iter().enumerate() {
             let powers = [Complex64::ONE, *lambda, lambda * lambda];
             let residual = |row: usize| -> Complex64 {
@@ -186,7 +104,7 @@ pub(super) fn backward_errors(pencil: &Pencil, lambdas: &[Complex64], x: &Block)
             let largest = |value: &dyn Fn(usize) -> Complex64| {
                 (0..x.n_local()).map(|row| value(row).norm_sqr()).fold(0.0, f64::max).sqrt()
             };
-            let scale: f64 = norms.iter().zip(&powers).map(|(norm, power)| norm * power.norm()).sum();
+            let scale = norms.k + norms.c * lambda.norm() + norms.m * lambda.norm_sqr();
             let comm = x.comm();
             errors.push(comm.max(largest(&residual)) / (scale * comm.max(largest(&|row| entry(&x, i, row)))));
         }

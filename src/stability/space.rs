@@ -1,29 +1,29 @@
-//! A growing subspace with the projections of a pencil, for modes and for their left vectors.
+//! A growing subspace with the projections of a quadratic problem, for modes and for their left vectors.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::Pencil;
+use super::QuadraticProblem;
 use crate::Result;
-use crate::native::{Block, Factor, Noise};
+use crate::contact::Tangent;
+use crate::native::{Block, Factor, Matrix, Mck, Noise};
 
 /// Random combinations of the residuals that join the space in a round.
 pub(super) const SKETCH: usize = 32;
-/// Directions this much smaller than the largest of their block add nothing.
-const NEGLIGIBLE: f64 = 1e-7;
-/// Columns keep at least this share of their length where V is left but once.
-const CLEAR: f64 = 1e-4;
+/// Directions this much smaller than the largest of their block are rounding.
+const NEGLIGIBLE_DIRECTION: f64 = 1e-7;
+/// Columns that keep at least this share of their length are projected off V but once.
+const KEPT_LENGTH: f64 = 1e-4;
 /// No residual counts for more than that of a mode this far down, relative to the highest.
-const LOWEST: f64 = 0.01;
+const MIN_MODULUS: f64 = 0.01;
 
-/// A pencil with what its solution needs.
+/// A problem with what its solution needs.
 #[derive(Clone, Copy)]
-pub struct Problem<'a> {
-    /// M, C and K.
-    pub pencil: &'a Pencil<'a>,
+pub(super) struct FactoredProblem<'a> {
+    pub problem: &'a QuadraticProblem<'a>,
     /// The factor of `P(sigma)` at a real shift, exact or not.
     pub factor: &'a Factor,
-    /// A number for each of this rank's equations, whatever the number of ranks.
+    /// A number for each of this rank's dofs, whatever the number of ranks.
     pub labels: &'a [u64],
 }
 
@@ -37,37 +37,31 @@ pub(super) enum Side {
 }
 
 /// Orthonormal columns V with the projections `V^T M V`, `V^T C V` and `V^T K V`.
-pub struct Basis {
+pub(super) struct Basis {
     v: Block,
-    m: DMatrix<f64>,
-    c: DMatrix<f64>,
-    k: DMatrix<f64>,
+    projected: Mck<DMatrix<f64>>,
 }
 
-/// What a search leaves for the next: orthonormal columns V with the projections of the pencil that they were found with.
+/// What a search leaves for the next: orthonormal columns V with the projections of the problem that they were found with.
 pub(super) struct Start {
-    v: Block,
+    basis: Basis,
     /// What combined the space's columns to V, which are orthonormal, too.
     q: DMatrix<f64>,
-    m: DMatrix<f64>,
-    c: DMatrix<f64>,
-    k: DMatrix<f64>,
-    /// The tangents of its contact points, and what M, C and the stiffness without contact were.
-    tangents: Vec<[[f64; 3]; 3]>,
-    versions: [[i64; 2]; 3],
+    /// The tangents of its contact points.
+    tangents: Vec<Tangent>,
+    /// Of M, C and the stiffness without contact.
+    versions: Mck<[i64; 2]>,
 }
 
-/// Orthonormal columns V with the projections of M, C and A; A is K, or all are transposed for left vectors.
+/// Orthonormal columns V with the projections of M, C and K, or of their transposes for left vectors.
 pub(super) struct Space<'a> {
-    problem: Problem<'a>,
+    searched: FactoredProblem<'a>,
     side: Side,
     pub v: Block,
-    pub m: DMatrix<f64>,
-    pub c: DMatrix<f64>,
-    pub a: DMatrix<f64>,
+    pub projected: Mck<DMatrix<f64>>,
     noise: Noise<'a>,
     /// On all ranks.
-    pub n_equations: usize,
+    pub n_dofs: usize,
     /// Right-hand sides solved for.
     pub n_solves: usize,
 }
@@ -80,7 +74,7 @@ pub(super) struct Ritz {
     pub im: Vec<f64>,
 }
 
-/// `[V W]^T B [V W]` from `V^T B V`, `[V W]^T B W` and `[V W]^T B^T W`.
+/// `[V W]^T A [V W]` from `V^T A V`, `[V W]^T A W` and `[V W]^T A^T W`.
 fn joined(old: &DMatrix<f64>, columns: &DMatrix<f64>, rows: &DMatrix<f64>) -> DMatrix<f64> {
     let (n, p) = (old.nrows(), columns.ncols());
     let mut new = DMatrix::zeros(n + p, n + p);
@@ -91,55 +85,51 @@ fn joined(old: &DMatrix<f64>, columns: &DMatrix<f64>, rows: &DMatrix<f64>) -> DM
 }
 
 /// Of M, C and the stiffness without contact.
-fn versions(pencil: &Pencil) -> Result<[[i64; 2]; 3]> {
-    Ok([pencil.m.version()?, pencil.c.version()?, pencil.k_symmetric.version()?])
+fn versions(problem: &QuadraticProblem) -> Result<Mck<[i64; 2]>> {
+    Mck { k: problem.k_symmetric, ..problem.matrices }.try_map(Matrix::version)
 }
 
 impl<'a> Space<'a> {
-    /// Without any column.
-    pub fn new(problem: Problem<'a>, side: Side) -> Space<'a> {
-        Space::with_room(problem, side, 0)
-    }
-
-    /// Without any column, but room for some.
-    pub fn with_room(problem: Problem<'a>, side: Side, n_columns: usize) -> Space<'a> {
-        let (comm, n_local) = (problem.pencil.k.comm(), problem.pencil.k.n_local());
-        let none = || DMatrix::zeros(0, 0);
-        let v = Block::with_room(comm, n_local, n_columns);
-        let (noise, n_equations) = (Noise::new(problem.labels), comm.sum(n_local));
-        Space { problem, side, v, m: none(), c: none(), a: none(), noise, n_equations, n_solves: 0 }
+    /// Without any column, but memory for some.
+    pub fn with_capacity(searched: FactoredProblem<'a>, side: Side, n_columns: usize) -> Space<'a> {
+        let problem = searched.problem;
+        let v = Block::with_room(problem.comm(), problem.n_local(), n_columns);
+        let projected = Mck::from([(); 3]).map(|()| DMatrix::zeros(0, 0));
+        let (noise, n_dofs) = (Noise::new(searched.labels), problem.n_dofs());
+        Space { searched, side, v, projected, noise, n_dofs, n_solves: 0 }
     }
 
     /// For left vectors, with the columns that a search for right ones has left.
-    pub fn of_left_vectors(problem: Problem<'a>, basis: Basis) -> Space<'a> {
-        let Basis { v, m, c, k } = basis;
-        Space { v, m: m.transpose(), c: c.transpose(), a: k.transpose(), ..Space::new(problem, Side::Left) }
+    pub fn of_left_vectors(searched: FactoredProblem<'a>, basis: Basis) -> Space<'a> {
+        let projected = basis.projected.map(|a| a.transpose());
+        Space { v: basis.v, projected, ..Space::with_capacity(searched, Side::Left, 0) }
     }
 
     /// For left vectors, spanned by some columns.
-    pub fn spanned(problem: Problem<'a>, columns: Block) -> Result<Space<'a>> {
-        let mut space = Space::new(problem, Side::Left);
+    pub fn spanned(searched: FactoredProblem<'a>, columns: Block) -> Result<Space<'a>> {
+        let mut space = Space::with_capacity(searched, Side::Left, 0);
         space.extend(columns)?;
         Ok(space)
     }
 
-    /// Begins with what another search for right vectors has left, with room for some columns more. Where the pencil differs from that search's in
-    /// contact alone, so do the projections. Collective.
+    /// Begins with what another search for right vectors has left, with memory for some columns more. Where the problem differs from that
+    /// search's in contact alone, so do the projections. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn started(problem: Problem<'a>, start: Start, n_columns: usize) -> Result<Space<'a>> {
-        let mut space = Space::with_room(problem, Side::Right, start.v.n_columns() + n_columns);
-        let points = problem.pencil.points.filter(|points| points.tangents.len() == start.tangents.len());
+    pub fn started(searched: FactoredProblem<'a>, start: Start, n_columns: usize) -> Result<Space<'a>> {
+        let Basis { v, mut projected } = start.basis;
+        let mut space = Space::with_capacity(searched, Side::Right, v.n_columns() + n_columns);
+        let points = searched.problem.points.filter(|points| points.responses.len() == start.tangents.len());
         match points {
-            Some(points) if versions(problem.pencil)? == start.versions => {
-                let change = start.v.gram_of_few_rows(&points.change_times(&start.tangents, &start.v)?);
-                let n = start.v.n_columns();
-                (space.m, space.c, space.a) = (start.m, start.c, start.k + DMatrix::from_vec(n, n, change));
-                space.v.append(&start.v);
+            Some(points) if versions(searched.problem)? == start.versions => {
+                let change = v.gram_of_few_rows(&points.change_times(&start.tangents, &v)?);
+                projected.k += DMatrix::from_vec(v.n_columns(), v.n_columns(), change);
+                space.projected = projected;
+                space.v.append(&v);
             }
             _ => {
-                space.append(start.v)?;
+                space.append(v)?;
             }
         }
         Ok(space)
@@ -151,23 +141,20 @@ impl<'a> Space<'a> {
     /// PETSc's.
     pub fn start(&self, ritz: &[Ritz]) -> Result<Start> {
         let q = self.coefficients(ritz).qr().q();
-        let projected = |a: &DMatrix<f64>| q.tr_mul(&(a * &q));
-        let [m, c, k] = [&self.m, &self.c, &self.a].map(projected);
-        let pencil = self.problem.pencil;
-        let tangents = pencil.points.map_or(Vec::new(), |points| points.tangents.to_vec());
+        let projected = self.projected.as_ref().map(|a| q.tr_mul(&(a * &q)));
         let v = self.v.combined(q.as_slice(), q.ncols());
-        Ok(Start { v, q, m, c, k, tangents, versions: versions(pencil)? })
+        let tangents = self.problem().points.map_or(Vec::new(), |points| points.tangents().collect());
+        Ok(Start { basis: Basis { v, projected }, q, tangents, versions: versions(self.problem())? })
     }
 
     /// What is left of a space of right vectors.
     pub fn into_basis(self) -> Basis {
-        let Space { v, m, c, a: k, .. } = self;
-        Basis { v, m, c, k }
+        Basis { v: self.v, projected: self.projected }
     }
 
-    /// M, C and K.
-    pub fn pencil(&self) -> &Pencil<'a> {
-        self.problem.pencil
+    /// The problem.
+    pub fn problem(&self) -> &'a QuadraticProblem<'a> {
+        self.searched.problem
     }
 
     /// Columns without order.
@@ -177,21 +164,16 @@ impl<'a> Space<'a> {
         block
     }
 
-    /// `A^-1 R`.
-    fn solved(&self, r: &Block) -> Result<Block> {
-        match self.side {
-            Side::Right => r.solved_by(self.problem.factor),
-            Side::Left => r.solved_by_transpose(self.problem.factor),
-        }
-    }
-
-    /// Appends `A^-1 R`, as far as V lacks it: W. Gives `M W`.
+    /// Appends `K^-1 R` (`K^-T R` for left vectors) as far as V lacks it: W. Gives `M W`.
     ///
     /// # Errors
     /// PETSc's and MUMPS's.
     pub fn extend_by_solves(&mut self, r: &Block) -> Result<Block> {
         self.n_solves += r.n_columns();
-        self.extend(self.solved(r)?)
+        self.extend(match self.side {
+            Side::Right => r.solved_by(self.searched.factor)?,
+            Side::Left => r.solved_by_transpose(self.searched.factor)?,
+        })
     }
 
     /// Appends what V lacks of some columns W, orthonormal, and their projections. Gives `M W`, transposed for left vectors.
@@ -206,40 +188,38 @@ impl<'a> Space<'a> {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn append(&mut self, w: Block) -> Result<Block> {
+    fn append(&mut self, w: Block) -> Result<Block> {
         self.v.append(&w);
         let (n, p) = (self.v.n_columns(), w.n_columns());
         let mut images = self.images(&w)?;
         // One pass over V for all images: it is the longest of the operands.
         let products = self.v.gram(&images);
         let product = |i: usize| DMatrix::from_column_slice(n, p, &products[i * n * p..][..n * p]);
-        let [m, c, k] = [0, 1, 2].map(product);
-        let [m_t, c_t] = match self.problem.pencil.symmetric_mc {
-            true => [m.clone(), c.clone()],
-            false => [3, 4].map(product),
-        };
+        let direct = Mck::from([0, 1, 2]).map(product);
         // K and its transpose differ where contact points slide: a few rows tell the difference.
-        let difference = self.v.gram_of_few_rows(&self.problem.pencil.transposed_less_stiffness_times(&w)?);
-        let k_t = &k + DMatrix::from_vec(n, p, difference);
-        let (direct, transposed) = ([m, c, k], [m_t, c_t, k_t]);
-        let ([m, c, a], [m_t, c_t, a_t]) = match self.side {
+        let skew = self.v.gram_of_few_rows(&self.problem().skew_times(&w)?);
+        let k_t = &direct.k + DMatrix::from_vec(n, p, skew);
+        let transposed = match self.problem().symmetric_mc {
+            true => Mck { k: k_t, ..direct.clone() },
+            false => Mck { m: product(3), c: product(4), k: k_t },
+        };
+        let (columns, rows) = match self.side {
             Side::Right => (direct, transposed),
             Side::Left => (transposed, direct),
         };
-        self.m = joined(&self.m, &m, &m_t);
-        self.c = joined(&self.c, &c, &c_t);
-        self.a = joined(&self.a, &a, &a_t);
+        self.projected =
+            self.projected.as_ref().zip(columns.zip(rows)).map(|(old, (new, new_t))| joined(old, &new, &new_t));
         images.truncate(p);
         Ok(images)
     }
 
     /// `M W`, `C W` and `K W` side by side; where M and C are not symmetric, `M^T W` and `C^T W`, too.
     fn images(&self, w: &Block) -> Result<Block> {
-        let Pencil { m, c, k, symmetric_mc, .. } = *self.problem.pencil;
-        let p = w.n_columns();
-        let mut images = Block::zeros(w.comm(), w.n_local(), if symmetric_mc { 3 * p } else { 5 * p });
+        let (Mck { m, c, k }, p) = (self.problem().matrices, w.n_columns());
+        let n_images = if self.problem().symmetric_mc { 3 } else { 5 };
+        let mut images = Block::zeros(w.comm(), w.n_local(), n_images * p);
         images.add_products(&[m, c, k], w, 0..p)?;
-        if !symmetric_mc {
+        if n_images == 5 {
             images.set_columns(3 * p, &w.multiplied_by_transpose(m)?);
             images.set_columns(4 * p, &w.multiplied_by_transpose(c)?);
         }
@@ -256,12 +236,12 @@ impl<'a> Space<'a> {
                 w.subtract(&self.v, &overlap);
                 is_clear = w.lengths().into_iter().enumerate().all(|(j, length)| {
                     let taken = &overlap[j * self.v.n_columns()..(j + 1) * self.v.n_columns()];
-                    length > CLEAR * taken.iter().map(|x| x * x).sum::<f64>().sqrt()
+                    length > KEPT_LENGTH * taken.iter().map(|x| x * x).sum::<f64>().sqrt()
                 });
             }
-            let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE)?;
-            // No space has more directions than equations; what is beyond is rounding.
-            n = n.min(self.n_equations - self.v.n_columns());
+            let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE_DIRECTION)?;
+            // No space has more directions than dofs; what is beyond is rounding.
+            n = n.min(self.n_dofs - self.v.n_columns());
             basis.truncate(n * w.n_columns());
             w = w.combined(&basis, n);
         }
@@ -276,7 +256,7 @@ impl<'a> Space<'a> {
 
     /// Vectors `x = V y` that a start spans, in the same form.
     pub fn vectors_within(&self, start: &Start, ritz: &[Ritz]) -> Block {
-        start.v.combined(start.q.tr_mul(&self.coefficients(ritz)).as_slice(), 2 * ritz.len())
+        start.basis.v.combined(start.q.tr_mul(&self.coefficients(ritz)).as_slice(), 2 * ritz.len())
     }
 
     /// Real and imaginary parts of y as columns.
@@ -295,43 +275,199 @@ impl<'a> Space<'a> {
     /// # Errors
     /// PETSc's.
     pub fn sketch(&mut self, ritz: &[&Ritz]) -> Result<Block> {
-        let (n, pencil) = (self.v.n_columns(), self.problem.pencil);
-        let n_columns = SKETCH.min(2 * ritz.len());
-        let largest = ritz.iter().map(|r| r.lambda.norm()).fold(0.0, f64::max);
-        // A rigid motion's zero counts like a low mode.
-        let deviation = |r: &Ritz| r.lambda.norm().max(LOWEST * largest).powi(-2);
+        let (n, problem) = (self.v.n_columns(), self.problem());
+        let weights = self.sketch_weights(ritz);
+        let n_columns = weights.ncols();
         let mut coefficients = vec![0.0; 3 * n * n_columns];
-        for j in 0..n_columns {
-            for (i, r) in ritz.iter().enumerate() {
-                let z = match (n_columns < SKETCH, j == 2 * i, j == 2 * i + 1) {
-                    (true, true, _) => Complex64::ONE,
-                    (true, _, true) => Complex64::I,
-                    (true, ..) => continue,
-                    (false, ..) => deviation(r) * Complex64::new(self.noise.normal(), self.noise.normal()),
-                };
-                for power in 0..3 {
-                    let factor = z.conj() * r.lambda.powi(power as i32);
-                    let column = &mut coefficients[(power * n_columns + j) * n..][..n];
-                    let column = column.iter_mut().zip(r.re.iter().zip(&r.im));
-                    column.for_each(|(a, (re, im))| *a += factor.re * re - factor.im * im);
-                }
+        for (j, (i, r)) in (0..n_columns).flat_map(|j| ritz.iter().enumerate().map(move |pair| (j, pair))) {
+            let z = weights[(i, j)];
+            for power in (0..3).filter(|_| z != Complex64::ZERO) {
+                let factor = z.conj() * r.lambda.powi(power as i32);
+                let column = &mut coefficients[(power * n_columns + j) * n..][..n];
+                let column = column.iter_mut().zip(r.re.iter().zip(&r.im));
+                column.for_each(|(a, (re, im))| *a += factor.re * re - factor.im * im);
             }
         }
         let columns = self.v.combined(&coefficients, 3 * n_columns);
         let of = |power: usize| power * n_columns..(power + 1) * n_columns;
         let mut sum = Block::zeros(columns.comm(), columns.n_local(), n_columns);
-        sum.add_products(&[pencil.k], &columns, of(0))?;
+        sum.add_products(&[problem.matrices.k], &columns, of(0))?;
         if self.side == Side::Left {
-            sum.axpy(1.0, &pencil.transposed_less_stiffness_times(&columns.columns(of(0)))?);
+            sum.axpy(1.0, &problem.skew_times(&columns.columns(of(0)))?);
         }
-        for (matrix, power) in [(pencil.c, 1), (pencil.m, 2)] {
+        for (matrix, power) in [(problem.matrices.c, 1), (problem.matrices.m, 2)] {
             match self.side {
-                Side::Left if !pencil.symmetric_mc => {
+                Side::Left if !problem.symmetric_mc => {
                     sum.axpy(1.0, &columns.columns(of(power)).multiplied_by_transpose(matrix)?);
                 }
                 _ => sum.add_products(&[matrix], &columns, of(power))?,
             }
         }
         Ok(sum)
+    }
+
+    /// `z_ij`: by rows for vectors, by columns for the sketch.
+    fn sketch_weights(&mut self, ritz: &[&Ritz]) -> DMatrix<Complex64> {
+        if 2 * ritz.len() < SKETCH {
+            let part = |i: usize, j: usize| match j.checked_sub(2 * i) {
+                Some(0) => Complex64::ONE,
+                Some(1) => Complex64::I,
+                _ => Complex64::ZERO,
+            };
+            return DMatrix::from_fn(ritz.len(), 2 * ritz.len(), part);
+        }
+        let largest = ritz.iter().map(|r| r.lambda.norm()).fold(0.0, f64::max);
+        // A rigid-body mode's zero counts like a low mode.
+        let deviation = |r: &Ritz| r.lambda.norm().max(MIN_MODULUS * largest).powi(-2);
+        let noise = &mut self.noise;
+        let mut normal = |i: usize, _| deviation(ritz[i]) * Complex64::new(noise.normal(), noise.normal());
+        DMatrix::from_fn(ritz.len(), SKETCH, &mut normal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::LabelledFactor;
+    use crate::native::{Comm, Precision, Session};
+    use crate::stability::testing::{Blocks, entries};
+
+    fn dense(block: &Block) -> DMatrix<f64> {
+        DMatrix::from_column_slice(block.n_local(), block.n_columns(), block.values())
+    }
+
+    /// V is orthonormal, and the projections are those of the matrices, or of their transposes.
+    fn require_projections(space: &Space) {
+        let v = dense(&space.v);
+        assert!((v.tr_mul(&v) - DMatrix::identity(v.ncols(), v.ncols())).norm() < 1e-12);
+        let matrices = space.problem().matrices.map(entries);
+        for (projected, a) in space.projected.as_ref().zip(matrices).into_array() {
+            let a = if space.side == Side::Left { a.transpose() } else { a };
+            assert!((projected - v.tr_mul(&(&a * &v))).norm() < 1e-10 * a.norm());
+        }
+    }
+
+    /// A space on blocks, with three random columns.
+    fn with_space<T>(comm: &Comm, side: Side, symmetric_mc: bool, look: impl FnOnce(Space) -> T) -> T {
+        let blocks = Blocks::new(comm, 4);
+        let mut factor = LabelledFactor::new(Precision::Double);
+        let labels = blocks.system.dofs.labels();
+        blocks.with(0.5, &[], |problem| {
+            let problem = QuadraticProblem { symmetric_mc, ..*problem };
+            let factor = problem.factorise(0.0, &mut factor).unwrap();
+            let mut space =
+                Space::with_capacity(FactoredProblem { problem: &problem, factor, labels: &labels }, side, 0);
+            let columns = space.random(3);
+            space.extend(columns).unwrap();
+            look(space)
+        })
+    }
+
+    #[test]
+    fn projections_grow_with_the_space_on_both_sides() {
+        let comm = Session::start(&[]).unwrap();
+        for side in [Side::Right, Side::Left] {
+            for symmetric_mc in [true, false] {
+                with_space(&comm, side, symmetric_mc, |mut space| {
+                    let r = space.random(2);
+                    space.extend_by_solves(&r).unwrap();
+                    assert_eq!((space.v.n_columns(), space.n_solves), (5, 2));
+                    require_projections(&space);
+                    if side == Side::Right {
+                        require_projections(&Space::of_left_vectors(space.searched, space.into_basis()));
+                    }
+                });
+            }
+        }
+    }
+
+    #[test]
+    fn a_space_takes_in_what_it_lacks_of_columns_that_it_has_already() {
+        let comm = Session::start(&[]).unwrap();
+        with_space(&comm, Side::Right, true, |mut space| {
+            let mut columns = space.v.clone();
+            let mut new = Block::zeros(columns.comm(), 12, 1);
+            new.column_mut(0)[5] = 1.0;
+            columns.append(&new);
+            columns.append(&new);
+            space.extend(columns).unwrap();
+            require_projections(&space);
+            let row = dense(&space.v).row(5).norm();
+            assert!((row - 1.0).abs() < 1e-12, "the new direction is in the space: {row}");
+        });
+    }
+
+    #[test]
+    fn no_space_has_more_columns_than_dofs() {
+        let comm = Session::start(&[]).unwrap();
+        with_space(&comm, Side::Right, true, |mut space| {
+            let columns = space.random(20);
+            space.extend(columns).unwrap();
+            assert_eq!(space.v.n_columns(), 12);
+            require_projections(&space);
+        });
+    }
+
+    /// Imaginary parts of real eigenvalues' vectors are zero, or as good as.
+    #[test]
+    fn columns_of_nothing_add_nothing() {
+        let comm = Session::start(&[]).unwrap();
+        with_space(&comm, Side::Right, true, |mut space| {
+            for tiny in [0.0, 1e-170, 1e-300, 1e-310] {
+                let mut columns = space.random(3);
+                columns.column_mut(1).iter_mut().for_each(|x| *x *= tiny);
+                let columns = space.what_is_new(columns).unwrap();
+                let v = dense(&columns);
+                assert!((2..=3).contains(&v.ncols()) && v.iter().all(|x| x.is_finite()), "{tiny:e}: {}", v.ncols());
+                assert!((v.tr_mul(&v) - DMatrix::identity(v.ncols(), v.ncols())).norm() < 1e-12, "{tiny:e}");
+            }
+        });
+    }
+
+    #[test]
+    fn a_start_serves_a_problem_with_other_contact() {
+        let comm = Session::start(&[]).unwrap();
+        let blocks = Blocks::new(&comm, 4);
+        let mut factor = LabelledFactor::new(Precision::Double);
+        let labels = blocks.system.dofs.labels();
+        let start = blocks.with(0.5, &[], |problem| {
+            let factor = problem.factorise(0.0, &mut factor).unwrap();
+            let searched = FactoredProblem { problem, factor, labels: &labels };
+            let mut space = Space::with_capacity(searched, Side::Right, 0);
+            let columns = space.random(5);
+            space.extend(columns).unwrap();
+            let re = |j: usize| (0..5).map(|i| f64::from(u8::from(i == j))).collect::<Vec<f64>>();
+            let ritz = [0, 2].map(|j| Ritz { lambda: Complex64::I, re: re(j), im: re(j + 1) });
+            let start = space.start(&ritz).unwrap();
+            let vectors = dense(&space.vectors(&ritz));
+            assert!((dense(&space.vectors_within(&start, &ritz)) - &vectors).norm() < 1e-12);
+            start
+        });
+        blocks.with(0.7, &[1], |problem| {
+            let factor = problem.factorise(0.0, &mut factor).unwrap();
+            let space = Space::started(FactoredProblem { problem, factor, labels: &labels }, start, 0).unwrap();
+            assert_eq!((space.v.n_columns(), space.n_solves), (4, 0));
+            require_projections(&space);
+        });
+    }
+
+    #[test]
+    fn a_sketch_of_few_pairs_is_their_residuals() {
+        let comm = Session::start(&[]).unwrap();
+        with_space(&comm, Side::Right, true, |mut space| {
+            let lambda = Complex64::new(-0.5, 20.0);
+            let ritz = Ritz { lambda, re: vec![1.0, 0.5, 0.0], im: vec![0.0, 0.2, -1.0] };
+            let sketch = dense(&space.sketch(&[&ritz]).unwrap());
+            let x = dense(&space.vectors(std::slice::from_ref(&ritz)));
+            let x = DMatrix::from_fn(12, 1, |i, _| Complex64::new(x[(i, 0)], x[(i, 1)]));
+            let [m, c, k] = space.problem().matrices.map(|a| entries(a).map(Complex64::from)).into_array();
+            let residual = (m * (lambda * lambda) + c * lambda + k) * x;
+            for i in 0..12 {
+                assert!((sketch[(i, 0)] - residual[(i, 0)].re).abs() < 1e-9);
+                assert!((sketch[(i, 1)] - residual[(i, 0)].im).abs() < 1e-9);
+            }
+            let many = vec![&ritz; SKETCH];
+            assert_eq!(space.sketch(&many).unwrap().n_columns(), SKETCH);
+        });
     }
 }

@@ -23,9 +23,10 @@ use std::f64::consts::TAU;
 use super::common::{Block, brake};
 use super::table::{Case, Row};
 use squeal::assembly::System;
+use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
-use squeal::native::{Comm, Factor, FactorKind, Session};
-use squeal::stability::{self, Band, Mode, Pencil, Solver};
+use squeal::native::{Comm, Precision, Session};
+use squeal::stability::{Band, BandRequest, BandSolver, EigenOptions, Mode, QuadraticProblem};
 
 const FREE: &str = r#"
 [material.steel]
@@ -63,10 +64,11 @@ fn mesh(cells: [usize; 3]) -> Mesh {
 
 /// All modes of a band without contact.
 fn modes(system: &System, shift: f64, band: [f64; 2]) -> Band {
-    let pencil =
-        Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None, symmetric_mc: true };
-    let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(shift));
-    let band = stability::solve(&pencil, &mut lu, &mut solver, band, &mut |_, _, _| ()).unwrap();
+    let problem = QuadraticProblem::symmetric(system.matrices());
+    let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
+    let request = BandRequest { band: band, shift: shift };
+    let mut factor = LabelledFactor::new(Precision::Double);
+    let band = solver.solve_band(&problem, &mut factor, &request, &mut |_| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);
     band
 }

@@ -23,9 +23,10 @@
 use super::common::{Block, brake, nodes_where};
 use super::table::{Case, Row};
 use squeal::assembly::System;
+use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
-use squeal::native::{Comm, Factor, FactorKind, Session};
-use squeal::stability::{self, Mode, Pencil, Solver};
+use squeal::native::{Comm, Precision, Session};
+use squeal::stability::{BandRequest, BandSolver, EigenOptions, Mode, QuadraticProblem};
 
 const MODEL: &str = r#"
 [material.steel]
@@ -58,10 +59,11 @@ pub fn cases(comm: &Comm) -> Vec<Case> {
     let brake = brake(MODEL, mesh);
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
-    let pencil =
-        Pencil { m: &system.m, c: &system.c, k: &system.k, k_symmetric: &system.k, points: None, symmetric_mc: true };
-    let (mut lu, mut solver) = (Factor::new(FactorKind::Unsymmetric), Solver::shifted(300.0));
-    let band = stability::solve(&pencil, &mut lu, &mut solver, brake.model.band, &mut |_, _, _| ()).unwrap();
+    let problem = QuadraticProblem::symmetric(system.matrices());
+    let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
+    let request = BandRequest { band: brake.model.band, shift: 300.0 };
+    let mut factor = LabelledFactor::new(Precision::Double);
+    let band = solver.solve_band(&problem, &mut factor, &request, &mut |_| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);
     let elastic: Vec<&Mode> = band.modes.iter().filter(|mode| mode.frequency() > 1.0).collect();
     assert_eq!(band.count.found - elastic.len(), 3, "rigid motions");

@@ -75,7 +75,7 @@ pub struct Response {
 
 impl Response {
     /// An open point.
-    const OPEN: Response =
+    pub(crate) const OPEN: Response =
         Response { force: [0.0; 3], tangent: [[0.0; 3]; 3], normal_force: 0.0, status: Status::Open };
 }
 

@@ -295,7 +295,9 @@ impl Block {
             return Ok((Vec::new(), 0));
         }
         let gram = DMatrix::from_vec(n, n, self.gram(self));
-        let scale: Vec<f64> = (0..n).map(|j| 1.0 / gram[(j, j)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        // A column whose square underflows is zero.
+        let inverse = |square: f64| if square < f64::MIN_POSITIVE { 0.0 } else { 1.0 / square.sqrt() };
+        let scale: Vec<f64> = (0..n).map(|j| inverse(gram[(j, j)])).collect();
         let mut vectors = DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]);
         let values = lapack::symmetric_eigen(n, vectors.as_mut_slice())?;
         let largest = values.last().copied().unwrap_or_default();
