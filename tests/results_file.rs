@@ -33,15 +33,16 @@ fn is_scaled(shape: &Shape) -> bool {
     (re - 1.0).abs() < 1e-6 && im.abs() < 1e-6
 }
 
-/// The README's lines read the file.
+/// The manual's lines read the file.
 #[test]
 fn python_reads_the_file_in_five_lines() {
     let place = Place::pads();
     let said =
         place.run(&["stability", "brake.toml", "--band", "0:1500", "--friction", "0.4", "-o", "brake-stability"]);
     assert_eq!(said.code, 0, "{}", said.err);
-    let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
-    let script = readme.split("```python\n").nth(1).unwrap().split("```").next().unwrap();
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/manual/src/files.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let script = page.split("```python\n").nth(1).unwrap().split("```").next().unwrap();
     assert!(script.lines().count() <= 5 && script.contains("h5py"), "{script}");
     let python = Command::new("/usr/bin/python3").args(["-c", script]).current_dir(place.path("")).output().unwrap();
     let Said { code, out, err } = python.into();
