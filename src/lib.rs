@@ -5,6 +5,25 @@
 //! it; and a sweep of the friction coefficient. Source of the formulation: Fazio, Nacivet and Sinou, *A finite element
 //! model reduction based on super-elements for brake squeal study*, ISMA 2014.
 //!
+//! # A first program
+//!
+//! ```no_run
+//! use squeal::analysis::{StabilityOptions, stability};
+//! use squeal::structure::StructureOptions;
+//! use squeal::{Session, Structure};
+//!
+//! # fn main() -> squeal::Result<()> {
+//! let comm = Session::start(&[])?;
+//! let brake = Structure::read(&comm, "brake.toml".as_ref(), &StructureOptions::default())?;
+//! let options = StabilityOptions { friction_values: Some(vec![0.2, 0.5]), ..StabilityOptions::default() };
+//! let results = stability(&comm, &brake, &options, &mut ())?;
+//! for (mu, _, mode) in results.modes().filter(|(_, _, mode)| mode.unstable) {
+//!     println!("mu = {mu}: {:.1} Hz grows by {:.1} 1/s", mode.frequency(), mode.growth_rate());
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Modules
 //!
 //! ```text
@@ -108,3 +127,7 @@ pub mod structure;
 pub mod tracking;
 
 pub use error::{Error, ErrorKind, Result};
+pub use model::Model;
+pub use native::{Comm, Session};
+pub use results::Results;
+pub use structure::Structure;

@@ -327,6 +327,24 @@ fn an_output_folder_that_is_taken() {
     refused(&place, &["static", "brake.toml", "-o", "blocks.msh/run"], &says);
 }
 
+#[test]
+fn a_brake_that_nothing_presses() {
+    let says = [
+        "brake.toml: no load presses the contacts together, which alone stop these motions:\n  pad",
+        "Give a [[load]]",
+    ];
+    model_refused("force = [0, 0, -1000]", "force = [0, 0, 0]", &says);
+    let load = "[[load]]\nname = \"piston\"\non = \"pad_top\"\nforce = [0, 0, -1000]\n";
+    model_refused(load, "", &says);
+    let place = Place::with_blocks(|text| swap(&text, load, ""), &Pair::default());
+    let said = place.run(&["check", "brake.toml"]);
+    assert!(said.code == 2 && said.err.contains("no load presses the contacts together"), "{}", said.err);
+    // Parts that overlap press each other.
+    let place = Place::with_blocks(|text| swap(&text, load, ""), &Pair { gap: -1e-3, ..Pair::default() });
+    let said = place.run(&["static", "brake.toml"]);
+    assert!(!said.err.contains("no load presses"), "{}", said.err);
+}
+
 /// A file is replaced only by `--force`, and then only by its like: a wrong name after -o does not cost the model or the mesh.
 #[test]
 fn an_output_file_that_is_taken() {

@@ -236,10 +236,63 @@ fn results_go_where_they_are_expected() {
 #[test]
 fn a_stable_brake_is_called_stable() {
     let place = Place::with_blocks(|text| swap(&text, "friction = 0.4", "friction = 0"), &Pair::default());
-    let Said { code, out, .. } = place.run(&["stability", "brake.toml", "-o", "run"]);
+    let Said { code, out, .. } = place.run(&["stability", "brake.toml", "--band", "0:60000", "-o", "run"]);
     assert_eq!(code, 0);
-    assert!(out.contains("stable: no mode of the band grows at these frictions"), "{out}");
+    assert!(out.contains("\nstable: no mode of the band grows at these frictions"), "{out}");
     assert!(!out.contains("mode_*.vtu"), "{out}");
+}
+
+/// Without contact force there is no friction: nothing is said of squeal then.
+#[test]
+fn an_unloaded_brake_is_neither_stable_nor_unstable() {
+    let fixed =
+        |text: String| swap(&swap(&text, "\"pad_top\"\naxes = \"xy\"", "\"pad_top\"\naxes = \"xyz\""), "-1000]", "0]");
+    let place = Place::with_blocks(fixed, &Pair::default());
+    let said = place.run(&["stability", "brake.toml", "--band", "0:60000", "-o", "run"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(said.out.contains("\nunknown: no load presses the contacts together"), "{}", said.out);
+    let report = place.run(&["report", "run"]);
+    assert!(report.out.starts_with("Unknown: no load presses the contacts together"), "{}", report.out);
+    let place = Place::with_blocks(|text| swap(&text, "[0, 20000]", "[0, 20]"), &Pair::default());
+    let said = place.run(&["stability", "brake.toml", "-o", "run"]);
+    assert!(said.code == 0 && said.out.contains("\nunknown: no mode lies in the band from 0 to 20 Hz"), "{}", said.out);
+}
+
+/// A model in wrong units is pointed at, and is not called stable.
+#[test]
+fn numbers_that_can_hardly_be_meant() {
+    let place = Place::with_blocks(|text| swap(&text, "density = 7100", "density = 7.1e-9"), &Pair::default());
+    let warning =
+        "warning: density of material \"iron\" is 7.100e-9 kg/m3. Was it given in t/mm3? That is 7100 kg/m3\n";
+    let said = place.run(&["stability", "brake.toml", "-o", "run"]);
+    assert_eq!((said.code, said.err.as_str()), (0, warning));
+    assert!(said.out.contains("\nunknown: no mode lies in the band"), "{}", said.out);
+    assert!(said.out.contains("\ndoubt: density of material"), "{}", said.out);
+    for command in [&["check", "brake.toml"][..], &["modes", "brake.toml", "--part", "disc", "-o", "part"]] {
+        assert!(place.run(command).err.contains(warning), "{command:?}");
+    }
+    let check = place.run(&["check", "brake.toml", "--json"]);
+    assert!(check.out.contains("Was it given in t/mm3?") && check.err.starts_with("{\"warning\":"), "{}", check.err);
+    let place = Place::with_blocks(|text| swap(&text, "density = 7100", "density = 7100e12"), &Pair::default());
+    let said = place.run(&["stability", "brake.toml", "-o", "run"]);
+    assert_eq!(said.code, 2);
+    assert!(
+        said.err.contains("modes lie below 20000 Hz, of ") && said.err.contains("Look at the units"),
+        "{}",
+        said.err
+    );
+}
+
+/// The residual of an equilibrium is relative to its forces, however small they are.
+#[test]
+fn a_small_load_has_an_exact_equilibrium_too() {
+    for force in ["-1e-2]", "-1e-5]"] {
+        let place = Place::with_blocks(|text| swap(&text, "-1000]", force), &Pair::default());
+        assert_eq!(place.run(&["static", "brake.toml", "-o", "run"]).code, 0);
+        let table = place.read("run/convergence.csv");
+        let last = table.lines().last().unwrap().split(',').nth(3).unwrap().parse::<f64>().unwrap();
+        assert!(last <= 1e-9, "{force}\n{table}");
+    }
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn labelled_matrices_keep_their_nodes() {
     );
     place.write("m.mtx", "101,1, 101,1, 1.0\n-3,1, -3,1, 1.0\n205,1, 205,1, 1.0\n");
     let text = assert_is_the_chain(&place, "m.mtx", "k.mtx");
-    assert!(text.contains("1 held displacements (1e36") && text.contains("node -3, dof 1"), "{text}");
+    assert!(text.contains("1 constrained dofs (1e36") && text.contains("node -3, dof 1"), "{text}");
     assert!(
         text.contains("largest_node,largest_dof") && text.contains(",-3,1\n") && text.contains(",205,1\n"),
         "{text}"

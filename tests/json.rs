@@ -26,7 +26,7 @@ fn check_tells_what_a_model_is() {
     let check = document(&place.run(&["check", "brake.toml", "--json", "--contacts", "4"]));
     has_keys(
         &check,
-        "title mesh parts pairs layouts held_displacements connectors loads sum_of_loads_n equations entries factor_gb",
+        "title mesh parts pairs layouts held_displacements connectors loads sum_of_loads_n equations entries factor_gb warnings",
     );
     assert_eq!(check["parts"][0]["part"], "disc");
     // 30 x 30 x 10 mm of 7100 kg/m3.
@@ -45,9 +45,11 @@ fn a_run_tells_its_tables() {
     let place = Place::pads();
     let said = place.run(&["stability", "brake.toml", "--band=0:1500", "--friction=0.2,0.4", "-o", "run", "--json"]);
     let run = document(&said);
-    has_keys(&run, "about frictions branches hopf verdict failure costs folder");
+    has_keys(&run, "about frictions branches hopf verdict warnings failure costs folder");
     assert_eq!((&run["folder"], run["failure"].is_null()), (&Value::from("run"), true));
-    assert!(run["verdict"].as_str().unwrap().starts_with("unstable first at friction 0.4: 1270 Hz"));
+    has_keys(&run["verdict"], "status reason text");
+    assert_eq!((&run["verdict"]["status"], &run["verdict"]["reason"]), (&Value::from("unstable"), &Value::from("")));
+    assert!(run["verdict"]["text"].as_str().unwrap().starts_with("unstable first at friction 0.4: 1270 Hz"));
     let rows = |name: &str| {
         let mut table = csv::Reader::from_path(place.path(name)).unwrap();
         let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();

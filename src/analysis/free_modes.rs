@@ -17,7 +17,7 @@ use crate::stability::{Band, BandRequest, BandSolver, EigenOptions, EigenProgres
 use crate::structure::{FullModel, RigidMotions};
 
 use super::measured::{self, Measured};
-use super::observer::{Event, Observer};
+use super::observer::{Event, Observer, warn};
 
 /// Where the search stands, in units of the band's end: K of a free part is singular.
 const SHIFT_RATIO: f64 = 0.31;
@@ -47,6 +47,7 @@ pub fn free_modes(
 ) -> Result<FreeModes> {
     let start = Instant::now();
     let measured = comm.agree(options.measured.as_deref().map(measured::read).transpose())?;
+    warn(comm, part, observer);
     observer.event(Event::Stage("assembling"));
     let system = part.assemble(comm, &part.families()?)?;
     let band = options.band.unwrap_or(part.model.band);

@@ -1,8 +1,10 @@
 //! What a caller sees of an analysis while it runs.
 
 use crate::equilibrium::Iteration;
+use crate::native::Comm;
 use crate::reduction::craig_bampton;
 use crate::results::Value;
+use crate::structure::{FullModel, plausibility};
 
 /// What happens in an analysis.
 #[derive(Clone, Copy)]
@@ -16,6 +18,8 @@ pub enum Event<'a> {
         /// Values that need not be computed again.
         n_values: usize,
     },
+    /// The model has something that can hardly be meant.
+    Warning(&'a str),
     /// So many values are to be analysed.
     Planned(usize),
     /// A value is analysed beside those asked for.
@@ -63,6 +67,11 @@ pub trait Observer {
     fn stop_signal(&mut self) -> Option<i32> {
         None
     }
+}
+
+/// Reports what a model has that can hardly be meant. Collective.
+pub(super) fn warn(comm: &Comm, model: &FullModel, observer: &mut dyn Observer) {
+    plausibility::warnings(model, comm).iter().for_each(|warning| observer.event(Event::Warning(warning)));
 }
 
 /// Follows nothing.

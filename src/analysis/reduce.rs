@@ -11,7 +11,7 @@ use crate::reduction::super_element::SuperElement;
 use crate::structure::FullModel;
 use crate::{Error, Result};
 
-use super::observer::{Event, Observer};
+use super::observer::{Event, Observer, warn};
 use super::sweep::Sweep;
 
 /// What [`reduce`] writes.
@@ -54,6 +54,7 @@ pub fn reduce(
     observer: &mut dyn Observer,
 ) -> Result<Reduction> {
     let start = Instant::now();
+    warn(comm, model, observer);
     model.require_constrained(comm)?;
     let friction = options.friction.unwrap_or_else(|| model.own_friction());
     let limit = options.limit.unwrap_or_else(|| model.reduction_limit());

@@ -106,6 +106,7 @@ pub(super) fn run(
     let (checkpoint, earlier) =
         opened.transpose()?.map_or((None, VecDeque::new()), |(file, earlier)| (Some(file), earlier));
     let n_earlier = earlier.len();
+    about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
     observer.event(Event::Planned(job.values.len()));
     if let Some(output) = output.filter(|_| n_earlier > 0) {
         observer.event(Event::Resumed { place: &output.folder.display().to_string(), n_values: n_earlier });

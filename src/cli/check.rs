@@ -14,7 +14,7 @@ use crate::output::contact_cells::ContactCells;
 use crate::output::files::write_whole;
 use crate::output::overwrite::may_write_file;
 use crate::output::vtu;
-use crate::structure::{FullModel, Ranked};
+use crate::structure::{FullModel, Ranked, plausibility};
 
 use super::{Check, Shell};
 
@@ -39,6 +39,9 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     if let Some(file) = picture {
         comm.agree(if comm.is_root() { draw(file, &brake) } else { Ok(()) })?;
     }
+    let warnings = plausibility::warnings(&brake, comm);
+    shell.warn(&warnings);
+    told.json["warnings"] = json!(warnings);
     brake.require_constrained(comm)?;
     memory(&mut told, comm, &brake)?;
     shell.tell(&told.text, || told.json.clone())

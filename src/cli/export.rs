@@ -40,7 +40,7 @@ pub fn run(shell: &Shell, run: &Run, format: Format, part: Option<&str>) -> Resu
     let options =
         ExportOptions { friction: run.friction_values(), with_contact: part.is_none(), format: format.into() };
     let folder = Folder::open_empty(comm, &place, run.force)?;
-    let mut watch = Watch::new(comm, run.verbose);
+    let mut watch = Watch::new(shell, run.verbose);
     let exported = export(comm, &structure, &options, folder.as_ref(), &mut watch)?;
     watch.finish();
     let text = text(&exported, &place);

@@ -87,12 +87,23 @@ impl Shell<'_> {
     fn print_results(&self, results: &Results, place: &Path, summary: fn(&Results, &str) -> String) -> Result<()> {
         let place = place.display().to_string();
         self.tell(&summary(results, &place), || json::document(results, &place))?;
-        let failure = self.comm.agree(match &results.failure {
+        self.comm.agree(match &results.failure {
             Some(failure) => Err(Error::not_converged(failure.reason.clone())),
             None => Ok(()),
-        });
-        failure
+        })
     }
+
+    /// Writes warnings to standard error, a line each: as text, or as JSON like errors.
+    pub fn warn(&self, warnings: &[String]) {
+        for warning in warnings.iter().filter(|_| self.comm.is_root() && !self.silent) {
+            let _ = writeln!(io::stderr(), "{}", warning_line(warning, self.json));
+        }
+    }
+}
+
+/// A warning as text, or as JSON like errors.
+fn warning_line(warning: &str, as_json: bool) -> String {
+    if as_json { json!({"warning": warning}).to_string() } else { format!("warning: {warning}") }
 }
 
 #[derive(Subcommand)]

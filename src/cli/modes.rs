@@ -82,7 +82,7 @@ fn of_part(shell: &Shell, arguments: &Modes, model: &Path, part: &str) -> Result
     let model = FullModel::read_part(comm, model, part)?;
     let folder = Folder::open_empty(comm, &place, arguments.force)?;
     let options = FreeModesOptions { band: arguments.band, measured: arguments.measured.clone() };
-    let mut watch = Watch::new(comm, arguments.verbose);
+    let mut watch = Watch::new(shell, arguments.verbose);
     let found = free_modes(comm, &model, &options, folder.as_ref(), &mut watch)?;
     watch.finish();
     let text = output::free_modes::summary(&found, &place.display().to_string());
@@ -101,7 +101,7 @@ fn of_matrices(shell: &Shell, arguments: &Modes) -> Result<()> {
         branches: !arguments.no_branches,
         shapes: arguments.shapes,
     };
-    let mut watch = Watch::new(comm, arguments.verbose);
+    let mut watch = Watch::new(shell, arguments.verbose);
     let results = external_modes(comm, &family, &options, &mut watch)?;
     watch.finish();
     let text = output::external::summary(&results, &place.display().to_string());

@@ -23,7 +23,7 @@ pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
         file: arguments.file(),
         force: arguments.force,
     };
-    let mut watch = Watch::new(comm, false);
+    let mut watch = Watch::new(shell, false);
     let Reduction { element, costs, equilibrium_seconds, seconds } = reduce(comm, &model, &options, &mut watch)?;
     watch.finish();
     let place = &options.file;

@@ -38,7 +38,7 @@ pub fn run(shell: &Shell, arguments: &Stability) -> Result<()> {
         reduce_each: arguments.reduce_each,
         output: Some(run.output(shell, "stability")),
     };
-    let mut watch = Watch::with_signals(shell.comm, run.verbose)?;
+    let mut watch = Watch::with_signals(shell, run.verbose)?;
     let outcome = stability(shell.comm, &structure, &options, &mut watch);
     watch.finish();
     shell.print_results(&outcome?, &run.folder("stability"), summary::stability)

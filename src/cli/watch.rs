@@ -2,31 +2,33 @@
 
 use crate::Result;
 use crate::analysis::{Event, Observer};
-use crate::native::Comm;
 use crate::reduction::craig_bampton;
 use crate::results::Value;
 
 use super::interrupt::Interrupt;
 use super::progress::Progress;
+use super::{Shell, warning_line};
 
 /// Shows events, and asks the analysis to stop after a signal.
 pub struct Watch {
     progress: Progress,
     interrupt: Option<Interrupt>,
+    /// Whether warnings are JSON documents.
+    json: bool,
 }
 
 impl Watch {
     /// Shows events on the first rank.
-    pub fn new(comm: &Comm, verbose: bool) -> Watch {
-        Watch { progress: Progress::new(comm, 1, verbose), interrupt: None }
+    pub fn new(shell: &Shell, verbose: bool) -> Watch {
+        Watch { progress: Progress::new(shell.comm, 1, verbose), interrupt: None, json: shell.json }
     }
 
     /// The same, for an analysis that stops after the value at hand when a signal asks for it.
     ///
     /// # Errors
     /// The system's.
-    pub fn with_signals(comm: &Comm, verbose: bool) -> Result<Watch> {
-        let watch = Watch::new(comm, verbose);
+    pub fn with_signals(shell: &Shell, verbose: bool) -> Result<Watch> {
+        let watch = Watch::new(shell, verbose);
         let notice = watch.progress.notice("stopping after this value; a second signal stops at once");
         Ok(Watch { interrupt: Some(Interrupt::listen(notice)?), ..watch })
     }
@@ -46,6 +48,7 @@ impl Observer for Watch {
             Event::Resumed { place, n_values } => self.progress.print(&format!(
                 "{place}: an earlier run has finished {n_values} values; this run continues from there"
             )),
+            Event::Warning(text) => self.progress.print(&warning_line(text, self.json)),
             Event::Part { name, is_made } => {
                 self.progress.print(&format!("{name}: {}", if is_made { "made before" } else { "begins" }));
             }

@@ -48,7 +48,7 @@ impl Wrench {
 }
 
 /// What a contact pair carries.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairForces {
     /// Points by status.
     pub counts: Counts,
@@ -64,7 +64,13 @@ pub struct PairForces {
     pub peak_pressure: f64,
     /// Largest normal force of a point, N.
     pub peak_force: f64,
+    /// Sum of the normal forces that the rounding of the coordinates alone explains, N.
+    #[serde(default)]
+    pub rounding: f64,
 }
+
+/// Gaps are exact to this fraction of the coordinates of their points.
+const GAP_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Loads and supports of an equilibrium, which add up to nothing.
 #[derive(Debug, Clone)]
@@ -171,17 +177,14 @@ impl PairForces {
         interface.pairs.iter().map(|pair| PairForces::new(interface, pair, responses)).collect()
     }
 
+    /// Whether the pair is pressed together by more than the rounding of the coordinates.
+    pub fn is_pressed(&self) -> bool {
+        self.normal > self.rounding
+    }
+
     fn new(interface: &Interface, pair: &ContactPair, responses: &[Response]) -> PairForces {
         let own = &responses[pair.points.clone()];
-        let mut forces = PairForces {
-            counts: Counts::of(own),
-            normal: 0.0,
-            tangential: 0.0,
-            on_slave: Wrench::default(),
-            closed_area: 0.0,
-            peak_pressure: 0.0,
-            peak_force: 0.0,
-        };
+        let mut forces = PairForces { counts: Counts::of(own), ..PairForces::default() };
         for (a, response) in pair.points.clone().zip(own) {
             if response.status == Status::Open {
                 continue;
@@ -195,6 +198,7 @@ impl PairForces {
             forces.closed_area += point.law.weight;
             forces.peak_pressure = forces.peak_pressure.max(p / point.law.weight);
             forces.peak_force = forces.peak_force.max(p);
+            forces.rounding += point.law.stiffness(0.0) * GAP_ROUNDING * norm(point.position);
         }
         forces
     }

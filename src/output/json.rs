@@ -11,11 +11,10 @@ use crate::results::{ModeData, Results, Value};
 use crate::tracking::{Branch, Diagram, Hopf, Point};
 
 /// What was analysed (`about`), each friction with its contact pairs and modes (`frictions`), `branches` and `hopf` points where modes were
-/// followed, a `verdict` in words, and the folder of the results.
+/// followed, the `verdict` (`status`, `reason`, and both in the `text` of the summary), `warnings`, and the folder of the results.
 pub fn document(results: &Results, place: &str) -> Json {
     let about = &results.about;
     let (branches, hopf) = results.diagram.as_ref().map_or((Json::Null, Json::Null), |d| (branches(d), hopf(d)));
-    let any_modes = results.asked().any(|value| value.count.is_some());
     json!({
         "about": {
             "title": about.title,
@@ -37,11 +36,17 @@ pub fn document(results: &Results, place: &str) -> Json {
         "frictions": results.values.iter().map(|value| friction(results, value)).collect::<Vec<_>>(),
         "branches": branches,
         "hopf": hopf,
-        "verdict": any_modes.then(|| tables::verdict(results)),
+        "verdict": (about.band[1] > 0.0).then(|| verdict(results)),
+        "warnings": about.warnings,
         "failure": results.failure.as_ref().map(|failure| &failure.reason),
         "costs": results.costs,
         "folder": place,
     })
+}
+
+fn verdict(results: &Results) -> Json {
+    let verdict = results.verdict();
+    json!({"status": verdict.status, "reason": verdict.reason(), "text": tables::verdict(results).trim_end()})
 }
 
 fn friction(results: &Results, value: &Value) -> Json {

@@ -9,8 +9,9 @@ pub fn stability(results: &Results, place: &str) -> String {
     let [from, to] = about.band;
     let mut summary = format!("{}: complex modes {from}-{to} Hz\n\n", about.title);
     if results.asked().next().is_some() {
-        summary += &format!("{}\n{}\n", tables::sweep(results), tables::verdict(results));
+        summary += &format!("{}\n", tables::sweep(results));
     }
+    summary += &tables::verdict(results);
     let explained = results.modes().filter(|(_, _, mode)| !mode.sources.is_empty());
     let strongest = explained.max_by(|(_, _, a), (_, _, b)| a.growth_rate().total_cmp(&b.growth_rate()));
     summary += &strongest.map_or_else(String::new, |(friction, _, mode)| explain::sentence(friction, mode) + "\n");

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crate::Result;
-use crate::results::{ModeData, Results};
+use crate::results::{ModeData, Results, Status, Value, Verdict};
 
 use super::folder::Folder;
 
@@ -106,14 +106,29 @@ pub fn sweep(results: &Results) -> String {
     text
 }
 
-/// A sentence: does it squeal, where, from which friction on.
+/// The verdict: a line that says whether it squeals, where, from which friction on, and a line for each doubt.
 pub fn verdict(results: &Results) -> String {
-    let unstable = || results.modes().filter(|(_, _, mode)| mode.unstable).map(|(friction, _, mode)| (friction, mode));
+    let Verdict { status, reasons } = results.verdict();
+    let (first, doubts) = match (status, &reasons[..]) {
+        (Status::Unstable, doubts) => (instability(results), doubts),
+        (Status::Unknown, [gravest, doubts @ ..]) => (format!("unknown: {gravest}"), doubts),
+        (Status::Unknown | Status::Stable, _) => {
+            ("stable: no mode of the band grows at these frictions".into(), &[][..])
+        }
+    };
+    let doubts: String = doubts.iter().map(|doubt| format!("doubt: {doubt}\n")).collect();
+    format!("{first}\n{doubts}")
+}
+
+/// Which mode grows first, and which one most: at the values asked for, else at those in between.
+fn instability(results: &Results) -> String {
+    let at = |value: &'_ Value| value.modes.iter().any(|mode| mode.unstable);
+    let any_asked = results.asked().any(at);
+    let values = || results.values.iter().filter(move |value| value.asked || !any_asked);
+    let unstable = || values().flat_map(|value| value.modes.iter().filter(|m| m.unstable).map(|m| (value.friction, m)));
     let growth = |(_, mode): &(f64, &ModeData)| mode.growth_rate();
     let first = unstable().min_by(|a, b| a.0.total_cmp(&b.0).then(growth(b).total_cmp(&growth(a))));
-    let Some((friction, mode)) = first else {
-        return "stable: no mode of the band grows at these frictions".into();
-    };
+    let Some((friction, mode)) = first else { return String::new() };
     let (at, worst) = unstable().max_by(|a, b| growth(a).total_cmp(&growth(b))).unwrap_or((friction, mode));
     format!(
         "unstable first at friction {friction}: {:.0} Hz; strongest {:.0} Hz at friction {at} ({:+.0} /s)",

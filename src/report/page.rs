@@ -11,7 +11,7 @@ use super::plots::{self, Figure};
 use super::svg::{PALETTE, escaped};
 use super::words::{self, Answer};
 use crate::output::overwrite::{FileKind, head_contains};
-use crate::results::{About, Pair, Part, Results};
+use crate::results::{About, Pair, Part, Results, Status};
 use crate::{Error, Result};
 
 const PAGE: &str = include_str!("assets/page.html");
@@ -56,7 +56,7 @@ pub fn page(results: &Results) -> Result<String> {
         ("title", escaped(title(results))),
         ("subtitle", escaped(&subtitle(&findings))),
         ("headline", said(&words::headline(&findings))),
-        ("verdict-class", if findings.instabilities.is_empty() { "quiet" } else { "unstable" }.into()),
+        ("verdict-class", verdict_class(results).into()),
         ("cautions", list("cautions", &words::cautions(&findings))),
         ("answers", answers(&findings)),
         ("charts", plot(&figures, "stability-chart") + &plot(&figures, "growth-rates")),
@@ -69,6 +69,15 @@ pub fn page(results: &Results) -> Result<String> {
         ("program", escaped(&about.program)),
     ];
     Ok(filled(PAGE, &values))
+}
+
+/// The style of the first sentence.
+fn verdict_class(results: &Results) -> &'static str {
+    match results.verdict().status {
+        Status::Unstable => "unstable",
+        Status::Stable => "quiet",
+        Status::Unknown => "unknown",
+    }
 }
 
 /// A digest as a content security policy wants it.
@@ -282,7 +291,8 @@ mod tests {
         assert!(page(&results).unwrap().contains("\"surface\":null"));
         results.values.retain(|value| value.friction == 0.0);
         results.diagram = None;
-        assert!(page(&results).unwrap().contains("Quiet: all 8 modes"));
+        results.about.frictions = vec![0.0];
+        assert!(page(&results).unwrap().contains("Quiet: none of the 8 modes"));
         assert!(page(&Results::default()).unwrap().contains("No friction has been analysed yet."));
     }
 }

@@ -98,6 +98,7 @@ fn about(frictions: Vec<f64>) -> About {
         frictions,
         parts: vec![part("disc", "iron", 5.5), part("pad", "lining", 0.2)],
         pairs: vec![pair("disc / pad", true), pair("piston / <pad>", false)],
+        ..About::default()
     }
 }
 
@@ -158,6 +159,7 @@ fn value(mu: f64, asked: bool, surface: &Surface, contact: &ContactFaces) -> Val
         closed_area: 2e-3,
         peak_pressure: pressure.iter().copied().fold(0.0, f64::max),
         peak_force: 120.0,
+        rounding: 1e-6,
     };
     let counts = Counts { open: 9, stick: 0, slip: 90 };
     let iterate = |i: i32| Iteration { residual: 10_f64.powi(-3 * i), counts, flips: vec![3, 0] };

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::findings::{End, Findings, Instability, Range};
 use crate::output::explain::largest;
-use crate::results::{Kind, Source};
+use crate::results::{Kind, Source, Status};
 
 /// What is said of one instability.
 pub struct Answer {
@@ -27,9 +27,14 @@ const NAMED: usize = 3;
 
 /// Does it squeal: one sentence.
 pub fn headline(findings: &Findings) -> String {
-    let found = &findings.instabilities;
-    if found.is_empty() {
-        return quiet(findings);
+    let (found, verdict) = (&findings.instabilities, findings.results.verdict());
+    if findings.asked.is_empty() {
+        return "No friction has been analysed yet.".into();
+    }
+    match (verdict.status, &verdict.reasons[..]) {
+        (Status::Stable, _) => return quiet(findings),
+        (Status::Unknown, [gravest, ..]) => return format!("Unknown: {gravest}."),
+        (Status::Unknown | Status::Unstable, _) => {}
     }
     let named: Vec<String> = found.iter().take(NAMED).map(|one| squeals(findings, one)).collect();
     let more = match found.len().saturating_sub(NAMED) {
@@ -42,16 +47,11 @@ pub fn headline(findings: &Findings) -> String {
 
 fn quiet(findings: &Findings) -> String {
     let values: Vec<_> = findings.asked.iter().map(|&v| &findings.results.values[v]).collect();
-    let (Some(first), Some(last)) = (values.first(), values.last()) else {
-        return "No friction has been analysed yet.".into();
-    };
+    let (Some(first), Some(last)) = (values.first(), values.last()) else { return String::new() };
     let n = values.iter().map(|value| value.modes.len()).max().unwrap_or(0);
     let [from, to] = findings.results.about.band.map(frequency);
-    if n == 0 {
-        return format!("Quiet: there is no mode from {from} to {to}.");
-    }
     let frictions = interval(first.friction, last.friction);
-    format!("Quiet: all {n} modes from {from} to {to} are damped {frictions}.")
+    format!("Quiet: none of the {n} modes from {from} to {to} grows {frictions}.")
 }
 
 /// `2.40 kHz above mu = 0.27`.
@@ -171,37 +171,21 @@ fn remedies(source: &Source) -> Vec<(f64, String)> {
 /// What a reader should know before he relies on the rest.
 pub fn cautions(findings: &Findings) -> Vec<String> {
     let results = findings.results;
-    let failed = results.failure.as_ref().map(|failure| format!("The study ended early: {}", failure.reason));
-    let mut all: Vec<String> = failed.into_iter().collect();
-    let missing = results.about.frictions.len().saturating_sub(findings.asked.len());
-    if missing > 0 {
-        all.push(format!(
-            "The study is not complete: {missing} of {} frictions are missing.",
-            results.about.frictions.len()
-        ));
-    }
-    for &v in &findings.asked {
-        let value = &results.values[v];
-        if let Some(count) = value.count.filter(|count| !count.agrees()) {
-            all.push(format!(
-                "At \u{3bc} = {} the number of modes is not confirmed: {} found below {:.0} Hz, {} expected.",
-                value.friction, count.found, count.below, count.expected
-            ));
-        }
-        if value.steps.last().is_some_and(|step| !step.converged) {
-            all.push(format!("At \u{3bc} = {} the equilibrium has not converged.", value.friction));
-        }
-    }
-    let diagram = results.diagram.as_ref();
-    for [low, high] in diagram.iter().flat_map(|diagram| &diagram.doubtful) {
-        all.push(format!("Not all branches could be followed from \u{3bc} = {low:.4} to {high:.4}."));
-    }
-    if diagram.is_none() && findings.asked.len() > 1 && !findings.instabilities.is_empty() {
+    let mut all: Vec<String> = results.verdict().reasons.iter().map(|doubt| sentence(&doubt.to_string())).collect();
+    let is_followed = results.diagram.is_some();
+    if !is_followed && findings.asked.len() > 1 && !findings.instabilities.is_empty() {
         all.push(
             "Modes were not followed over friction: instabilities are told apart by their frequency alone.".into(),
         );
     }
     all
+}
+
+/// A capital letter and a full stop.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
 }
 
 /// Three digits in Hz or kHz.
@@ -255,11 +239,12 @@ mod tests {
         );
         let mut one = alone.clone();
         one.values.retain(|value| value.friction == 0.5);
+        one.about.frictions = vec![0.5];
         assert!(headline(&Findings::new(&one)).starts_with("Squeals at 2.40 kHz at \u{3bc} = 0.5, and at"));
         one.values[0].modes.retain(|mode| !mode.unstable);
         assert_eq!(
             headline(&Findings::new(&one)),
-            "Quiet: all 6 modes from 0 Hz to 6.00 kHz are damped at \u{3bc} = 0.5."
+            "Quiet: none of the 6 modes from 0 Hz to 6.00 kHz grows at \u{3bc} = 0.5."
         );
     }
 
@@ -289,7 +274,7 @@ mod tests {
         results.diagram.as_mut().unwrap().doubtful.push([0.1, 0.2]);
         results.about.frictions.push(0.9);
         let said = cautions(&Findings::new(&results)).join("\n");
-        for part in ["1 of 10 frictions", "7 found", "0.4 the equilibrium", "0.1000 to 0.2000"] {
+        for part in ["1 of 10 friction values", "7 found", "0.4 the equilibrium", "0.1000 to 0.2000"] {
             assert!(said.contains(part), "{said}");
         }
         results.diagram = None;

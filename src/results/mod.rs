@@ -7,12 +7,14 @@ mod free_modes;
 mod samples;
 mod shape;
 mod source;
+mod verdict;
 
 pub use external::{ExternalMode, ExternalResults, ExternalValue};
 pub use free_modes::{FreeMode, FreeModes, MeasuredComparison};
 pub use samples::spread;
 pub use shape::largest;
 pub use source::{Kind, Source};
+pub use verdict::{Doubt, Status, Verdict};
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -84,6 +86,12 @@ pub struct About {
     pub band: [f64; 2],
     /// Frictions asked for, in their order.
     pub frictions: Vec<f64>,
+    /// Whether neither a load nor an overlap presses the contacts together.
+    #[serde(default)]
+    pub unloaded: bool,
+    /// What the model has that can hardly be meant, a sentence each.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// The parts, which `Surface::part` counts.
     pub parts: Vec<Part>,
     /// The contact pairs, which `ContactFaces::pair` and `Value::pairs` count.

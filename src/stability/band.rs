@@ -33,6 +33,11 @@ impl From<[f64; 2]> for BandRequest {
     }
 }
 
+/// Dofs below which all modes may be asked for.
+const N_DOFS_SMALL: usize = 1000;
+/// Modes of the band over dofs: above, the mesh does not resolve them.
+const MAX_MODES_PER_DOF: f64 = 0.2;
+
 /// The modes of a band.
 pub struct Band {
     /// By frequency.
@@ -125,6 +130,9 @@ impl BandSolver {
             self.memory.before_count(problem, factor, &mut self.blocked);
         }
         let expected = self.counter.expect(problem, &self.options, end)?;
+        if !problem.matrices.k.is_dense()? {
+            require_resolved(expected.n, problem.n_dofs(), end)?;
+        }
         if !factor.factor().is_made() {
             let search_mb = self.blocked.needs_mb(expected.n, problem.n_dofs());
             self.memory.before_factor(problem, factor, &mut self.counter.sturm, search_mb);
@@ -246,6 +254,16 @@ fn sort(modes: &mut [Mode]) {
     for same in modes.chunk_by_mut(|a, b| b.lambda.im - a.lambda.im <= FREQUENCY_ROUNDING * b.lambda.im) {
         same.sort_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re));
     }
+}
+
+/// Refuses a band with so many modes that they mean nothing: the upper modes of a mesh are those of its elements. Small models may have all of
+/// theirs in the band.
+fn require_resolved(n_modes: usize, n_dofs: usize, end: f64) -> Result<()> {
+    if n_dofs < N_DOFS_SMALL || n_modes as f64 <= MAX_MODES_PER_DOF * n_dofs as f64 {
+        return Ok(());
+    }
+    let advice = "Look at the units of mesh, Young's modulus and density, or narrow the band";
+    Err(Error::input(format!("{n_modes} modes lie below {end} Hz, of {n_dofs} dofs. {advice}")))
 }
 
 #[cfg(test)]
@@ -578,5 +596,14 @@ mod tests {
         let band = solver.solve_band(&problem, &mut factor, &[0.0, 1.55].into(), &mut |_| ()).unwrap();
         assert!(band.count.agrees() && band.report.n_attempts == 2, "{:?} {:?}", band.count, band.report);
         compare(&band.modes, &eigenvalues(&problem, 1.55));
+    }
+
+    #[test]
+    fn a_band_with_too_many_modes_is_refused_by_its_count() {
+        assert!(require_resolved(999, 999, 6000.0).is_ok(), "of a small model all modes may be asked for");
+        assert!(require_resolved(200, 1000, 6000.0).is_ok());
+        let error = require_resolved(201, 1000, 6000.0).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().starts_with("201 modes lie below 6000 Hz, of 1000 dofs. Look at the units"));
     }
 }

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use crate::assembly::{self, Boundary, Connectivity, ConnectorElement, Elements, System, Tets};
 use crate::contact::search::Team;
-use crate::contact::{Interface, Response};
+use crate::contact::{ContactPair, Interface, Response};
 use crate::element::tet10::{MassProperties, mass_properties};
 use crate::mesh::{self, Mesh, Numbering, Piece};
-use crate::model::{self, Model, located};
+use crate::model::{self, Load, LoadKind, Model, located};
 use crate::native::Comm;
 use crate::reduction;
 use crate::results::{About, ContactFaces, Part};
@@ -16,7 +16,7 @@ use crate::{Error, Result};
 
 use super::contact_surface::{ContactSurface, Fields};
 use super::distribution::distribute;
-use super::{digest, free_motions, pairs};
+use super::{digest, free_motions, pairs, plausibility};
 
 /// A model with its mesh and contact interface. Each rank has its piece of the mesh ([`Piece`]), and all that is on surfaces: contact, loads
 /// and supports, in the numbers of its own piece.
@@ -36,6 +36,9 @@ pub struct FullModel {
     /// Connectors.
     pub links: Vec<ConnectorElement>,
 }
+
+/// An overlap of contact surfaces below this is rounding of the mesh, m: machined surfaces are rougher.
+const SMALLEST_OVERLAP: f64 = 1e-8;
 
 /// The families of elements of a brake.
 pub struct Families<'a> {
@@ -98,14 +101,14 @@ impl FullModel {
         Ok(FullModel { model, mesh, nodes, interface, loads, held, links })
     }
 
-    /// Refuses a brake of which a part is held by nothing. Collective.
+    /// Refuses a brake of which a part is unconstrained, or constrained by contacts that nothing presses. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] that names the parts and their free motions.
     pub fn require_constrained(&self, comm: &Comm) -> Result<()> {
         let free = free_motions(comm, &self.mesh, &self.nodes, &self.interface, &self.held, &self.links);
         if free.is_empty() {
-            return Ok(());
+            return self.require_load(comm);
         }
         let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
         let open = self.interface.pairs.iter().filter(|pair| pair.separation && pair.statistics.touching == 0);
@@ -119,6 +122,39 @@ impl FullModel {
         };
         Err(Error::input(format!(
             "{}: held by nothing:\n{}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
+            self.model.file.display(),
+            list.join("\n")
+        )))
+    }
+
+    /// Whether nothing presses the contacts together: there is no load, and no overlap that is meant.
+    pub fn is_unloaded(&self) -> bool {
+        let is_zero = |load: &Load| match load.kind {
+            LoadKind::ForceByNode(force) | LoadKind::ForceByArea(force) => force == [0.0; 3],
+            LoadKind::Pressure(pressure) => pressure == 0.0,
+        };
+        let overlaps = |pair: &ContactPair| pair.separation && pair.statistics.gap[0] < -SMALLEST_OVERLAP;
+        self.model.loads.iter().all(is_zero) && !self.interface.pairs.iter().any(overlaps)
+    }
+
+    /// Refuses a brake whose parts only contacts constrain, where nothing presses these: its equilibrium is not unique. Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the parts and their free motions.
+    pub fn require_load(&self, comm: &Comm) -> Result<()> {
+        if !self.is_unloaded() {
+            return Ok(());
+        }
+        let mut open = self.interface.clone();
+        open.points.iter_mut().for_each(|point| point.law.touching = false);
+        let free = free_motions(comm, &self.mesh, &self.nodes, &open, &self.held, &self.links);
+        if free.is_empty() {
+            return Ok(());
+        }
+        let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
+        Err(Error::input(format!(
+            "{}: no load presses the contacts together, which alone stop these motions:\n{}\n\
+             Give a [[load]] with a force or a pressure other than zero: without pressure there is no friction and no squeal",
             self.model.file.display(),
             list.join("\n")
         )))
@@ -217,6 +253,8 @@ impl FullModel {
             n_nodes: self.nodes.n_global(),
             n_tets,
             parts,
+            unloaded: self.is_unloaded(),
+            warnings: plausibility::warnings(self, comm),
             pairs: pairs(&self.interface),
             ..About::default()
         })

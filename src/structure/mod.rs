@@ -15,6 +15,7 @@ mod distribution;
 mod equilibrium_checks;
 mod free_motions;
 mod full;
+pub mod plausibility;
 mod ranked;
 mod reduced;
 mod rigid_motions;

@@ -64,6 +64,8 @@ struct Context<'a> {
     problem: &'a mut dyn Problem,
     comm: Comm,
     trap: Trap,
+    /// What the problem said of the last iterate.
+    verdict: Verdict,
 }
 
 /// Owns a SNES for the length of a solve.
@@ -88,7 +90,7 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -
     let comm = u.comm().clone();
     let residual = Vector::zeros(&comm, u.n_local())?;
     let jacobian = problem.jacobian().raw();
-    let mut context = Context { problem, comm: comm.clone(), trap: Trap::default() };
+    let mut context = Context { problem, comm: comm.clone(), trap: Trap::default(), verdict: Verdict::Continue };
     let pointer = ptr::from_mut(&mut context).cast::<c_void>();
     let mut snes = Snes(ptr::null_mut());
     // SAFETY: `context` outlives the solver, and is reached through `pointer` only while SNESSolve runs.
@@ -106,7 +108,7 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -
         let code = sys::SNESSolve(snes.0, ptr::null_mut(), u.raw());
         (*pointer.cast::<Context>()).trap.release(code)?;
     }
-    outcome(&snes)
+    outcome(&snes, context.verdict)
 }
 
 /// The linear solver is one application of [`Problem::correct`].
@@ -123,24 +125,30 @@ unsafe fn use_corrections(snes: sys::SNES, context: *mut c_void) -> Result<()> {
     }
 }
 
-/// Line search for the critical point of the residual's projection on the step: robust under contact.
+/// Leaves a tolerance as it is (a macro of PETSc).
+const PETSC_DEFAULT: i32 = -2;
+
+/// Line search for the critical point of the residual's projection on the step: robust under contact. Its absolute tolerance is zero, as that
+/// of SNES is: PETSc's own, 1e-15 of `F^T du`, ends the solve as converged where the loads are small.
 unsafe fn use_critical_points(snes: sys::SNES) -> Result<()> {
     let mut line = ptr::null_mut();
     // SAFETY: the solver is alive; the string is static.
     unsafe {
         check(sys::SNESGetLineSearch(snes, &mut line))?;
-        check(sys::SNESLineSearchSetType(line, c"cp".as_ptr()))
+        check(sys::SNESLineSearchSetType(line, c"cp".as_ptr()))?;
+        let same = f64::from(PETSC_DEFAULT);
+        check(sys::SNESLineSearchSetTolerances(line, same, same, same, 0.0, same, PETSC_DEFAULT))
     }
 }
 
-fn outcome(snes: &Snes) -> Result<Outcome> {
+fn outcome(snes: &Snes, verdict: Verdict) -> Result<Outcome> {
     let (mut reason, mut iterations) = (sys::SNESConvergedReason(0), 0);
     // SAFETY: the solver is alive.
     unsafe {
         check(sys::SNESGetConvergedReason(snes.0, &mut reason))?;
         check(sys::SNESGetIterationNumber(snes.0, &mut iterations))?;
     }
-    Ok(Outcome { converged: reason.0 > 0, reason: reason.0, iterations: iterations as usize })
+    Ok(Outcome { converged: verdict == Verdict::Converged, reason: reason.0, iterations: iterations as usize })
 }
 
 /// Runs a callback's body on the context behind `pointer`.
@@ -198,8 +206,10 @@ unsafe extern "C" fn judge(
     reason: *mut sys::SNESConvergedReason,
     pointer: *mut c_void,
 ) -> sys::PetscErrorCode {
+    let mut verdict = Verdict::Diverged;
     let body = |problem: &mut dyn Problem, _: &Comm| {
-        let value = match problem.judge(iteration as usize, residual, step) {
+        verdict = problem.judge(iteration as usize, residual, step);
+        let value = match verdict {
             Verdict::Continue => sys::SNESConvergedReason::SNES_CONVERGED_ITERATING,
             Verdict::Converged => sys::SNESConvergedReason::SNES_CONVERGED_FNORM_ABS,
             Verdict::Diverged => sys::SNESConvergedReason::SNES_DIVERGED_DTOL,
@@ -209,5 +219,9 @@ unsafe extern "C" fn judge(
         Ok(())
     };
     // SAFETY: see `with_context`.
-    unsafe { with_context(pointer, c"judge", body) }
+    unsafe {
+        let code = with_context(pointer, c"judge", body);
+        (*pointer.cast::<Context>()).verdict = verdict;
+        code
+    }
 }

@@ -40,6 +40,7 @@ fn value(friction: f64, asked: bool) -> Value {
             closed_area: 1e-4,
             peak_pressure: 1e6,
             peak_force: 3.0,
+            rounding: 1e-7,
         }],
         checks: "balance\nof two lines".into(),
         steps: vec![Step { label: "settle".into(), converged: true, iterations: vec![iteration(1e-9)] }],

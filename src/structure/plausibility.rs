@@ -1,0 +1,190 @@
+//! What can hardly be meant: numbers of a model that no brake has, mostly by a mistake of units.
+//!
+//! A warning is a sentence without its full stop: what is there, and what was probably meant. None of it stops a run, but a run with a
+//! warning never ends in "stable".
+
+use nalgebra::Matrix6;
+
+use super::FullModel;
+use crate::model::{Material, NormalLaw};
+use crate::native::Comm;
+
+/// Young's moduli of solids, from rubber to above diamond, Pa.
+const YOUNG: [f64; 2] = [1e6, 1e12];
+/// Densities of solids, from foam to above osmium, kg/m3.
+const DENSITY: [f64; 2] = [100.0, 3e4];
+/// Densities of what brakes are made of, kg/m3: what a wrong unit is recognised by.
+const USUAL_DENSITY: [f64; 2] = [500.0, 2.5e4];
+/// Largest extents of brakes and their parts, m.
+const SIZE: [f64; 2] = [0.01, 10.0];
+/// Normal stiffness of contacts over E/h of the softer neighbour: below, surfaces visibly overlap; above, digits are lost.
+const CONTACT_RATIO: [f64; 2] = [1e-3, 1e4];
+/// N/m3 in a N/mm3.
+const PER_CUBIC_MILLIMETRE: f64 = 1e9;
+
+/// Whether a number lies outside.
+fn is_outside(x: f64, [low, high]: [f64; 2]) -> bool {
+    !(low..=high).contains(&x)
+}
+
+/// A Young's modulus, Pa.
+pub fn young(material: &str, young: f64) -> Option<String> {
+    let cause = match young {
+        x if x < 1e3 => "Was it given in GPa",
+        x if x < YOUNG[0] => "Was it given in MPa (N/mm2)",
+        _ => "Was a factor of a thousand too many taken",
+    };
+    is_outside(young, YOUNG)
+        .then(|| format!("Young's modulus of material {material:?} is {young:.3e} Pa. {cause}? Give Pa, such as 110e9"))
+}
+
+/// A density, kg/m3.
+pub fn density(material: &str, density: f64) -> Option<String> {
+    const UNITS: [(&str, f64); 4] = [("t/mm3", 1e12), ("kg/mm3", 1e9), ("g/cm3", 1e3), ("g/m3", 1e-3)];
+    let meant = UNITS.iter().find(|(_, factor)| !is_outside(density * factor, USUAL_DENSITY));
+    let cause = meant.map_or_else(String::new, |(unit, factor)| {
+        format!(" Was it given in {unit}? That is {:.0} kg/m3", density * factor)
+    });
+    is_outside(density, DENSITY).then(|| {
+        let cause = if cause.is_empty() { " Give kg/m3, such as 7100" } else { &cause };
+        format!("density of material {material:?} is {density:.3e} kg/m3.{cause}")
+    })
+}
+
+/// The largest extent of a model (m), whose mesh has this unit (m).
+pub fn size(extent: f64, unit: f64) -> Option<String> {
+    let meant = match unit {
+        _ if !is_outside(extent, SIZE) => return None,
+        1.0 if extent > SIZE[1] => "Is the mesh in mm? Then give unit = \"mm\"",
+        unit if unit < 1.0 && extent < SIZE[0] => "Is the mesh in m? Then give unit = \"m\"",
+        _ => "Look at the unit of the mesh ([mesh] unit)",
+    };
+    Some(format!("the model is {extent:.3e} m large. {meant}"))
+}
+
+/// The normal stiffness of a contact beside E/h of its softer neighbour, both N/m3.
+pub fn contact_stiffness(contact: &str, stiffness: f64, neighbour: f64) -> Option<String> {
+    let ratio = stiffness / neighbour;
+    let what = match ratio {
+        r if r < CONTACT_RATIO[0] => "the surfaces will overlap far",
+        r if r > CONTACT_RATIO[1] => "digits will be lost",
+        _ => return None,
+    };
+    let meant = match is_outside(ratio * PER_CUBIC_MILLIMETRE, CONTACT_RATIO) {
+        true => format!("Take about {neighbour:.0e} N/m3"),
+        false => "Was it given in N/mm3? 1 N/mm3 is 1e9 N/m3".to_owned(),
+    };
+    Some(format!(
+        "the normal stiffness of contact {contact:?} is {stiffness:.3e} N/m3, {ratio:.0e} times E/h of the softer elements beside it: {what}. \
+         {meant}"
+    ))
+}
+
+/// The smallest and largest of the three Young's moduli of a material, Pa: the inverse diagonal of its compliance.
+fn youngs(material: &Material) -> [f64; 2] {
+    let elasticity = Matrix6::from_fn(|i, j| material.elasticity[i][j]);
+    let compliance = elasticity.try_inverse().unwrap_or_else(Matrix6::zeros);
+    let all = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);
+    [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)]
+}
+
+/// Everything about a brake that can hardly be meant. Collective.
+pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
+    let model = &full.model;
+    let mut materials: Vec<&Material> = model.parts.iter().map(|part| &part.material).collect();
+    materials.sort_by(|a, b| a.name.cmp(&b.name));
+    materials.dedup_by(|a, b| a.name == b.name);
+    let stiffness = materials.iter().filter_map(|material| {
+        let [low, high] = youngs(material);
+        young(&material.name, low).or_else(|| young(&material.name, high))
+    });
+    let mass = materials.iter().filter_map(|material| density(&material.name, material.density));
+    let contacts = model.contacts.iter().zip(&full.interface.pairs).filter_map(|(contact, pair)| {
+        let (NormalLaw::Linear { stiffness } | NormalLaw::Cubic { k1: stiffness, .. }) = contact.law;
+        let softest = [&contact.slave, &contact.master].map(|surface| full.youngs_of(surface)[0]);
+        let neighbour = softest[0].min(softest[1]) / full.facet_size(&contact.slave, pair.statistics.area);
+        contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())
+    });
+    stiffness.chain(mass).chain(contacts).chain(size(full.extent(comm), model.mesh_unit)).collect()
+}
+
+impl FullModel {
+    /// The largest extent along an axis, m. Collective.
+    fn extent(&self, comm: &Comm) -> f64 {
+        let most = |sign: f64, i: usize| self.mesh.nodes.iter().map(|x| sign * x[i]).fold(f64::MIN, f64::max);
+        let mut ends = [1.0, -1.0].map(|sign| [0, 1, 2].map(|i| most(sign, i)));
+        comm.max_all(ends.as_flattened_mut());
+        (0..3).map(|i| ends[0][i] + ends[1][i]).fold(0.0, f64::max)
+    }
+
+    /// Young's moduli of the part that a surface lies on, Pa; none where it lies on several.
+    fn youngs_of(&self, surface: &str) -> [f64; 2] {
+        let part = self.mesh.part_of_surface(surface).map(|part| &self.mesh.parts[part as usize]);
+        let material = self.model.parts.iter().find(|own| Some(&own.name) == part).map(|part| &part.material);
+        material.map_or([f64::INFINITY; 2], youngs)
+    }
+
+    /// Edge of an average facet of a surface with this area (m2), as if it were half a square, m.
+    fn facet_size(&self, surface: &str, area: f64) -> f64 {
+        (2.0 * area / self.mesh.surfaces[surface].facets.len() as f64).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Requires a warning that says this.
+    #[track_caller]
+    fn warns(warning: Option<String>, says: &str) {
+        let text = warning.expect("no warning");
+        assert!(text.contains(says), "{says:?} is not in {text:?}");
+    }
+
+    #[test]
+    fn youngs_modulus() {
+        for e in [1e6, 8e9, 210e9, 1e12] {
+            assert_eq!(young("iron", e), None);
+        }
+        warns(young("iron", 110.0), "is 1.100e2 Pa. Was it given in GPa?");
+        warns(young("iron", 110e3), "Was it given in MPa (N/mm2)?");
+        warns(young("iron", 0.99e6), "MPa");
+        warns(young("iron", 1.01e12), "factor of a thousand");
+    }
+
+    #[test]
+    fn densities() {
+        for rho in [100.0, 2600.0, 7850.0, 3e4] {
+            assert_eq!(density("iron", rho), None);
+        }
+        warns(density("iron", 7.1e-9), "Was it given in t/mm3? That is 7100 kg/m3");
+        warns(density("iron", 7.1e-6), "in kg/mm3?");
+        warns(density("iron", 7.1), "in g/cm3?");
+        warns(density("iron", 7.1e6), "in g/m3?");
+        warns(density("iron", 99.0), "is 9.900e1 kg/m3. Give kg/m3");
+        warns(density("iron", 3.1e4), "Give kg/m3");
+    }
+
+    #[test]
+    fn sizes() {
+        for extent in [0.01, 0.3, 10.0] {
+            assert_eq!(size(extent, 1e-3), None);
+        }
+        warns(size(240.0, 1.0), "is 2.400e2 m large. Is the mesh in mm?");
+        warns(size(2.4e-4, 1e-3), "Is the mesh in m?");
+        warns(size(0.0099, 1.0), "Look at the unit");
+        warns(size(10.1, 1e-3), "Look at the unit");
+    }
+
+    #[test]
+    fn contact_stiffnesses() {
+        let neighbour = 1e12;
+        for k in [1e9, 2e13, 1e16] {
+            assert_eq!(contact_stiffness("pad", k, neighbour), None);
+        }
+        warns(contact_stiffness("pad", 2e4, neighbour), "Was it given in N/mm3?");
+        warns(contact_stiffness("pad", 2e4, neighbour), "2e-8 times E/h of the softer elements beside it");
+        warns(contact_stiffness("pad", 0.1, neighbour), "will overlap far. Take about 1e12 N/m3");
+        warns(contact_stiffness("pad", 1.1e16, neighbour), "digits will be lost. Take about 1e12 N/m3");
+    }
+}
