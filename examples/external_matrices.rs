@@ -34,12 +34,16 @@ pub fn main() -> Result<()> {
         std::fs::write(&path, text).map_err(Error::io(&path))?;
     }
     let family = family::read(&folder.path().join("hoffmann.toml"))?;
-    let options =
-        ExternalOptions { band: [0.0, 1.0], values: vec![0.5, 0.8], branches: true, shapes: false };
+    let options = ExternalOptions { band: [0.0, 1.0], values: vec![0.5, 0.8], branches: true, shapes: false };
     let results = external_modes(&comm, &family, &options, &mut ())?;
     for value in &results.values {
         for mode in &value.modes {
-            println!("mu = {}: omega {:.6} rad/s, growth rate {:+.6} 1/s", value.value, TAU * mode.frequency(), mode.lambda.re);
+            println!(
+                "mu = {}: omega {:.6} rad/s, growth rate {:+.6} 1/s",
+                value.value,
+                TAU * mode.frequency(),
+                mode.lambda.re
+            );
         }
     }
     let growing = results.values[1].modes.iter().find(|mode| mode.is_unstable);

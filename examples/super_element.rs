@@ -21,7 +21,11 @@ pub fn main() -> Result<()> {
     full.reduce_contacts(12)?;
     let options = ReduceOptions { friction: Some(0.3), limit: Some(6000.0), file: file.clone(), force: false };
     let reduction = reduce(&comm, &full, &options, &mut ())?;
-    println!("{} coordinates in place of {} dofs", reduction.element.n_coordinates(), reduction.element.origin.n_equations);
+    println!(
+        "{} coordinates in place of {} dofs",
+        reduction.element.n_coordinates(),
+        reduction.element.origin.n_equations
+    );
 
     let options = StabilityOptions {
         friction_values: Some(vec![0.3]),
@@ -31,8 +35,7 @@ pub fn main() -> Result<()> {
     };
     let contacts = StructureOptions { contacts: Some(12), ..StructureOptions::default() };
     let full = stability(&comm, &Structure::read(&comm, model, &contacts)?, &options, &mut ())?;
-    let reduced =
-        stability(&comm, &Structure::read(&comm, &file, &StructureOptions::default())?, &options, &mut ())?;
+    let reduced = stability(&comm, &Structure::read(&comm, &file, &StructureOptions::default())?, &options, &mut ())?;
     for ((_, number, full), (_, _, reduced)) in full.modes().zip(reduced.modes()) {
         println!("mode {number}: {:9.3} Hz, reduced {:9.3} Hz", full.frequency(), reduced.frequency());
         assert!((reduced.frequency() / full.frequency() - 1.0).abs() < 1e-3, "the super-element is as its model");

@@ -248,7 +248,10 @@ fn what_is_forbidden_is_found() {
     let said = |file: &str, text: &str| complaints_about(Path::new(file), text).join("\n");
     assert_eq!(said("model/read.rs", "// crate::cli\nuse crate::mesh::Mesh;\nuse crate::{Error, Result};\n"), "");
     let upwards = said("element/tri6.rs", "use super::Point;\n\nuse crate::mesh::Mesh;\n");
-    assert_eq!(upwards, "src/element/tri6.rs:3: `element` may not import `mesh`, only error, hdf, algebra, native, tracking");
+    assert_eq!(
+        upwards,
+        "src/element/tri6.rs:3: `element` may not import `mesh`, only error, hdf, algebra, native, tracking"
+    );
     let in_a_list = said("mesh/read.rs", "use crate::{\n    Error,\n    model::{Model, Part},\n    cli,\n};\n");
     assert!(in_a_list.contains(":3: `mesh` may not import `model`"), "{in_a_list}");
     assert!(in_a_list.contains(":4: `mesh` may not import `cli`"), "{in_a_list}");
