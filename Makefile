@@ -15,11 +15,11 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help demo test validation calculix docs full bench lint setup build clean
+.PHONY: help demo test report-test calculix td1 validation docs full bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## this list
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
 demo: setup results/demo/report.html ## the main job on the demo brake (medium mesh): table, paths of the results, report
 	@cat results/demo/summary.txt
@@ -35,7 +35,15 @@ validation: setup $(patsubst %,meshes/build/td1-%.msh,coarse medium fine) ## wri
 
 calculix: setup ## modes of the same meshes by CalculiX and by us, side by side
 	@scripts/setup.sh --tests
-	cargo nextest run --release --test calculix --no-capture
+	cargo nextest run --release --test physics --no-capture -E 'test(/^calculix::/)'
+
+report-test: setup ## the report's page in a browser
+	@scripts/setup.sh --tests
+	cargo nextest run --release --test cli -E 'test(/^browser::/)'
+
+td1: setup meshes/build/td1-coarse.msh ## a whole brake meshed by Gmsh, beside the frequencies that Ansys publishes
+	@scripts/setup.sh --tests
+	cargo nextest run --release --test validation --no-capture -E 'test(/^td1::/)'
 
 docs: build ## the manual as a book: target/manual/index.html
 	@scripts/docs.sh $(BINARY) target/manual

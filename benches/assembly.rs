@@ -1,8 +1,9 @@
-//! Speed of the assembly of M, C and K on the demo brake, against DOLFINx where that is installed: `cargo bench --bench assembly`, or with a
-//! model file after `--`. Under mpirun run the executable that `cargo bench --no-run` names.
+//! Speed of the assembly of M, C and K on the demo brake, against DOLFINx where that is installed: `cargo bench --bench
+//! assembly`, or with a model file after `--`. Under mpirun run the executable that `cargo bench --no-run` names.
 //!
-//! Not a timed test: it prints figures and judges nothing. From the mesh and materials in memory to matrices ready for use. The first
-//! assembly of a process pays for the memory that it is the first to touch; the best of the next four does not.
+//! Not a timed test: it prints figures and judges nothing. From the mesh and materials in memory to matrices ready for
+//! use. The first assembly of a process pays for the memory that it is the first to touch; the best of the next four
+//! does not.
 
 use std::fs;
 use std::path::{Path, PathBuf};

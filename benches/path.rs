@@ -1,9 +1,12 @@
-//! Seconds, entries and memory of the stages on the demo brake: `cargo bench`, or `cargo bench -- meshes/brake-full.toml`.
+//! Seconds, entries and memory of the stages on the demo brake: `cargo bench`, or `cargo bench --
+//! meshes/brake-full.toml`.
 //!
-//! The matrices factorised are those of a brake in contact with friction. With `--factors` it ends after the factors and their solves, for
-//! comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for PORD, 3 for SCOTCH. The ordering used is printed.
+//! The matrices factorised are those of a brake in contact with friction. With `--factors` it ends after the factors
+//! and their solves, for comparing MUMPS's settings: `PETSC_OPTIONS="-mat_mumps_icntl_7 4"` asks for PORD, 3 for
+//! SCOTCH. The ordering used is printed.
 //!
-//! Not a timed test: it prints figures and judges nothing. Under mpirun run the executable that `cargo bench --no-run` names.
+//! Not a timed test: it prints figures and judges nothing. Under mpirun run the executable that `cargo bench --no-run`
+//! names.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -85,7 +88,8 @@ fn main() -> squeal::Result<()> {
     Ok(())
 }
 
-/// What a factor costs, and solves with it: of the stiffness with the tangent of contact and friction, or of what counts the modes.
+/// What a factor costs, and solves with it: of the stiffness with the tangent of contact and friction, or of what
+/// counts the modes.
 fn factor(
     problem: &QuadraticProblem,
     kind: FactorKind,

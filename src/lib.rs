@@ -1,9 +1,10 @@
-//! Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake, on PETSc, SLEPc and MUMPS.
+//! Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake, on PETSc, SLEPc and
+//! MUMPS.
 //!
-//! A brake squeals when friction couples two modes. The model: parts of 10-node tetrahedra, pads pressed against a turning
-//! disc by penalty contact with Coulomb friction; its static equilibrium; the linearised, damped quadratic eigenproblem about
-//! it; and a sweep of the friction coefficient. Source of the formulation: Fazio, Nacivet and Sinou, *A finite element
-//! model reduction based on super-elements for brake squeal study*, ISMA 2014.
+//! A brake squeals when friction couples two modes. The model: parts of 10-node tetrahedra, pads pressed against a
+//! turning disc by penalty contact with Coulomb friction; its static equilibrium; the linearised, damped quadratic
+//! eigenproblem about it; and a sweep of the friction coefficient. Source of the formulation: Fazio, Nacivet and Sinou,
+//! *A finite element model reduction based on super-elements for brake squeal study*, ISMA 2014.
 //!
 //! # A first program
 //!
@@ -56,12 +57,12 @@
 //! | [`assembly`] | dofs, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
 //! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
 //! | [`stability`] | linearisation, modes of a band, none missed; energies and sensitivities | [`stability::solve`] |
-//! | [`reduction`] | reference nodes for contacts, super-elements and their files | [`reduction::craig_bampton::reduce`] |
+//! | [`reduction`] | reference nodes, super-elements and their files | [`reduction::craig_bampton::reduce`] |
 //! | [`results`] | what an analysis found, as plain data, and its file | [`results::Results`], [`results::file`] |
 //! | [`structure`] | a brake, full or reduced: reading, distribution, assembly, surface | [`structure::Structure::read`] |
 //! | [`comparison`] | which modes of two results are the same, and by how much they differ | [`comparison::compare`] |
 //! | [`output`] | results folders, tables, JSON, VTU | [`output::results_folder::write`] |
-//! | [`analysis`] | the jobs: statics, stability, reduction, external matrices, free modes, study | [`analysis::stability`] |
+//! | [`analysis`] | statics, stability, reduction, external matrices, free modes, study | [`analysis::stability`] |
 //! | [`report`] | the HTML page: findings, wording, figures | [`report::page::page`] |
 //! | [`cli`] | arguments, progress, exit codes | [`cli::main`] |
 //!
@@ -69,20 +70,22 @@
 //!
 //! # The one idea
 //!
-//! Whatever contributes to M, C or K is an *element* with a list of nodes; one assembly layer scatters them all. Contact laws see a body
-//! only through its *gap operator* `g = B u`; so a reduced model is another B and another u, and equilibrium, stability and analysis exist
-//! once.
+//! Whatever contributes to M, C or K is an *element* with a list of nodes; one assembly layer scatters them all.
+//! Contact laws see a body only through its *gap operator* `g = B u`; so a reduced model is another B and another u,
+//! and equilibrium, stability and analysis exist once.
 //!
 //! # Ranks
 //!
 //! The first rank reads the mesh and cuts it
-//! by METIS, numbers the nodes rank by rank, and sends each rank its piece: the nodes that the rank owns, all tetrahedra that
-//! touch them, and everything that has a name ([`mesh::Piece`]). So each rank owns a range of rows, computes the elements that touch
-//! them without any communication, and writes its own piece of the results. Surfaces are on every rank, and so are the contact points and
-//! their state, which grow with the power 2/3 of the volume; ranks divide the search for them and tell each other what they found.
+//! by METIS, numbers the nodes rank by rank, and sends each rank its piece: the nodes that the rank owns, all
+//! tetrahedra that touch them, and everything that has a name ([`mesh::Piece`]). So each rank owns a range of rows,
+//! computes the elements that touch them without any communication, and writes its own piece of the results. Surfaces
+//! are on every rank, and so are the contact points and their state, which grow with the power 2/3 of the volume; ranks
+//! divide the search for them and tell each other what they found.
 //!
-//! Nodes have *local* numbers, those of the piece: a mesh, a gap operator, loads and supports all use them. [`mesh::Numbering`] knows the
-//! global ones; local numbers rise with them, so that what is ordered by nodes is ordered alike on all ranks.
+//! Nodes have *local* numbers, those of the piece: a mesh, a gap operator, loads and supports all use them.
+//! [`mesh::Numbering`] knows the global ones; local numbers rise with them, so that what is ordered by nodes is ordered
+//! alike on all ranks.
 //!
 //! # Notation
 //!

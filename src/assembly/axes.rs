@@ -1,4 +1,5 @@
-//! Matrices that are the same on each axis and couple none, as the mass of tetrahedra: one number for each pair of nodes.
+//! Matrices that are the same on each axis and couple none, as the mass of tetrahedra: one number for each pair of
+//! nodes.
 
 use super::scatter::Places;
 use super::{DofMap, Pattern};

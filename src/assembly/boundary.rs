@@ -10,8 +10,8 @@ use crate::element::tet10::FACES;
 use crate::mesh::{Mesh, Numbering};
 use crate::native::{Comm, Gather, Vector};
 
-/// The outer surface of all parts of a mesh of which each rank has a piece, in triangles between the corners of the facets. Nodes and
-/// triangles are in an order that does not depend on the number of ranks. Every rank knows it.
+/// The outer surface of all parts of a mesh of which each rank has a piece, in triangles between the corners of the
+/// facets. Nodes and triangles are in an order that does not depend on the number of ranks. Every rank knows it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Boundary {
     /// Coordinates of its nodes, m.
@@ -59,7 +59,8 @@ pub struct Displacements {
 }
 
 impl Displacements {
-    /// Displacements x, y, z of the nodes one after the other, zero where constrained; none on other ranks than the root. Collective.
+    /// Displacements x, y, z of the nodes one after the other, zero where constrained; none on other ranks than the
+    /// root. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -88,8 +89,8 @@ struct OuterFace {
     part: i32,
 }
 
-/// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it has all
-/// tetrahedra around a node of its own.
+/// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it
+/// has all tetrahedra around a node of its own.
 fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<OuterFace> {
     let mut faces: HashMap<[u32; 3], ([u32; 3], usize)> = HashMap::new();
     for (e, tet) in mesh.tets.iter().enumerate() {

@@ -18,8 +18,8 @@ pub struct DofMap {
 }
 
 impl DofMap {
-    /// Numbers the free displacements. `constrained[n]` says which displacements of this rank's node n are constrained; the rank must
-    /// have every node of the model with a constrained dof. Not collective.
+    /// Numbers the free displacements. `constrained[n]` says which displacements of this rank's node n are constrained;
+    /// the rank must have every node of the model with a constrained dof. Not collective.
     ///
     /// # Panics
     /// Where there is not one entry a node.
@@ -28,7 +28,8 @@ impl DofMap {
         let mut n_constrained = 0;
         let mut dofs = Vec::with_capacity(constrained.len());
         for (&global, constrained) in nodes.global().iter().zip(constrained) {
-            // All displacements of nodes before this one, and of its axes before this one, less those that are constrained.
+            // All displacements of nodes before this one, and of its axes before this one, less those that are
+            // constrained.
             dofs.push([0, 1, 2].map(|i| {
                 n_constrained += i32::from(constrained[i]);
                 if constrained[i] { -1 } else { 3 * global as i32 + i as i32 - n_constrained }
@@ -51,8 +52,8 @@ impl DofMap {
         self.owned_nodes.contains(&node)
     }
 
-    /// A number for each of this rank's dofs that does not depend on the number of ranks: `3 label + axis` with the node's
-    /// label ([`Numbering::labels`]).
+    /// A number for each of this rank's dofs that does not depend on the number of ranks: `3 label + axis` with the
+    /// node's label ([`Numbering::labels`]).
     pub fn labels(&self) -> Vec<u64> {
         let of = |node: u32| {
             let free = (0..3).filter(move |&i| self.node_dofs(node)[i] >= 0);

@@ -6,8 +6,8 @@
 //! start of the row + first column of the neighbour + place of the axis among its free ones
 //! ```
 //!
-//! in one of two arrays: PETSc keeps the columns of this rank and those of other ranks apart. What an element needs of this is found once
-//! ([`Places::find`]) for all its matrices.
+//! in one of two arrays: PETSc keeps the columns of this rank and those of other ranks apart. What an element needs of
+//! this is found once ([`Places::find`]) for all its matrices.
 
 use super::{DofMap, Pattern};
 use crate::native::Rows;
@@ -116,8 +116,8 @@ impl Places {
         self.columns.clear();
     }
 
-    /// Adds a dense row-major `(3n)^2` matrix of the element to the two arrays of values of a matrix; nothing where it is empty. Rows
-    /// and columns of constrained dofs are left out, and rows of other ranks.
+    /// Adds a dense row-major `(3n)^2` matrix of the element to the two arrays of values of a matrix; nothing where it
+    /// is empty. Rows and columns of constrained dofs are left out, and rows of other ranks.
     ///
     /// # Panics
     /// Where sizes do not fit.
@@ -145,7 +145,8 @@ impl Places {
         }
     }
 
-    /// The rows of a dense `n^2` matrix of the element that this rank owns: the places of their pairs in the pattern, and the entries.
+    /// The rows of a dense `n^2` matrix of the element that this rank owns: the places of their pairs in the pattern,
+    /// and the entries.
     pub fn pairs<'a>(&'a self, matrix: &'a [f64]) -> impl Iterator<Item = (u32, f64)> + 'a {
         let n = self.nodes.len();
         let lines = self.own.iter().flat_map(move |a| &matrix[a * n..][..n]);

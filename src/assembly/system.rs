@@ -75,8 +75,8 @@ pub struct System {
 }
 
 impl System {
-    /// Numbers the free dofs, then assembles M, C and K of all families. `constrained` says which displacements of each node are zero;
-    /// `contacts` take part in the pattern only. Collective.
+    /// Numbers the free dofs, then assembles M, C and K of all families. `constrained` says which displacements of each
+    /// node are zero; `contacts` take part in the pattern only. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -146,7 +146,8 @@ impl System {
     }
 }
 
-/// K, M and C by one pass over the elements that touch this rank's rows; M by way of `mass` where it does not couple axes.
+/// K, M and C by one pass over the elements that touch this rank's rows; M by way of `mass` where it does not couple
+/// axes.
 fn sum(
     [mut k, mut m, mut c]: [Matrix; 3],
     mass: Option<AxisSum>,

@@ -21,10 +21,11 @@ const FLAT: f64 = 1e-3;
 /// Samples of A that may lie off B's surface: none but for slips of a mesh.
 const ASTRAY: f64 = 0.01;
 
-/// CommonPoints of A, and how B's displacements there come from its samples.
+/// Points of A, and how B's displacements there come from its samples.
 ///
-/// On one mesh samples are places of both. Else B is interpolated to the samples of A, part by part, by moving least squares: the linear field
-/// that fits the nearest samples best, weighted by the inverse square of their distances, so that rigid motions are exact.
+/// On one mesh samples are places of both. Else B is interpolated to the samples of A, part by part, by moving least
+/// squares: the linear field that fits the nearest samples best, weighted by the inverse square of their distances, so
+/// that rigid motions are exact.
 pub struct CommonPoints {
     /// Samples of A.
     of_a: Vec<usize>,

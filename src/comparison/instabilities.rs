@@ -28,7 +28,8 @@ pub struct CurvePoint {
     pub mac: f64,
 }
 
-/// The `n` instabilities of the lowest frequencies: branches where modes were followed, else single modes of a single friction.
+/// The `n` instabilities of the lowest frequencies: branches where modes were followed, else single modes of a single
+/// friction.
 pub fn lowest(reference: &Results, n: usize) -> Vec<ReferenceInstability> {
     let asked: Vec<&Value> = reference.values.iter().filter(|value| value.asked).collect();
     let mut found = match &reference.diagram {
@@ -84,7 +85,8 @@ impl ReferenceInstability {
     }
 }
 
-/// Modes of the second result that grow without their partner in the first one growing, or without any: friction, Hz, 1/s.
+/// Modes of the second result that grow without their partner in the first one growing, or without any: friction, Hz,
+/// 1/s.
 pub fn spurious(comparison: &Comparison) -> Vec<[f64; 3]> {
     let at_one = |at: &super::ComparisonAtValue| {
         let pairs = at.pairs.iter().filter(|pair| pair.unstable == [false, true]);

@@ -10,9 +10,9 @@ const NEGLIGIBLE: f64 = 1e-6;
 
 /// The modal assurance criterion of every mode of A with every mode of B.
 ///
-/// Modes of nearly one eigenvalue are a group, whose shapes may be any basis of the space that they span. Mode j of B is compared with
-/// the group of mode i of A, and mode i with the group of j; the larger value counts, so that it does not matter which of both results
-/// has split the doublet:
+/// Modes of nearly one eigenvalue are a group, whose shapes may be any basis of the space that they span. Mode j of B
+/// is compared with the group of mode i of A, and mode i with the group of j; the larger value counts, so that it does
+/// not matter which of both results has split the doublet:
 ///
 /// ```text
 /// mac_ij = max(|P_I y_j|^2 / |y_j|^2, |P_J x_i|^2 / |x_i|^2)        P: orthogonal projection on the span of a group

@@ -1,15 +1,17 @@
-//! Two results, mode by mode: which modes are the same, and by how much they differ. Pure: plain data in, plain data out.
+//! Two results, mode by mode: which modes are the same, and by how much they differ. Pure: plain data in, plain data
+//! out.
 //!
-//! The results may be of a full model, of one with fewer contacts, of a super-element, of another mesh. Their shapes are compared where both are
-//! known ([`CommonPoints`]). How much two complex shapes x and y have in common, whatever their scales, is the modal assurance criterion
+//! The results may be of a full model, of one with fewer contacts, of a super-element, of another mesh. Their shapes
+//! are compared where both are known ([`CommonPoints`]). How much two complex shapes x and y have in common, whatever
+//! their scales, is the modal assurance criterion
 //!
 //! ```text
 //! MAC = |x^H y|^2 / ((x^H x) (y^H y))        1: one shape, 0: orthogonal
 //! ```
 //!
-//! Modes whose eigenvalues nearly agree, such as the doublets of a disc, have no shapes of their own: any mixture is as good. They are compared
-//! as subspaces ([`MacTable`]). Who is whose partner is then an optimal assignment over shape and eigenvalue; modes
-//! that have too little in common with every partner left stay without one.
+//! Modes whose eigenvalues nearly agree, such as the doublets of a disc, have no shapes of their own: any mixture is as
+//! good. They are compared as subspaces ([`MacTable`]). Who is whose partner is then an optimal assignment over shape
+//! and eigenvalue; modes that have too little in common with every partner left stay without one.
 
 mod common_points;
 mod instabilities;
@@ -37,8 +39,8 @@ pub struct Comparison {
     pub n_points: usize,
     /// Whether B's shapes were interpolated to A's points.
     pub interpolated: bool,
-    /// What errors of growth rates are relative to, 1/s: the largest growth rate of A at these frictions or, where nothing grows, the largest
-    /// modulus of one.
+    /// What errors of growth rates are relative to, 1/s: the largest growth rate of A at these frictions or, where
+    /// nothing grows, the largest modulus of one.
     pub largest_growth: f64,
     /// One friction after the other, rising.
     pub frictions: Vec<ComparisonAtValue>,

@@ -19,8 +19,9 @@ const PARTS: f64 = 1e12;
 /// s_ij = mac_ij (1 - (d_ij / d_most)^2)        d_ij = |lambda_i - lambda_j| / max(|lambda_i|, |lambda_j|)
 /// ```
 ///
-/// of pairs that are close enough in eigenvalue (`d_most`) and have enough in common. So shape decides, and the eigenvalue where shape
-/// does not, as in a doublet. Source: J. Munkres, *Algorithms for the assignment and transportation problems*, J. SIAM 5 (1957).
+/// of pairs that are close enough in eigenvalue (`d_most`) and have enough in common. So shape decides, and the
+/// eigenvalue where shape does not, as in a doublet. Source: J. Munkres, *Algorithms for the assignment and
+/// transportation problems*, J. SIAM 5 (1957).
 pub fn pairs(mac_table: &MacTable, [a, b]: [&[Complex64]; 2]) -> Vec<[usize; 2]> {
     let score = |i: usize, j: usize| {
         let (mac, d) = (mac_table.mac(i, j), distance(a[i], b[j]));

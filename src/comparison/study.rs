@@ -48,7 +48,8 @@ pub struct StudiedModel {
 pub struct Sizes {
     /// Contact points of the sliding pairs.
     pub n_contacts: usize,
-    /// Points that are, or would be, retained by its super-element: both sides of each contact, and the loaded sets. None of full contact.
+    /// Points that are, or would be, retained by its super-element: both sides of each contact, and the loaded sets.
+    /// None of full contact.
     pub n_retained: Option<usize>,
     /// Equations solved.
     pub n_equations: usize,
@@ -96,7 +97,8 @@ impl Study {
         Study { title, band: about.band, mesh, frictions, reference, models: Vec::new() }
     }
 
-    /// Adds a model of some name, with `n_loaded` loaded sets and `n_equations`, judged by the results of the reference.
+    /// Adds a model of some name, with `n_loaded` loaded sets and `n_equations`, judged by the results of the
+    /// reference.
     ///
     /// # Errors
     /// See [`compare`].
@@ -121,7 +123,8 @@ impl Study {
         Ok(())
     }
 
-    /// In how many of the frictions at which an instability of the reference grows it grows in a model, too: `[in the model, in all]`.
+    /// In how many of the frictions at which an instability of the reference grows it grows in a model, too: `[in the
+    /// model, in all]`.
     pub fn found(&self, instability: usize, model: &StudiedModel) -> [usize; 2] {
         let grows = || self.reference.curves[instability].iter().filter(|point| point.unstable);
         let also = |point: &&CurvePoint| {

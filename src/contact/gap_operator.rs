@@ -110,7 +110,8 @@ impl GapOperator {
 
     /// Expands a point's 3 x 3 block to its nodes, `out = B_a^T D B_a`.
     ///
-    /// `out` becomes row-major, `3n x 3n`, with the dofs x, y, z of the `n` nodes in the order of [`GapOperator::point`].
+    /// `out` becomes row-major, `3n x 3n`, with the dofs x, y, z of the `n` nodes in the order of
+    /// [`GapOperator::point`].
     pub fn expand_into(&self, a: usize, d: &[[f64; 3]; 3], out: &mut Vec<f64>) {
         let (_, blocks) = self.point(a);
         let width = 3 * blocks.len();

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::model::{Model, NormalLaw};
 use std::ops::Range;
 
-/// Contact as the equations see it: points, their laws, and the gap_operator that ties them to the bodies.
+/// Contact as the equations see it: points, their laws, and the gap operator that ties them to the bodies.
 #[derive(Debug, Clone, Default)]
 pub struct Interface {
     /// Contact pairs, in the order of the model.
@@ -82,7 +82,8 @@ pub struct Statistics {
 pub struct ContactPoint {
     /// Index of its pair.
     pub pair: usize,
-    /// The slave's nodes that it stands for: its own, or the cell of a reference node. They come first in its gap_operator.
+    /// The slave's nodes that it stands for: its own, or the cell of a reference node. They come first in its
+    /// gap_operator.
     pub nodes: Vec<u32>,
     /// Position of the point, m.
     pub position: [f64; 3],
@@ -103,12 +104,14 @@ pub enum Stage {
 }
 
 impl Interface {
-    /// Finds the contact points of every pair of a model that [`Model::check_against`] accepts; all of the team find the same.
+    /// Finds the contact points of every pair of a model that [`Model::check_against`] accepts; all of the team find
+    /// the same.
     ///
     /// A pair slides where its master turns; t is the direction of the master's velocity `omega x (x - through)`.
     ///
     /// # Errors
-    /// With the model file's line: a pair without any point (with the closest distance found), surfaces that share nodes.
+    /// With the model file's line: a pair without any point (with the closest distance found), surfaces that share
+    /// nodes.
     ///
     /// # Panics
     /// Where a surface is not in the mesh.

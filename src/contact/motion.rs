@@ -7,7 +7,8 @@ use nalgebra::Vector3;
 /// Speeds below this fraction of the motion's own scale are rounding.
 const STILL: f64 = 1e-9;
 
-/// The tangential law at `x` (m) of a pair whose master turns, in the plane with the unit normal `n`: direction t and speed of
+/// The tangential law at `x` (m) of a pair whose master turns, in the plane with the unit normal `n`: direction t and
+/// speed of
 ///
 /// `|v| t = (I - n n^T) v` with `v = omega x (x - through)`
 ///

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Both motions are taken at one common reference point. So a rigid motion of both clouds together gives `q = 0` and no
-//! force; and since `K` is symmetric, whatever force it gives has neither resultant nor moment. (Two reference points, each in
-//! its own cloud, would break both where a spring is transverse to the line between them.)
+//! force; and since `K` is symmetric, whatever force it gives has neither resultant nor moment. (Two reference points,
+//! each in its own cloud, would break both where a spring is transverse to the line between them.)
 
 use super::coupling::{Cloud, CouplingError, MeanMotion, mean_motion};
 
@@ -51,8 +51,8 @@ pub fn relative_motion(clouds: [Cloud; 2], reference: [f64; 3]) -> Result<Relati
 }
 
 impl RelativeMotion {
-    /// `G^T diag(k) G`, row-major on the columns of [`RelativeMotion::rows`] and exactly symmetric; `k` along x, y, z, then
-    /// about them: of stiffness (N/m and N m/rad) the connector's `K`, of damping (N s/m and N m s/rad) its `C`.
+    /// `G^T diag(k) G`, row-major on the columns of [`RelativeMotion::rows`] and exactly symmetric; `k` along x, y, z,
+    /// then about them: of stiffness (N/m and N m/rad) the connector's `K`, of damping (N s/m and N m s/rad) its `C`.
     ///
     /// Dense over all nodes of both clouds: meant for the tens of nodes of a pin or bore.
     pub fn weighted_product(&self, k: [f64; 6]) -> Vec<f64> {
@@ -158,7 +158,8 @@ mod tests {
 
     #[test]
     fn relative_rigid_motion_stores_the_energy_of_each_spring() {
-        // Second cloud moves by (shift, turn) at the reference point, first stands: energy = sum k shift^2 + kappa turn^2.
+        // Second cloud moves by (shift, turn) at the reference point, first stands: energy = sum k shift^2 + kappa
+        // turn^2.
         let mut random = Random::seeded(74);
         let case = Case::random(&mut random);
         let (shift, turn) = (random.vector(), random.vector());

@@ -7,9 +7,9 @@
 //!   u_R  = sum w^_n u_n + phi x (x_R - x_bar)                = sum_n U_n u_n,   U_n = w^_n I - [x_R - x_bar]x P_n
 //! ```
 //!
-//! This is the rigid motion that fits the displacements best in the weighted least-squares sense. Transposed, the blocks
-//! spread a force `F` and a moment `M` at the reference point over the cloud, `f_n = U_n^T F + P_n^T M`, without stiffening
-//! it: the nodal forces have the resultant `F` and the moment `M` about `x_R` exactly.
+//! This is the rigid motion that fits the displacements best in the weighted least-squares sense. Transposed, the
+//! blocks spread a force `F` and a moment `M` at the reference point over the cloud, `f_n = U_n^T F + P_n^T M`, without
+//! stiffening it: the nodal forces have the resultant `F` and the moment `M` about `x_R` exactly.
 //!
 //! A collinear cloud can turn about its line unseen: `T` is singular, and that is an error, not a small number.
 

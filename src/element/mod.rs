@@ -3,7 +3,8 @@
 //! Nothing here knows a mesh, a file or PETSc. Each element takes the coordinates of its own nodes as plain arrays and
 //! fills dense matrices, row-major, with the dofs of one node side by side (dof `3a + i` is axis `i` of node `a`).
 //! Symmetric 3x3 tensors travel in Voigt order xx yy zz xy yz zx with engineering shear strains, so that
-//! `stress = elasticity * strain` with the elasticity as a `[[f64; 6]; 6]`, and energy density is `strain . stress / 2`.
+//! `stress = elasticity * strain` with the elasticity as a `[[f64; 6]; 6]`, and energy density is `strain . stress /
+//! 2`.
 //!
 //! ```text
 //!   quadrature   points and weights on the reference tetrahedron and triangle

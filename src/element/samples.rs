@@ -1,5 +1,5 @@
-//! What the tests of this module share: reproducible random numbers, elements and materials, and a rule that is exact to any
-//! degree.
+//! What the tests of this module share: reproducible random numbers, elements and materials, and a rule that is exact
+//! to any degree.
 
 use super::quadrature::QuadraturePoint;
 use super::tet10::{NODES, determinants, straight};

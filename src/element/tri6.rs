@@ -12,10 +12,11 @@
 //!   integral of f n dA = sum_q w f (a_xi x a_eta)
 //! ```
 //!
-//! The normal points to the side from which the corners 0, 1, 2 are seen counterclockwise: out of the body for the facets of
-//! a mesh. The area normal is a polynomial of degree 2, so area vectors and pressure loads are exact on curved facets with
-//! the 7-point rule; areas and traction loads, which take its length, are exact on plane facets only and otherwise as good
-//! as the facet's shape (a quarter of a cylinder in 2, 4, 8 facets along the arc: 4e-4, 2e-5, 2e-6 of its area).
+//! The normal points to the side from which the corners 0, 1, 2 are seen counterclockwise: out of the body for the
+//! facets of a mesh. The area normal is a polynomial of degree 2, so area vectors and pressure loads are exact on
+//! curved facets with the 7-point rule; areas and traction loads, which take its length, are exact on plane facets only
+//! and otherwise as good as the facet's shape (a quarter of a cylinder in 2, 4, 8 facets along the arc: 4e-4, 2e-5,
+//! 2e-6 of its area).
 
 use super::quadrature::{QuadraturePoint, TRIANGLE_7};
 use crate::algebra::{cross, norm};
@@ -252,7 +253,8 @@ mod tests {
 
     #[test]
     fn area_vector_of_a_curved_facet_depends_on_its_rim_only() {
-        // Stokes: integral of n dA = 1/2 closed integral of x cross dx, Simpson's rule being exact on each parabolic edge
+        // Stokes: integral of n dA = 1/2 closed integral of x cross dx, Simpson's rule being exact on each parabolic
+        // edge
         let mut random = Random::seeded(52);
         let x: [[f64; 3]; 6] = NODES.map(|[xi, eta]| {
             let bump = random.vector().map(|v| 0.1 * v);

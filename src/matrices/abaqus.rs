@@ -1,20 +1,21 @@
 //! Matrices as Abaqus writes them, as text:
 //!
 //! ```text
-//! *MATRIX OUTPUT, FORMAT=MATRIX INPUT or LABELS     101,2, 101,1,  3.571428571428572e+01       node, dof, node, dof, value
-//! *MATRIX OUTPUT, FORMAT=COORDINATE                 2  1  3.571428571428572e+01                row, column, value
+//! *MATRIX OUTPUT, FORMAT=MATRIX INPUT or LABELS     101,2, 101,1,  3.57142857142857e+01   node, dof, node, dof, value
+//! *MATRIX OUTPUT, FORMAT=COORDINATE                 2  1  3.57142857142857e+01            row, column, value
 //! *SUBSTRUCTURE MATRIX OUTPUT, and CalculiX's       *USER ELEMENT, NODES= 4, LINEAR
 //!                                                   ** ELEMENT NODES
 //!                                                   ** 101, 102, 103, 104
 //!                                                   1, 2                             dofs of the first node
 //!                                                   3, 1, 2, 6                       those from the third node on
 //!                                                   *MATRIX,TYPE=STIFFNESS
-//!                                                   98.9, 35.7, 98.9, ...            rows up to the diagonal, or all columns
+//!                                                   98.9, 35.7, 98.9, ...            rows up to the diagonal, or whole
 //! ```
 //!
-//! Of a symmetric matrix one triangle is there, of an unsymmetric one both. Internal nodes have negative labels. A displacement
-//! that is held at zero has 1e36 on its diagonal. MatrixFile: Abaqus Analysis User's Guide, *Generating matrices* and *User-defined
-//! elements*; keywords `*MATRIX OUTPUT`, `*MATRIX INPUT`, `*SUBSTRUCTURE MATRIX OUTPUT`, `*USER ELEMENT`.
+//! Of a symmetric matrix one triangle is there, of an unsymmetric one both. Internal nodes have negative labels. A
+//! displacement that is held at zero has 1e36 on its diagonal. Source: Abaqus Analysis User's Guide, *Generating
+//! matrices* and *User-defined elements*; keywords `*MATRIX OUTPUT`, `*MATRIX INPUT`, `*SUBSTRUCTURE MATRIX OUTPUT`,
+//! `*USER ELEMENT`.
 
 use std::collections::HashMap;
 
@@ -35,7 +36,8 @@ enum Section {
     Values(bool),
 }
 
-/// Reads a file whose first line is the current one; of a substructure, which may hold several, the matrix of this role.
+/// Reads a file whose first line is the current one; of a substructure, which may hold several, the matrix of this
+/// role.
 ///
 /// # Errors
 /// [`crate::Error::Input`] with file and line, whatever is wrong.

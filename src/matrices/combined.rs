@@ -165,10 +165,11 @@ fn require_filled(terms: &[Term], matrices: &[Sparse], rows: &[usize], dofs: Opt
     )))
 }
 
-/// Powers of two that bring the largest entries of all rows and columns of `sum |K| + omega |C| + omega^2 |M|` to one size.
+/// Powers of two that bring the largest entries of all rows and columns of `sum |K| + omega |C| + omega^2 |M|` to one
+/// size.
 ///
-/// One round divides by the square root of the largest: Ruiz, A scaling algorithm to equilibrate both rows and columns norms in
-/// matrices, RAL-TR-2001-034.
+/// One round divides by the square root of the largest: Ruiz, A scaling algorithm to equilibrate both rows and columns
+/// norms in matrices, RAL-TR-2001-034.
 fn scaling(terms: &[Term], matrices: &[Sparse], omega: f64) -> Vec<f64> {
     let n = matrices.first().map_or(0, |matrix| matrix.pattern.n_rows());
     let mut d = vec![1.0_f64; n];

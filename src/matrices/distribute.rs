@@ -32,8 +32,8 @@ pub struct Names {
     pub n_held: usize,
 }
 
-/// A quadratic eigenproblem of given matrices, scaled: `D (lambda^2 M + lambda C + K) D y = 0`, `x = D y`. All terms share one symmetric
-/// pattern.
+/// A quadratic eigenproblem of given matrices, scaled: `D (lambda^2 M + lambda C + K) D y = 0`, `x = D y`. All terms
+/// share one symmetric pattern.
 pub struct ExternalMatrices {
     terms: Vec<Term>,
     matrices: Vec<Matrix>,

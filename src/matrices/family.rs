@@ -1,4 +1,5 @@
-//! Sums of matrices with expressions of a parameter: `K(p) = sum_i f_i(p) K_i`, and M and C alike, as a TOML file says them.
+//! Sums of matrices with expressions of a parameter: `K(p) = sum_i f_i(p) K_i`, and M and C alike, as a TOML file says
+//! them.
 //!
 //! ```toml
 //! parameter = "v"
@@ -19,7 +20,8 @@
 //! factor = "v^2"
 //! ```
 //!
-//! An expression has `+ - * / ^`, brackets, numbers, the parameter, `pi`, and functions such as `sin`, `sqrt`, `exp`, `abs`.
+//! An expression has `+ - * / ^`, brackets, numbers, the parameter, `pi`, and functions such as `sin`, `sqrt`, `exp`,
+//! `abs`.
 
 use std::path::Path;
 

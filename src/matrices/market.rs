@@ -1,6 +1,6 @@
 //! Matrix Market files: coordinate and array, real and integer, general, symmetric and skew-symmetric.
 //!
-//! MatrixFile: Boisvert, Pozo and Remington, The Matrix Market exchange formats, NISTIR 5935 (1996).
+//! Source: Boisvert, Pozo and Remington, The Matrix Market exchange formats, NISTIR 5935 (1996).
 
 use super::entries::{Entries, Naming, Storage};
 use super::lines::Lines;

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Indices have 32 or 64 bits, as PETSc was configured; entries = -1 marks a dense matrix, its values by rows.
-//! MatrixFile: PETSc's manual page of `MatLoad`.
+//! Source: PETSc's manual page of `MatLoad`.
 
 use super::entries::{Entries, Naming, Storage};
 use super::lines::MatrixFile;

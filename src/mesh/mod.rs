@@ -6,8 +6,8 @@
 //!  Mesh --numbering::order--> nodes rank by rank --Piece--> each rank's own part
 //! ```
 //!
-//! Physical volumes become parts, physical surfaces become [`Surface`]s, physical curves and points become node sets. The names are
-//! the only link between a mesh and a model file, so a name may mean one thing only.
+//! Physical volumes become parts, physical surfaces become [`Surface`]s, physical curves and points become node sets.
+//! The names are the only link between a mesh and a model file, so a name may mean one thing only.
 //!
 //! The order of nodes is that of [`tet10`](crate::element::tet10) and [`tri6`](crate::element::tri6).
 

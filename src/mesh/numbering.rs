@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// The nodes that a rank has, by their *local* numbers, and their *global* numbers among all nodes.
 ///
-/// Local numbers rise with global ones, so that whatever is ordered by local numbers is ordered alike on all ranks. The nodes that
-/// the rank owns follow one another; every node has one owner.
+/// Local numbers rise with global ones, so that whatever is ordered by local numbers is ordered alike on all ranks. The
+/// nodes that the rank owns follow one another; every node has one owner.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Numbering {
     pub(super) global: Vec<u32>,
@@ -17,8 +17,8 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// From the global numbers of the nodes that the rank has, rising, and of those that it owns. `labels` has for every global number
-    /// one that does not depend on the number of ranks.
+    /// From the global numbers of the nodes that the rank has, rising, and of those that it owns. `labels` has for
+    /// every global number one that does not depend on the number of ranks.
     ///
     /// # Panics
     /// Where the rank has not all of its own.
@@ -80,8 +80,8 @@ impl Numbering {
 /// Up to this many nodes stay in the order in which they came.
 const LEAF: usize = 8;
 
-/// Orders nodes by owner, and those of an owner so that nodes near each other in space are near each other in the list: the box of the
-/// nodes is halved across its longest side, and so are the halves. Returns the nodes in the new order.
+/// Orders nodes by owner, and those of an owner so that nodes near each other in space are near each other in the list:
+/// the box of the nodes is halved across its longest side, and so are the halves. Returns the nodes in the new order.
 ///
 /// # Panics
 /// Where there are fewer owners than nodes.

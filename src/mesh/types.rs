@@ -31,8 +31,8 @@ pub struct Surface {
     pub facets: Vec<[u32; 6]>,
     /// For each facet the index of the part whose skin it is.
     pub parts: Vec<u32>,
-    /// Indices of the facets with a tetrahedron on both sides: a conformal interface inside the mesh, not its skin. They belong to
-    /// the tetrahedron of the part that comes first.
+    /// Indices of the facets with a tetrahedron on both sides: a conformal interface inside the mesh, not its skin.
+    /// They belong to the tetrahedron of the part that comes first.
     pub inner: Vec<u32>,
 }
 

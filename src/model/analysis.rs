@@ -98,7 +98,8 @@ fn range(item: &Item, from: &Number, to: &Number, step: &Number) -> Result<Vec<f
     })
 }
 
-/// The values `from + i step` up to `to` (reached within a millionth of a step), rounded to 12 digits, so that 0.1 + 2 * 0.1 is 0.3.
+/// The values `from + i step` up to `to` (reached within a millionth of a step), rounded to 12 digits, so that 0.1 + 2
+/// * 0.1 is 0.3.
 ///
 /// None where there is no such value, or more than 10000.
 pub fn spaced(from: f64, to: f64, step: f64) -> Option<Vec<f64>> {

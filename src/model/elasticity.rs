@@ -88,8 +88,9 @@ pub fn symmetric(matrix: &Matrix6<f64>) -> Matrix6<f64> {
 
 /// Elasticity in global axes of a material whose axes are the columns of `axes`: `C' = T C T^T`.
 ///
-/// T takes stresses, `sigma' = R sigma R^T`; its transpose takes the strains back, as the work is the same in both axes.
-/// It is Bond's matrix: Auld, *Acoustic Fields and Waves in Solids* I (1973), section 3.D (there in the order yz zx xy).
+/// T takes stresses, `sigma' = R sigma R^T`; its transpose takes the strains back, as the work is the same in both
+/// axes. It is Bond's matrix: Auld, *Acoustic Fields and Waves in Solids* I (1973), section 3.D (there in the order yz
+/// zx xy).
 pub fn rotate(elasticity: &Matrix6<f64>, axes: &Matrix3<f64>) -> Matrix6<f64> {
     let mut T = Matrix6::zeros();
     for (column, [i, j]) in voigt::PAIRS.into_iter().enumerate() {

@@ -1,4 +1,5 @@
-//! One table of the model file while its values are checked: what it is called in messages, and the checks of single values.
+//! One table of the model file while its values are checked: what it is called in messages, and the checks of single
+//! values.
 
 use super::source::{ModelText, Span};
 use crate::{Error, Result};

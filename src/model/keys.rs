@@ -1,4 +1,5 @@
-//! The keys of a model file as serde sees them; `example.toml` explains each. Values are unchecked, their places are kept.
+//! The keys of a model file as serde sees them; `example.toml` explains each. Values are unchecked, their places are
+//! kept.
 
 use super::item::{Number, Vector};
 use serde::Deserialize;

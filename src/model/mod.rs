@@ -5,16 +5,16 @@
 //!                 (spans kept)                                                           (names and lines kept)
 //! ```
 //!
-//! A model file names things that the mesh defines (physical groups), so it is checked in two steps. [`read()`] sees the file
-//! alone: keys, kinds, ranges, names defined within the file. [`Model::check_against`] sees the mesh too: names of surfaces, which
-//! pairs slide, what those need. Either way a message is
+//! A model file names things that the mesh defines (physical groups), so it is checked in two steps. [`read()`] sees
+//! the file alone: keys, kinds, ranges, names defined within the file. [`Model::check_against`] sees the mesh too:
+//! names of surfaces, which pairs slide, what those need. Either way a message is
 //!
 //! ```text
 //! brake.toml:12: young must be above 0, not -1 (material "iron"). Give Pa, such as 110e9
 //! ```
 //!
-//! that is, where, what, of which item, and what to do. Nothing is guessed: an unknown key is an error that offers the nearest
-//! right one, and a number that no material can have is an error and not a warning.
+//! that is, where, what, of which item, and what to do. Nothing is guessed: an unknown key is an error that offers the
+//! nearest right one, and a number that no material can have is an error and not a warning.
 //!
 //! # Every key
 //!

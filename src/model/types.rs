@@ -45,7 +45,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model of one part alone, which nothing constrains, touches or loads, so that there is nothing to sweep either.
+    /// The model of one part alone, which nothing constrains, touches or loads, so that there is nothing to sweep
+    /// either.
     ///
     /// # Errors
     /// [`Error::Input`] where there is no such part.

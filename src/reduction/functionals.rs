@@ -13,7 +13,7 @@ pub struct Functionals {
 }
 
 impl Functionals {
-    /// Three rows for each point of the gap_operator.
+    /// Three rows for each point of the gap operator.
     pub fn new(gap_operator: &GapOperator, system: &System) -> Functionals {
         let rows = (0..gap_operator.len()).flat_map(|a| point_rows(gap_operator, a, &system.dofs)).collect();
         Functionals { comm: system.k.comm().clone(), n_local: system.dofs.n_local(), rows }

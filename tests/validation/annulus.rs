@@ -6,22 +6,23 @@
 //!            bore              8 x 48 x 2 cells of six tetrahedra, midsides on the circles
 //! ```
 //!
-//! Source: thin-plate theory, the roots of the 4x4 determinant of J_n, Y_n, I_n, K_n under the edges' conditions; Leissa, Vibration
-//! of Plates, NASA SP-160 (1969), tables 2.20 to 2.30.
+//! Source: thin-plate theory, the roots of the 4x4 determinant of J_n, Y_n, I_n, K_n under the edges' conditions;
+//! Leissa, Vibration of Plates, NASA SP-160 (1969), tables 2.20 to 2.30.
 //!
-//! The mesh repeats itself every 7.5 degrees, so doublets are exact and their splitting is that of the solver: the hardest case
-//! for it. A solid is softer than a thin plate by shear and rotary inertia, as (h/wavelength)^2, and at free edges by
-//! twist, as h/width, which is what lowers two modes of the free plate by 3 %: with a quarter of the thickness its n = 1 lies
-//! 0.01 % below theory.
+//! The mesh repeats itself every 7.5 degrees, so doublets are exact and their splitting is that of the solver: the
+//! hardest case for it. A solid is softer than a thin plate by shear and rotary inertia, as (h/wavelength)^2, and at
+//! free edges by twist, as h/width, which is what lowers two modes of the free plate by 3 %: with a quarter of the
+//! thickness its n = 1 lies 0.01 % below theory.
 //!
-//! Goal and, in brackets, measured: every mode of 0-900 Hz; doublets split by less than 1e-8 [1e-9]; frequency against theory from
-//! -1.5 % to +0.3 % [-1.15 to +0.15 %] clamped, -1 to 0 % [-0.73 to -0.54 %] free, -3.5 to -2.5 % [-3.0, -3.3 %] for the two
-//! modes of the free plate that twist.
+//! Goal and, in brackets, measured: every mode of 0-900 Hz; doublets split by less than 1e-8 [1e-9]; frequency against
+//! theory from -1.5 % to +0.3 % [-1.15 to +0.15 %] clamped, -1 to 0 % [-0.73 to -0.54 %] free, -3.5 to -2.5 % [-3.0,
+//! -3.3 %] for the two modes of the free plate that twist.
 
 use std::f64::consts::TAU;
 
-use super::common::{Block, brake};
 use super::table::{Case, Row};
+use crate::support::block::Block;
+use crate::support::brake;
 use squeal::assembly::System;
 use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
@@ -164,8 +165,9 @@ fn free_it_has_six_rigid_motions_and_all_doublets() {
     free(&Session::start(&[]).unwrap()).verify();
 }
 
-/// Six rigid motions are twelve defective zeros, which LAPACK may find too close to reorder (xTREXC, info 1); the search must
-/// then go on. Which shift meets this depends on rounding: 3 or 4 of these 40 did before the search went on, none since.
+/// Six rigid motions are twelve defective zeros, which LAPACK may find too close to reorder (xTREXC, info 1); the
+/// search must then go on. Which shift meets this depends on rounding: 3 or 4 of these 40 did before the search went
+/// on, none since.
 #[test]
 fn free_it_has_as_many_modes_at_any_shift() {
     let comm = Session::start(&[]).unwrap();

@@ -1,7 +1,7 @@
 //! Cattaneo and Mindlin: a ball pressed on a half space and pulled along it sticks in the middle and slips around.
 //!
 //! ```text
-//!      500 N down, 100 N along x        R = 50 mm; both E = 210 GPa, nu = 0.3, mu = 0.3; half of blocks 12 a wide and high
+//!      500 N down, 100 N along x        R = 50 mm; both E = 210 GPa, nu = 0.3, mu = 0.3; half of blocks 12 a wide
 //!         |vvvvvvvvvvvvvv| -->          14 x 7 x 5 cells on each, matching: 5 over 1.2 a, then growing
 //!         |     ball     |              plane y = 0: symmetry; bottom: held
 //!          \_          _/               penalty and elastic stick 2e16 N/m3
@@ -9,18 +9,20 @@
 //!      |       block        |           that of the pull
 //! ```
 //!
-//! Source: Cattaneo (1938), Mindlin (1949); Johnson, Contact Mechanics (1985), 7.2: stick radius c = a (1 - Q/mu P)^(1/3), here
-//! 0.69336 a; tangential traction mu p0 (sqrt(1 - r^2/a^2) - c/a sqrt(1 - r^2/c^2)), whose second moment is
-//! 2/5 mu P a^2 (1 - (c/a)^5).
+//! Source: Cattaneo (1938), Mindlin (1949); Johnson, Contact Mechanics (1985), 7.2: stick radius c = a (1 - Q/mu
+//! P)^(1/3), here 0.69336 a; tangential traction mu p0 (sqrt(1 - r^2/a^2) - c/a sqrt(1 - r^2/c^2)), whose second moment
+//! is 2/5 mu P a^2 (1 - (c/a)^5).
 //!
-//! Sticking is elastic and measured from the start, without memory; that is enough here, since in this problem no point slips back.
+//! Sticking is elastic and measured from the start, without memory; that is enough here, since in this problem no point
+//! slips back.
 //!
 //! Goal and, in brackets, measured: c/a from the second moment of the traction to 2 % [1.2 %; with ten times the
-//! stick stiffness 1.3 %, so it is the mesh]; from the area that sticks to 7 % [4.4 %, a point is 1/40 of the area]; forces to 1e-8; the
-//! pressure stays centred to 1e-3 of a [3e-4].
+//! stick stiffness 1.3 %, so it is the mesh]; from the area that sticks to 7 % [4.4 %, a point is 1/40 of the area];
+//! forces to 1e-8; the pressure stays centred to 1e-3 of a [3e-4].
 
-use super::common::{Block, assert_close, brake, graded};
 use super::table::{Case, Row};
+use crate::support::block::Block;
+use crate::support::{assert_close, brake, graded};
 use squeal::analysis::Sweep;
 use squeal::contact::Status;
 use squeal::mesh::Mesh;

@@ -9,15 +9,15 @@
 //!        |__________|
 //! ```
 //!
-//! Source: Taylor and Papadopoulos, On a patch test for contact problems in two dimensions (1991); for node-to-surface contact
-//! in three dimensions Puso and Laursen, Comput. Methods Appl. Mech. Engrg. 193 (2004).
+//! Source: Taylor and Papadopoulos, On a patch test for contact problems in two dimensions (1991); for node-to-surface
+//! contact in three dimensions Puso and Laursen, Comput. Methods Appl. Mech. Engrg. 193 (2004).
 //!
-//! What is to be expected: forces on the slave's midsides, w = A/3 each, are the exact consistent load of a uniform pressure. The
-//! master gets them by its shape functions N_j at those points, and `sum w N_j` is the consistent load of its node j only where the
-//! midside rule integrates N_j exactly, which it does not across the master's edges. So matching meshes pass; others
-//! pass in their resultant but not point by point. The error is one of the master's load, of the size of a facet and
-//! decaying inward (St. Venant); a penalty softer than the mesh smooths it, and it does not fall with refinement at the
-//! same h k/E. Only a mortar interface would pass.
+//! What is to be expected: forces on the slave's midsides, w = A/3 each, are the exact consistent load of a uniform
+//! pressure. The master gets them by its shape functions N_j at those points, and `sum w N_j` is the consistent load of
+//! its node j only where the midside rule integrates N_j exactly, which it does not across the master's edges. So
+//! matching meshes pass; others pass in their resultant but not point by point. The error is one of the master's load,
+//! of the size of a facet and decaying inward (St. Venant); a penalty softer than the mesh smooths it, and it does not
+//! fall with refinement at the same h k/E. Only a mortar interface would pass.
 //!
 //! Measured, root mean square (extremes) of p/p_exact - 1, steel:
 //!
@@ -34,8 +34,9 @@
 //!
 //! Goal: matching meshes pass to 1e-9; every mesh in its resultant to 1e-9; the others stay below the table's values.
 
-use super::common::{Block, assert_close, brake};
 use super::table::{Case, Row};
+use crate::support::block::Block;
+use crate::support::{assert_close, brake};
 use squeal::analysis::Sweep;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};

@@ -15,7 +15,7 @@ values, and results of other programs. Each section is a case of `tests/validati
 what may be expected. `make test` computes all of them anew, TD-1 on its coarse mesh, and fails where a difference leaves the allowed range or
 where a number is no longer the one below.
 
-`make calculix` compares 30 modes of two models with CalculiX on the same mesh (`tests/calculix.rs`).
+`make calculix` compares 30 modes of two models with CalculiX on the same mesh (`tests/physics/calculix.rs`).
 ";
 
 /// The cases in the order of the document, but for TD-1.

@@ -3,27 +3,29 @@
 //! ```text
 //!      250 N (a quarter of 1 kN) spread over the top
 //!     |vvvvvvvvv|
-//!     |  ball   |     R = 50 mm; both E = 210 GPa, nu = 0.3; a quarter of blocks 15 a wide, deep and high, without friction
-//!      \_       |     10 x 10 x 8 cells on the ball, 9 x 9 x 7 on the block: 6 and 5 of them even up to 1.2 a, then growing
+//!     |  ball   |     R = 50 mm; both E = 210 GPa, nu = 0.3; a quarter of blocks 15 a wide, no friction
+//!      \_       |     10 x 10 x 8 cells on the ball, 9 x 9 x 7 on the block: 6 and 5 even up to 1.2 a, then growing
 //!     ___`------|     penalty 2e16 N/m3
 //!     |  block  |
 //!     |_________|     planes x = 0 and y = 0: symmetry; bottom: held along z
 //! ```
 //!
-//! Source: Hertz (1881); Johnson, Contact Mechanics (1985), 3.4 and 4.2: a = (3FR/4E*)^(1/3) = 0.687534 mm, p0 = 3F/(2 pi a^2) =
-//! 1010.07 MPa, approach a^2/R = 9.45407 um.
+//! Source: Hertz (1881); Johnson, Contact Mechanics (1985), 3.4 and 4.2: a = (3FR/4E*)^(1/3) = 0.687534 mm, p0 = 3F/(2
+//! pi a^2) = 1010.07 MPa, approach a^2/R = 9.45407 um.
 //!
-//! Measured with integrals, as the mesh has 5 cells over a: a from the second moment of the pressure, `2 a^2/5`; p0 from the
-//! projection on `sqrt(1 - r^2/a^2)` within 0.8 a. The approach is taken where the surfaces have left the contact, at 3 a, and
-//! completed by Hertz's displacement there, since a block of finite size has no infinity (at 15 a it is 0.5 % too large).
-//! Single points scatter by 6 % (see contact_patch.rs; by 3 % on matching meshes).
+//! Measured with integrals, as the mesh has 5 cells over a: a from the second moment of the pressure, `2 a^2/5`; p0
+//! from the projection on `sqrt(1 - r^2/a^2)` within 0.8 a. The approach is taken where the surfaces have left the
+//! contact, at 3 a, and completed by Hertz's displacement there, since a block of finite size has no infinity (at 15 a
+//! it is 0.5 % too large). Single points scatter by 6 % (see contact_patch.rs; by 3 % on matching meshes).
 //!
-//! Goal and, in brackets, measured: a to 1 % [0.4 %], p0 to 1 % [0.3 %], approach to 0.5 % [0.05 %], scatter below 8 % [5.8 %].
+//! Goal and, in brackets, measured: a to 1 % [0.4 %], p0 to 1 % [0.3 %], approach to 0.5 % [0.05 %], scatter below 8 %
+//! [5.8 %].
 
 use std::f64::consts::PI;
 
-use super::common::{Block, assert_close, brake, graded};
 use super::table::{Case, Row};
+use crate::support::block::Block;
+use crate::support::{assert_close, brake, graded};
 use squeal::analysis::Sweep;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};

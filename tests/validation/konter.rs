@@ -3,32 +3,36 @@
 //! ```text
 //!       35 kN (half of it on this half), spread over the flat top
 //!      |vvvvvvv|
-//!      |half   |     cylinder of 100 mm diameter, E = 210 GPa; block 200 x 200 mm, E = 70 GPa; nu = 0.3; 1 mm thick, u_z = 0
+//!      |half   |     cylinder of 100 mm diameter, E = 210 GPa; block 200 x 200 mm, E = 70 GPa; nu = 0.3; 1 mm thick
 //!      |cylin- |     24 x 20 cells on the cylinder, the contact arc up to 45 degrees; 20 x 18 on the block;
 //!      |der __/      15 and 13 of them even up to 1.2 a, then growing; penalty 2e16 N/m3, elastic stick 1e15
 //!     _|__-'____
 //!      |  block |    bottom: held; x = 0: symmetry
 //! ```
 //!
-//! Source: Konter, Advanced Finite Element Contact Benchmarks, NAFEMS (2006), benchmark 1. Without friction: Hertz, half-width
-//! a = 2 F/(pi p0) = 6.215 mm, p0 = sqrt(F E*/(pi R t)) = 3585.4 MPa. With friction 0.1: MARC, as given for model D of
-//! code_aster's V6.03.154: 3542.69 MPa at the middle of the contact.
+//! Source: Konter, Advanced Finite Element Contact Benchmarks, NAFEMS (2006), benchmark 1. Without friction: Hertz,
+//! half-width a = 2 F/(pi p0) = 6.215 mm, p0 = sqrt(F E*/(pi R t)) = 3585.4 MPa. With friction 0.1: MARC, as given for
+//! model D of code_aster's V6.03.154: 3542.69 MPa at the middle of the contact.
 //!
-//! p0 is taken from the projection of the pressure on `sqrt(1 - x^2/a^2)` within 0.8 a, a from the second moment, `a^2/4`.
+//! p0 is taken from the projection of the pressure on `sqrt(1 - x^2/a^2)` within 0.8 a, a from the second moment,
+//! `a^2/4`.
 //!
-//! Hertz's theory is that of two half spaces and small strains; here a/R is 0.12, so 1 % is what may be expected of it. MARC's value is a stress
-//! at a node; with it friction lowers the peak by 1.2 %, in ours it raises it by 0.6 %, whatever the stick stiffness (1e15 and 5e15 N/m3: the same
-//! to 1e-5). Friction between aluminium and steel holds back what spreads more, the aluminium, and so makes the contact narrower.
+//! Hertz's theory is that of two half spaces and small strains; here a/R is 0.12, so 1 % is what may be expected of it.
+//! MARC's value is a stress at a node; with it friction lowers the peak by 1.2 %, in ours it raises it by 0.6 %,
+//! whatever the stick stiffness (1e15 and 5e15 N/m3: the same to 1e-5). Friction between aluminium and steel holds back
+//! what spreads more, the aluminium, and so makes the contact narrower.
 //!
-//! Goal and, in brackets, measured: half-width and pressure without friction 0.5 % [0.1 %, 0.04 %], pressure with friction 2.5 % [1.9 %].
+//! Goal and, in brackets, measured: half-width and pressure without friction 0.5 % [0.1 %, 0.04 %], pressure with
+//! friction 2.5 % [1.9 %].
 
 use squeal::analysis::Sweep;
 use squeal::contact::Status;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
 
-use super::common::{Block, assert_close, brake, graded, nodes_where};
 use super::table::{Case, Row};
+use crate::support::block::Block;
+use crate::support::{assert_close, brake, graded, nodes_where};
 
 const RADIUS: f64 = 0.05;
 const THICKNESS: f64 = 1e-3;

@@ -1,12 +1,11 @@
-//! Cases that somebody else has solved: exactly, in print, or with another program. A file each, with its source, sketch and goal.
+//! Cases that somebody else has solved: exactly, in print, or with another program. A file each, with its source,
+//! sketch and goal.
 //!
-//! Every case is computed by one function, whose numbers a test holds against theirs and against `docs/validation.md`; so the document
-//! cannot drift. `make validation` writes it ([`document`]).
+//! Every case is computed by one function, whose numbers a test holds against theirs and against `docs/validation.md`;
+//! so the document cannot drift. `make validation` writes it ([`document`]).
 
 mod annulus;
 mod cattaneo_mindlin;
-#[path = "../common/mod.rs"]
-mod common;
 mod contact_patch;
 mod document;
 mod hertz;
@@ -14,5 +13,7 @@ mod konter;
 mod minimal_models;
 mod nafems_fv52;
 mod pads_on_disc;
+#[path = "../support/mod.rs"]
+mod support;
 mod table;
 mod td1;

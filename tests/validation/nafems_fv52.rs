@@ -9,19 +9,22 @@
 //!     ^      ^      ^      ^  u_z = 0 on lines
 //! ```
 //!
-//! Source: NAFEMS, The Standard NAFEMS Benchmarks, TNSB rev. 3 (1990), test FV52: 45.897, 109.44 (twice), 167.89, 193.59, 206.19
-//! (twice) Hz. Published with quadratic tetrahedra of 1.67 m: 44.61, 108.5, 108.8, 165.8, 193.7, 202.9, 207.0 Hz.
+//! Source: NAFEMS, The Standard NAFEMS Benchmarks, TNSB rev. 3 (1990), test FV52: 45.897, 109.44 (twice), 167.89,
+//! 193.59, 206.19 (twice) Hz. Published with quadratic tetrahedra of 1.67 m: 44.61, 108.5, 108.8, 165.8, 193.7, 202.9,
+//! 207.0 Hz.
 //!
 //! 193.59 and 206.19 move in the plane, where nothing holds the plate: they converge. The others bend, and a solid
 //! cannot be held on a line: its displacement under a line force is infinite, as the logarithm of the mesh. Measured on
-//! 6x6x1, 10x10x1, 12x12x2, 16x16x2 cells: 45.02, 44.24, 43.68, 43.49 Hz; 170.3, 162.7, 158.3, 156.7 Hz. The published bending frequencies
-//! are those of the meshes of their time, and only a mesh as fine as theirs can be compared.
+//! 6x6x1, 10x10x1, 12x12x2, 16x16x2 cells: 45.02, 44.24, 43.68, 43.49 Hz; 170.3, 162.7, 158.3, 156.7 Hz. The published
+//! bending frequencies are those of the meshes of their time, and only a mesh as fine as theirs can be compared.
 //!
-//! Goal: three rigid motions; in the plane 0.1 % from NAFEMS [0.03 %]; bending, on 8x8x1 cells of six tetrahedra, 1 % from the
-//! published tetrahedra [0.5 %], 2 % for their last pair, which is double and which their mesh splits by 2 % [1.7 %].
+//! Goal: three rigid motions; in the plane 0.1 % from NAFEMS [0.03 %]; bending, on 8x8x1 cells of six tetrahedra, 1 %
+//! from the published tetrahedra [0.5 %], 2 % for their last pair, which is double and which their mesh splits by 2 %
+//! [1.7 %].
 
-use super::common::{Block, brake, nodes_where};
 use super::table::{Case, Row};
+use crate::support::block::Block;
+use crate::support::{brake, nodes_where};
 use squeal::assembly::System;
 use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;

@@ -1,4 +1,5 @@
-//! Two pads pressed on an annular disc under friction 0 to 0.8, against an independent implementation of the same formulation.
+//! Two pads pressed on an annular disc under friction 0 to 0.8, against an independent implementation of the same
+//! formulation.
 //!
 //! ```text
 //!        4 kN               Disc r 60-140 mm, 12 thick, cast iron, held at its bore; it turns about +z.
@@ -9,18 +10,19 @@
 //!     ^^^^^^^^^ 4 kN
 //! ```
 //!
-//! Source: `data/pads_on_disc.json`, computed with numpy, scipy and SLEPc from the formulation, on the same mesh; no code in
-//! common. What is compared is therefore arithmetic, not modelling, and the tolerances are the noise of the two solvers.
+//! Source: `data/pads_on_disc.json`, computed with numpy, scipy and SLEPc from the formulation, on the same mesh; no
+//! code in common. What is compared is therefore arithmetic, not modelling, and the tolerances are the noise of the two
+//! solvers.
 //!
-//! Goal and, in brackets, what was measured: masses and contact areas to 1e-12 [1e-14]; closed points exactly; contact forces,
-//! displacement and torque to 1e-8 [6e-10, 3e-9, 1e-10; both stop Newton at a residual of 1e-9]; frequencies to 1e-8 [5e-9]; growth
-//! rates to 1e-6 of their own [7e-8; a double root magnifies noise], those that are zero to 1e-11 of omega [1e-12];
-//! backward errors below 1e-12 [1e-13].
+//! Goal and, in brackets, what was measured: masses and contact areas to 1e-12 [1e-14]; closed points exactly; contact
+//! forces, displacement and torque to 1e-8 [6e-10, 3e-9, 1e-10; both stop Newton at a residual of 1e-9]; frequencies to
+//! 1e-8 [5e-9]; growth rates to 1e-6 of their own [7e-8; a double root magnifies noise], those that are zero to 1e-11
+//! of omega [1e-12]; backward errors below 1e-12 [1e-13].
 
 use std::f64::consts::TAU;
 
-use super::common::{assert_close, data};
 use super::table::{Case, Row};
+use crate::support::{assert_close, data};
 use serde_json::Value;
 use squeal::analysis::Sweep;
 use squeal::assembly::System;
@@ -152,7 +154,8 @@ fn compare_modes(band: &Band, expected: &[Value]) {
     assert!(left.iter().all(|mode| mode.frequency() > last), "a mode that the reference does not have");
 }
 
-/// Friction that turns with the velocity only takes energy out: `C` grows by a positive semidefinite matrix that scales with 1/speed.
+/// Friction that turns with the velocity only takes energy out: `C` grows by a positive semidefinite matrix that scales
+/// with 1/speed.
 #[test]
 fn friction_damping_takes_energy_out() {
     let comm = Session::start(&[]).unwrap();
@@ -169,7 +172,8 @@ fn friction_damping_takes_energy_out() {
     };
     let (free, damped) = (growths(false), growths(true));
     assert_eq!(free.len(), damped.len());
-    // The sum of the growth rates of all modes is -tr(M^-1 C) / 2; within the band every mode that did not grow decays now.
+    // The sum of the growth rates of all modes is -tr(M^-1 C) / 2; within the band every mode that did not grow decays
+    // now.
     assert!(damped.iter().sum::<f64>() < free.iter().sum::<f64>() - 1.0, "{free:?} {damped:?}");
     assert!(free.iter().zip(&damped).filter(|(a, _)| a.abs() < 1e-3).all(|(_, b)| *b < 0.0), "{free:?} {damped:?}");
 }

@@ -1,4 +1,5 @@
-//! TD-1 of the Ansys Technology Showcase: a whole ventilated disc with two pads, 29 frequencies and a pair that flutters.
+//! TD-1 of the Ansys Technology Showcase: a whole ventilated disc with two pads, 29 frequencies and a pair that
+//! flutters.
 //!
 //! ```text
 //!            ___________
@@ -8,17 +9,19 @@
 //!    |_________|_|_____________|     flange, hat, held at its bore and five holes: meshes/td1.geo
 //! ```
 //!
-//! Source: Ansys Technology Showcase, FullModel-Squeal Analysis, table 1.2, linear non-prestressed modal analysis: 60 thousand nodes of
-//! hexahedra with reduced integration; 26 bodies (hat, its cylinder, flange, two cheeks, 21 vanes) *bonded* to one another by constraints
-//! between meshes that do not match; contact at Gauss points, its stiffness by a rule of the program. Its frequencies are omega / 2 pi, and so are its
-//! real parts: ours, divided by 2 pi, are of that size. Density 7850 kg/m3 is the scripts'; the text says 7800.
+//! Source: Ansys Technology Showcase, FullModel-Squeal Analysis, table 1.2, linear non-prestressed modal analysis: 60
+//! thousand nodes of hexahedra with reduced integration; 26 bodies (hat, its cylinder, flange, two cheeks, 21 vanes)
+//! *bonded* to one another by constraints between meshes that do not match; contact at Gauss points, its stiffness by a
+//! rule of the program. Its frequencies are omega / 2 pi, and so are its real parts: ours, divided by 2 pi, are of that
+//! size. Density 7850 kg/m3 is the scripts'; the text says 7800.
 //!
-//! Ours is one body, meshed by tetrahedra: [`SIZES`], the same geometry. Contacts are closed as in the published linear analysis
-//! (`separation = false`), and the modes do not depend on the small pressure.
+//! Ours is one body, meshed by tetrahedra: [`SIZES`], the same geometry. Contacts are closed as in the published linear
+//! analysis (`separation = false`), and the modes do not depend on the small pressure.
 //!
-//! Goal: the pair is found at its place among 30 modes, unstable at 0.3, with the published growth; 1 % for all other frequencies. Measured on the
-//! fine mesh: growth 7 %; 1.2 % for 15 modes, 3.2 % for 25, those in which the pads bend above the published ones; 4 to 9 % below them for
-//! five modes of the hat. The document says what was tried to find out why.
+//! Goal: the pair is found at its place among 30 modes, unstable at 0.3, with the published growth; 1 % for all other
+//! frequencies. Measured on the fine mesh: growth 7 %; 1.2 % for 15 modes, 3.2 % for 25, those in which the pads bend
+//! above the published ones; 4 to 9 % below them for five modes of the hat. The document says what was tried to find
+//! out why.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -30,8 +33,8 @@ use squeal::stability::Mode;
 use squeal::structure::FullModel;
 use squeal::tracking::{Diagram, track};
 
-use super::common::assert_close;
 use super::table::{ADVICE, document, section_of};
+use crate::support::assert_close;
 
 /// Published frequencies, Hz; those of the pair are [`PAIR`] and the next.
 const PUBLISHED: [f64; 30] = [
@@ -93,8 +96,8 @@ fn line(mode: usize, meshes: &[Vec<[f64; 2]>]) -> String {
     format!("| {} | {} | {published:.2} | {difference:+.2} % |", mode + 1, found.join(" | "))
 }
 
-/// How far frequencies of two meshes made alike may be apart: gmsh moves the middle nodes of strongly curved elements a little differently from
-/// run to run (8.6e-5 seen in five).
+/// How far frequencies of two meshes made alike may be apart: gmsh moves the middle nodes of strongly curved elements a
+/// little differently from run to run (8.6e-5 seen in five).
 const SAME_MESH: f64 = 2e-4;
 
 /// On the coarse mesh: the pair, its growth to 20 %, and frequencies to 10 %; the document has them.

@@ -29,8 +29,8 @@ pub fn linearise(point: &PointLaw, friction: f64, g: [f64; 3], status: Status) -
 /// Block of the friction damping, `(mu p/|v|) (I - n n^T - t t^T)`, N s/m, of a sliding point under the normal force p
 /// (N); zero for other points and without pressure.
 ///
-/// A motion across the sliding direction turns the velocity, and friction with it; what that takes out of the motion is linear
-/// in its velocity.
+/// A motion across the sliding direction turns the velocity, and friction with it; what that takes out of the motion is
+/// linear in its velocity.
 pub fn friction_damping(point: &PointLaw, friction: f64, normal_force: f64) -> [[f64; 3]; 3] {
     let Tangential::Sliding { direction, speed } = point.tangential else {
         return [[0.0; 3]; 3];

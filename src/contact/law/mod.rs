@@ -1,8 +1,8 @@
 //! What acts at a contact point.
 //!
-//! A law is three choices that do not know of each other, kept in a [`PointLaw`]: the normal law, whether the point may open,
-//! and the tangential law. With the unit normal n of the master, the initial gap, and the relative displacement g of the
-//! slave against the master,
+//! A law is three choices that do not know of each other, kept in a [`PointLaw`]: the normal law, whether the point may
+//! open, and the tangential law. With the unit normal n of the master, the initial gap, and the relative displacement g
+//! of the slave against the master,
 //!
 //! ```text
 //! d = -(gap0 + n.g) + xi    penetration; gap0 counts as zero where the point may not open; xi only in reduced models
@@ -85,7 +85,8 @@ impl PointLaw {
         self.normal.into()
     }
 
-    /// Penetration `d = -(gap0 + n.g) + xi`, m, with the correction xi and without the initial gap where the point may not open.
+    /// Penetration `d = -(gap0 + n.g) + xi`, m, with the correction xi and without the initial gap where the point may
+    /// not open.
     pub fn penetration(&self, g: [f64; 3]) -> f64 {
         let gap = if self.separation { self.gap } else { 0.0 };
         self.correction - (gap + self.n().dot(&Vector3::from(g)))

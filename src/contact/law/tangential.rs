@@ -35,9 +35,10 @@ pub enum Tangential {
 /// slip         f = p n + mu p s,  s = -g_t/|g_t|      D = p' (n + mu s) n^T + (mu p/|g_t|) (P - s s^T)
 /// ```
 ///
-/// A stick-slip point sticks while `w k_t |g_t| <= mu p`. Where p <= 0 (a point that may not open, in tension) the bound is
-/// zero: it slips without a tangential force. A sliding point keeps `mu p t` in tension too, so that a
-/// pair that may neither open nor stick is linear. PointLaw forces are continuous everywhere; D jumps where the status changes.
+/// A stick-slip point sticks while `w k_t |g_t| <= mu p`. Where p <= 0 (a point that may not open, in tension) the
+/// bound is zero: it slips without a tangential force. A sliding point keeps `mu p t` in tension too, so that a
+/// pair that may neither open nor stick is linear. Point forces are continuous everywhere; D jumps where the status
+/// changes.
 pub fn respond(point: &PointLaw, friction: f64, g: [f64; 3]) -> Response {
     match normal(point, point.penetration(g)) {
         None => Response::OPEN,

@@ -7,7 +7,8 @@
 //!   integral of f over the element  =  sum_q  w_q  f(xi_q) detJ(xi_q)
 //! ```
 //!
-//! Every rule is positive (all weights > 0), so that a mass matrix is positive definite on any element whose Jacobian is.
+//! Every rule is positive (all weights > 0), so that a mass matrix is positive definite on any element whose Jacobian
+//! is.
 //!
 //! | rule | points | exact to degree | used for |
 //! |---|---|---|---|

@@ -13,8 +13,8 @@ pub const TETRAHEDRON_4: [QuadraturePoint<3>; 4] = corner_orbit(0.13819660112501
 
 /// Fourteen points, degree 5: two corner orbits of four points and one edge orbit of six.
 ///
-/// Source: Walkington, *Quadrature on simplices of arbitrary dimension*, Carnegie Mellon University report 00-CNA-023 (2000), degree 5 on
-/// the tetrahedron.
+/// Source: Walkington, *Quadrature on simplices of arbitrary dimension*, Carnegie Mellon University report 00-CNA-023
+/// (2000), degree 5 on the tetrahedron.
 pub const TETRAHEDRON_14: [QuadraturePoint<3>; 14] = {
     let near = corner_orbit(0.09273525031089122, 0.012248840519393659);
     let far = corner_orbit(0.3108859192633006, 0.018781320953002643);

@@ -9,8 +9,8 @@ static SHAPES_14: [[f64; 10]; 14] = shapes_at(&TETRAHEDRON_14);
 
 /// Fills `m` (10x10, row-major, kg) with the consistent mass, the same for each of the three axes.
 ///
-/// `m_ab = integral of density N_a N_b = sum_q density w detJ N_a N_b` by 14 points; `x` in m, `density` in kg/m3. The full
-/// 30x30 matrix is `m_ab delta_ij` at dofs `(3a + i, 3b + j)`. Exactly symmetric, and positive definite wherever
+/// `m_ab = integral of density N_a N_b = sum_q density w detJ N_a N_b` by 14 points; `x` in m, `density` in kg/m3. The
+/// full 30x30 matrix is `m_ab delta_ij` at dofs `(3a + i, 3b + j)`. Exactly symmetric, and positive definite wherever
 /// `detJ > 0`. Exact for straight edges; on curved ones the sum of all entries (the mass) still is.
 pub fn scalar_mass(x: &[[f64; 3]; 10], density: f64, m: &mut [f64; 100]) {
     m.fill(0.0);
@@ -60,7 +60,8 @@ impl MassProperties {
         self.first_moment.map(|s| s / self.mass)
     }
 
-    /// Inertia tensor about `point`, kg m2: kinetic energy is `w . I w / 2` for an angular velocity `w` about the point.
+    /// Inertia tensor about `point`, kg m2: kinetic energy is `w . I w / 2` for an angular velocity `w` about the
+    /// point.
     ///
     /// `I = integral of rho (r.r delta_ij - r_i r_j)` with `r = x - point`, that is `tr(P) delta_ij - P_ij` with
     /// `P_ij = S_ij - s_i p_j - p_i s_j + m p_i p_j`.
@@ -89,8 +90,8 @@ impl AddAssign for MassProperties {
 
 /// Mass, first and second moments of an element, by the points of the mass matrix.
 ///
-/// So they are what `u^T M u` gives for rigid motions, to round-off: mass and first moment are exact on curved edges too,
-/// the second moment (degree 7 there) on straight ones. Moments are summed about corner 0 and then shifted to the
+/// So they are what `u^T M u` gives for rigid motions, to round-off: mass and first moment are exact on curved edges
+/// too, the second moment (degree 7 there) on straight ones. Moments are summed about corner 0 and then shifted to the
 /// origin, so that a small element far from it loses no digits to the sum.
 pub fn mass_properties(x: &[[f64; 3]; 10], density: f64) -> MassProperties {
     let origin = x[0];

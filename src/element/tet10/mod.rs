@@ -25,11 +25,11 @@
 //! | volume, first moment (14 points) | exact | exact |
 //! | second moment (14 points) | exact | that of the mass matrix: 1e-6 for midsides 5 % off |
 //!
-//! Patch test, under a linear displacement: strain and stress are constant and right at every point of any element. With
-//! straight edges the nodal forces balance to round-off. With curved edges they are integrals of `cof(J) grad N_a`, of
-//! degree 3, so the 4-point rule leaves a residual that grows with the square of the midsides' offset (1e-3 of the element
-//! forces for offsets up to 4 % of the edge; and since that offset shrinks with the element, it vanishes on refinement);
-//! [`stiffness_14`] leaves none. `patch` measures both.
+//! Patch test, under a linear displacement: strain and stress are constant and right at every point of any element.
+//! With straight edges the nodal forces balance to round-off. With curved edges they are integrals of `cof(J) grad
+//! N_a`, of degree 3, so the 4-point rule leaves a residual that grows with the square of the midsides' offset (1e-3 of
+//! the element forces for offsets up to 4 % of the edge; and since that offset shrinks with the element, it vanishes on
+//! refinement); [`stiffness_14`] leaves none. `patch` measures both.
 
 mod mass;
 #[cfg(test)]

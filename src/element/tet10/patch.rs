@@ -1,8 +1,8 @@
 //! Patch test: a cube of 48 elements under a linear displacement must be in equilibrium at every inner node.
 //!
-//! A linear field is in the element's space on any geometry, straight or curved, so strain and stress are constant and exact
-//! at every point. The forces are then `f_a = sum_q w cof(J) grad N_a . stress`, whose integrand has degree 3 on a curved
-//! element (and 1 on a straight one), and only its exact integral cancels at an inner node.
+//! A linear field is in the element's space on any geometry, straight or curved, so strain and stress are constant and
+//! exact at every point. The forces are then `f_a = sum_q w cof(J) grad N_a . stress`, whose integrand has degree 3 on
+//! a curved element (and 1 on a straight one), and only its exact integral cancels at an inner node.
 
 use super::{EDGES, is_inverted, stiffness, stiffness_14};
 use crate::algebra::{dot, norm};
@@ -23,7 +23,8 @@ struct Patch {
 impl Patch {
     /// The unit cube in 2x2x2 cubes of six tetrahedra; nodes are points of the 5x5x5 grid of quarter steps.
     ///
-    /// The inner corner is moved by `0.1` at random, its midsides follow, and then every midside moves by up to `offset`.
+    /// The inner corner is moved by `0.1` at random, its midsides follow, and then every midside moves by up to
+    /// `offset`.
     fn new(random: &mut Random, offset: f64) -> Self {
         let mut numbers = BTreeMap::new();
         let mut tets = Vec::new();

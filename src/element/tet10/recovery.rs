@@ -28,8 +28,8 @@ fn strain_from(x: &[[f64; 3]; 10], u: &[[f64; 3]; 10], reference: &[[f64; 3]; 10
 
 /// Stress (Pa, Voigt xx yy zz xy yz zx) at the ten nodes, extrapolated linearly from the points of the stiffness rule.
 ///
-/// `x` and the nodal displacements `u` in m. Exact for a quadratic displacement on straight edges. Neighbouring elements
-/// give different values at a shared node: average them for a smooth picture, but not across parts.
+/// `x` and the nodal displacements `u` in m. Exact for a quadratic displacement on straight edges. Neighbouring
+/// elements give different values at a shared node: average them for a smooth picture, but not across parts.
 pub fn stress_at_nodes(x: &[[f64; 3]; 10], elasticity: &[[f64; 6]; 6], u: &[[f64; 3]; 10]) -> [[f64; 6]; 10] {
     let at_points: [[f64; 6]; 4] = std::array::from_fn(|q| {
         let e = strain_from(x, u, &GRADIENTS_4[q]);
@@ -81,7 +81,8 @@ mod tests {
 
     #[test]
     fn bending_of_a_straight_element_gives_the_exact_linear_stress_at_the_nodes() {
-        // Pure bending u = (x y, -x^2/2, 0) with poisson = 0, D = diag(E, E, E, G, G, G): stress xx = E y, all others zero.
+        // Pure bending u = (x y, -x^2/2, 0) with poisson = 0, D = diag(E, E, E, G, G, G): stress xx = E y, all others
+        // zero.
         let (young, shear) = (200.0, 100.0);
         let d = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { [young, shear][i / 3] } else { 0.0 }));
         let x = straight_tet(&mut Random::seeded(32));

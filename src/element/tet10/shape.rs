@@ -20,7 +20,8 @@ pub const NODES: [[f64; 3]; 10] = [
 /// The two corners of each edge; its midside is node `4 + index`.
 pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
-/// The nodes of each face as a 6-node facet: corners, then midsides, turning so that the normal points out of the element.
+/// The nodes of each face as a 6-node facet: corners, then midsides, turning so that the normal points out of the
+/// element.
 pub const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9]];
 
 /// Shape functions `N_a` at reference coordinates `at`.
@@ -134,7 +135,8 @@ pub fn determinants(x: &[[f64; 3]; 10]) -> [f64; 14] {
     })
 }
 
-/// Whether the element is turned inside out somewhere, or flat: `detJ <= 0` at a node or at a point of the stiffness rule.
+/// Whether the element is turned inside out somewhere, or flat: `detJ <= 0` at a node or at a point of the stiffness
+/// rule.
 pub fn is_inverted(x: &[[f64; 3]; 10]) -> bool {
     // Written so that a determinant that is not a number counts as inverted.
     !determinants(x).iter().all(|&det| det > 0.0)

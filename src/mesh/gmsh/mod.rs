@@ -1,8 +1,8 @@
 //! Gmsh's mesh format 4.1, ASCII and binary (<https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format>).
 //!
-//! [`scan`] reads numbers in either encoding, [`sections`] reads the file's tables, [`convert`] relates them: tags to indices, groups
-//! to parts, facets to tetrahedra. Gmsh writes the last two midsides of a 10-node tetrahedron in the other order than we do; this
-//! is put right on reading, and nothing after this module knows it.
+//! [`scan`] reads numbers in either encoding, [`sections`] reads the file's tables, [`convert`] relates them: tags to
+//! indices, groups to parts, facets to tetrahedra. Gmsh writes the last two midsides of a 10-node tetrahedron in the
+//! other order than we do; this is put right on reading, and nothing after this module knows it.
 
 mod convert;
 mod groups;
@@ -18,13 +18,13 @@ use std::path::Path;
 
 /// Reads a mesh of 10-node tetrahedra; `unit` is metres per unit of the file.
 ///
-/// Physical volumes become parts (in the order of `$PhysicalNames`), physical surfaces become surfaces with facets that look
-/// out of their part, physical curves and points become node sets. Nodes that no tetrahedron uses are left out.
+/// Physical volumes become parts (in the order of `$PhysicalNames`), physical surfaces become surfaces with facets that
+/// look out of their part, physical curves and points become node sets. Nodes that no tetrahedron uses are left out.
 ///
 /// # Errors
-/// [`Error::Input`] with the file and line (or byte, or the names of part and element) for a file that is missing, truncated or of
-/// another version, for elements of other kinds, volumes outside all parts, names with two meanings, facets and node sets
-/// off the tetrahedra, and inverted elements.
+/// [`Error::Input`] with the file and line (or byte, or the names of part and element) for a file that is missing,
+/// truncated or of another version, for elements of other kinds, volumes outside all parts, names with two meanings,
+/// facets and node sets off the tetrahedra, and inverted elements.
 pub fn read(path: &Path, unit: f64) -> Result<Mesh> {
     let bytes = std::fs::read(path).map_err(|reason| {
         Error::input(format!("{}: cannot read the mesh: {reason}. Give its path in [mesh] file", path.display()))

@@ -1,4 +1,5 @@
-//! A cursor over a Gmsh file that reads numbers as text or as little-endian bytes, and knows where it is when it cannot.
+//! A cursor over a Gmsh file that reads numbers as text or as little-endian bytes, and knows where it is when it
+//! cannot.
 
 use crate::{Error, Result};
 use std::fmt::Display;
@@ -109,7 +110,8 @@ impl<'a> Scan<'a> {
         if self.binary { Ok(u64::from_le_bytes(self.take()?)) } else { self.word("a whole number, 0 or above") }
     }
 
-    /// The number of things that follow, each at least one byte long: a count that cannot be is an error and not an allocation.
+    /// The number of things that follow, each at least one byte long: a count that cannot be is an error and not an
+    /// allocation.
     pub fn count(&mut self) -> Result<usize> {
         let count = self.size()?;
         match usize::try_from(count) {

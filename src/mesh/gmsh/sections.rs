@@ -21,7 +21,7 @@ pub struct ElementBlock {
     pub dimension: i32,
     /// Tag of the entity.
     pub entity: i32,
-    /// ElementKind of the elements.
+    /// Kind of the elements.
     pub kind: &'static ElementKind,
     /// Tags of the elements.
     pub elements: Vec<u64>,

@@ -1,0 +1,104 @@
+//! `--json`: one document on standard output for scripts, and errors as one on standard error.
+
+use crate::support::program::{Place, Said};
+use serde_json::Value;
+
+#[track_caller]
+fn document(said: &Said) -> Value {
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    serde_json::from_str(&said.out).unwrap()
+}
+
+/// Requires an object to have just these keys.
+#[track_caller]
+fn has_keys(object: &Value, keys: &str) {
+    let found: Vec<&String> = object.as_object().unwrap().keys().collect();
+    let mut expected: Vec<&str> = keys.split_whitespace().collect();
+    expected.sort_unstable();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn check_tells_what_a_model_is_on_two_ranks() {
+    let place = Place::blocks();
+    let check = document(&place.run(&["check", "brake.toml", "--json", "--contacts", "4"]));
+    has_keys(
+        &check,
+        "title mesh parts pairs layouts held_displacements connectors loads sum_of_loads_n equations entries factor_gb warnings",
+    );
+    assert_eq!(check["parts"][0]["part"], "disc");
+    // 30 x 30 x 10 mm of 7100 kg/m3.
+    assert!((check["parts"][0]["mass_kg"].as_f64().unwrap() - 0.0639).abs() < 1e-9);
+    assert!((check["pairs"][0]["area_m2"].as_f64().unwrap() - 4e-4).abs() < 1e-12);
+    assert_eq!(check["layouts"][0]["reference_nodes"], 4);
+    assert!((check["sum_of_loads_n"][2].as_f64().unwrap() + 1000.0).abs() < 1e-9);
+    let two: Value =
+        serde_json::from_str(&place.run_on(2, &["check", "brake.toml", "--json", "--contacts", "4"]).out).unwrap();
+    assert_eq!(two["parts"][1]["tetrahedra"], check["parts"][1]["tetrahedra"]);
+}
+
+/// The columns of the tables are the keys.
+#[test]
+fn a_run_tells_its_tables() {
+    let place = Place::pads();
+    let said = place.run(&["stability", "brake.toml", "--band=0:1500", "--friction=0.2,0.4", "-o", "run", "--json"]);
+    let run = document(&said);
+    has_keys(&run, "about frictions branches hopf verdict warnings failure costs folder");
+    assert_eq!((&run["folder"], run["failure"].is_null()), (&Value::from("run"), true));
+    has_keys(&run["verdict"], "status reason text");
+    assert_eq!((&run["verdict"]["status"], &run["verdict"]["reason"]), (&Value::from("unstable"), &Value::from("")));
+    assert!(run["verdict"]["text"].as_str().unwrap().starts_with("unstable first at friction 0.4: 1270 Hz"));
+    let rows = |name: &str| {
+        let mut table = csv::Reader::from_path(place.path(name)).unwrap();
+        let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+        let rows: Vec<Vec<String>> =
+            table.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect();
+        (header, rows)
+    };
+    let asked = run["frictions"].as_array().unwrap().iter().filter(|friction| friction["asked"] == true);
+    let asked: Vec<&Value> = asked.collect();
+    assert_eq!(asked.len(), 2);
+    let (header, modes) = rows("run/modes.csv");
+    let listed = asked.iter().flat_map(|friction| friction["modes"].as_array().unwrap());
+    for (row, mode) in modes.iter().zip(listed) {
+        for (name, field) in
+            header.iter().zip(row).filter(|(name, _)| !["friction", "unstable"].contains(&name.as_str()))
+        {
+            let (x, y): (f64, f64) = (field.parse().unwrap(), mode[name].as_f64().unwrap());
+            assert!((x - y).abs() <= 1e-2 * y.abs(), "{name}: {x} {y}");
+        }
+        assert_eq!(mode["unstable"], row[6] == "1");
+    }
+    let (header, hopf) = rows("run/hopf.csv");
+    assert_eq!(hopf.len(), run["hopf"].as_array().unwrap().len());
+    header.iter().for_each(|name| assert!(!run["hopf"][0][name].is_null(), "{name}"));
+    let (header, contact) = rows("run/contact.csv");
+    assert_eq!(contact.len(), 4);
+    header[1..].iter().for_each(|name| assert!(!asked[0]["contact"][0][name].is_null(), "{name}"));
+    let (header, _) = rows("run/explained.csv");
+    let unstable = asked[1]["modes"].as_array().unwrap().iter().find(|mode| mode["unstable"] == true).unwrap();
+    header[3..].iter().for_each(|name| assert!(unstable["explained"][0].get(name).is_some(), "{name}"));
+}
+
+#[test]
+fn statics_and_reduction_have_documents_too() {
+    let place = Place::blocks();
+    let run = document(&place.run(&["static", "brake.toml", "--json"]));
+    assert!(run["verdict"].is_null() && run["frictions"][0]["modes"].is_null());
+    assert!((run["frictions"][0]["contact"][0]["normal_force_n"].as_f64().unwrap() - 1000.0).abs() < 1e-3);
+    let arguments = ["reduce", "brake.toml", "--contacts", "4", "--limit", "240000", "--json"];
+    let reduced = document(&place.run(&arguments));
+    assert_eq!((&reduced["contacts"], &reduced["file"]), (&Value::from(4), &Value::from("brake.se.h5")));
+}
+
+#[test]
+fn errors_are_documents_on_two_ranks() {
+    let place = Place::empty();
+    for said in [place.run(&["check", "none.toml", "--json"]), place.run_on(2, &["check", "none.toml", "--json"])] {
+        assert_eq!((said.code, said.out.as_str()), (2, ""), "{}", said.err);
+        let error: Value = serde_json::from_str(said.err.lines().next().unwrap()).unwrap();
+        has_keys(&error, "error exit_code");
+        assert_eq!(error["exit_code"], 2);
+        assert!(error["error"].as_str().unwrap().contains("none.toml"));
+    }
+}

@@ -1,0 +1,16 @@
+//! The program as its users run it: commands, messages, files, ranks.
+
+mod bad_input;
+mod browser;
+mod command_line;
+mod external_matrices;
+mod json;
+mod matrix_formats;
+mod no_convergence;
+mod parallel;
+mod reduced_brake;
+mod results_file;
+mod resume;
+mod study;
+#[path = "../support/mod.rs"]
+mod support;

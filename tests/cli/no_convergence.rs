@@ -1,0 +1,82 @@
+//! An equilibrium that cannot be found: exit code 3, what was tried, and the last state to look at.
+
+use crate::support::pad_on_disc::PadOnDisc;
+use crate::support::program::{Place, Said, swap};
+
+/// Requires the report of a solve that gave up, on one rank.
+#[track_caller]
+fn gave_up(place: &Place, said: &Said, says: &[&str]) {
+    gave_up_with(place, said, says, "last_state.vtu");
+}
+
+/// The same, with the name of the last state's file.
+#[track_caller]
+fn gave_up_with(place: &Place, said: &Said, says: &[&str], last_state: &str) {
+    let Said { code, err, .. } = said;
+    assert_eq!(*code, 3, "{err}");
+    assert_eq!(err.lines().filter(|line| line.starts_with("error")).count(), 1, "one message: {err}");
+    for part in says {
+        assert!(err.contains(part), "{part:?} is not in: {err}");
+    }
+    assert!(err.contains(&format!("The last state is in run/{last_state}\n")), "{err}");
+    assert!(place.read(&format!("run/{last_state}")).ends_with("</VTKFile>\n"));
+    let summary = place.read("run/summary.txt");
+    assert!(summary.contains("not converged: no equilibrium at friction"), "{summary}");
+    let convergence = place.read("run/convergence.csv");
+    assert!(convergence.starts_with("friction,step,iteration,relative_residual,"), "{convergence}");
+}
+
+/// A load that pulls the pad off the disc. Its `force` points up.
+fn pulled() -> Place {
+    Place::with_blocks(|text| swap(&text, "[0, 0, -1000]", "[0, 0, 1000]"), &PadOnDisc::default())
+}
+
+const PULLED: [&str; 5] = [
+    "no equilibrium at friction 0.000 (step `contact without friction at the disc`)",
+    "Relative residuals: ",
+    "(40 iterations)",
+    "The loads pull disc / pad apart with 1000.0 N",
+    "Look at the directions of the loads",
+];
+
+#[test]
+fn a_load_that_pulls_the_pad_off() {
+    let place = pulled();
+    let said = place.run(&["static", "brake.toml", "-o", "run"]);
+    gave_up(&place, &said, &PULLED);
+    let steps = place.read("run/convergence.csv");
+    assert_eq!(steps.lines().filter(|line| line.contains("contact without friction")).count(), 41, "{steps}");
+    // A run that failed is a run: it can be replaced.
+    let said = place.run(&["stability", "brake.toml", "-o", "run", "--force"]);
+    gave_up(&place, &said, &PULLED);
+    assert!(!said.out.contains("stable"), "no verdict without modes: {}", said.out);
+}
+
+#[test]
+fn a_load_that_pulls_the_pad_off_two_ranks() {
+    let place = pulled();
+    let said = place.run_on(2, &["static", "brake.toml", "-o", "run"]);
+    gave_up_with(&place, &said, &PULLED, "last_state.pvtu");
+}
+
+/// Too few iterations for the status of the points to settle: what flickers is named.
+#[test]
+fn too_few_iterations() {
+    let place = Place::blocks();
+    let few = ["--petsc", "-equilibrium_snes_max_it 4"];
+    let said = place.run(&[&["static", "brake.toml", "-o", "run", "--friction", "1.9"][..], &few].concat());
+    gave_up(&place, &said, &["Flickering pair: disc / pad ("]);
+}
+
+/// What a sweep has found before it fails is kept. At high friction the pad digs into the disc.
+#[test]
+fn a_sweep_keeps_what_it_has() {
+    let place = Place::blocks();
+    let said = place.run(&["stability", "brake.toml", "-o", "run", "--friction", "0,0.4,1.9"]);
+    gave_up(&place, &said, &["no equilibrium at friction 1.", "the last one is at 1."]);
+    let modes = place.read("run/contact.csv");
+    let frictions: Vec<&str> = modes.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+    assert_eq!(frictions, ["0", "0.4"]);
+    assert!(place.list("run").contains(&"equilibrium_mu0.400.vtu".into()));
+    assert!(said.out.contains("stable: no mode of the band grows at these frictions"), "{}", said.out);
+}

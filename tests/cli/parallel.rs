@@ -1,0 +1,220 @@
+//! Several ranks: the same answers as one, and no rank left waiting when another fails.
+
+use std::collections::{HashMap, HashSet};
+use std::time::{Duration, Instant};
+
+use crate::support::program::{Place, Said, run_test_on_two_ranks};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use squeal::native::Session;
+
+/// Rows of a CSV file as numbers; texts are left out.
+fn numbers(table: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split(',').filter_map(|field| field.parse().ok()).collect();
+    table.lines().skip(1).map(row).collect()
+}
+
+/// Frequency (Hz) and growth rate (1/s) of all modes, and the contact table, on some ranks.
+fn stability(ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let place = Place::pads();
+    let arguments = ["stability", "brake.toml", "--band", "0:1500", "-o", "run"];
+    let Said { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
+    assert_eq!(code, 0, "{err}");
+    assert!(!place.path("pieces").exists(), "{ranks} ranks wrote beside their folder");
+    let modes = numbers(&place.read("run/modes.csv")).iter().map(|row| [row[2], row[3]]).collect();
+    (modes, numbers(&place.read("run/contact.csv")).concat())
+}
+
+#[test]
+fn two_and_three_ranks_find_what_one_finds() {
+    let (modes, contact) = stability(1);
+    assert!(modes.iter().any(|[_, growth]| *growth > 1.0), "a pair flutters: {modes:?}");
+    for ranks in [2, 3] {
+        let (others, other_contact) = stability(ranks);
+        assert_eq!(others.len(), modes.len());
+        for ([f, s], [g, t]) in modes.iter().zip(&others) {
+            let omega = std::f64::consts::TAU * f;
+            let difference = (std::f64::consts::TAU * (f - g)).hypot(s - t);
+            assert!(difference <= 1e-9 * omega, "{f} Hz {s} /s on one rank, {g} Hz {t} /s on {ranks}");
+        }
+        assert_eq!(other_contact.len(), contact.len());
+        for (a, b) in contact.iter().zip(&other_contact) {
+            assert!((a - b).abs() <= 1e-9 * a.abs(), "{a} on one rank, {b} on {ranks}");
+        }
+    }
+}
+
+/// Displacements by position (single precision, as bits): nodes of two parts may lie at one place.
+type Displacements = HashMap<[u32; 3], Vec<[f32; 3]>>;
+
+/// Displacements of the nodes of a VTU file, and the number of its cells.
+fn displacements(text: &str) -> (Displacements, usize) {
+    let xml = roxmltree::Document::parse(text).unwrap();
+    let vectors = |name: &str| -> Vec<[f32; 3]> {
+        let array = xml.descendants().find(|node| node.attribute("Name") == Some(name)).unwrap();
+        let bytes = STANDARD.decode(array.text().unwrap()).unwrap();
+        let numbers: Vec<f32> = bytes[8..].as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect();
+        numbers.as_chunks().0.to_vec()
+    };
+    let mut nodes = Displacements::new();
+    for (x, u) in vectors("Points").into_iter().zip(vectors("displacement")) {
+        nodes.entry(x.map(f32::to_bits)).or_default().push(u);
+    }
+    let piece = xml.descendants().find(|node| node.has_tag_name("Piece")).unwrap();
+    (nodes, piece.attribute("NumberOfCells").unwrap().parse().unwrap())
+}
+
+/// What a rank has of the mesh, or writes, adds up to what one rank has and writes alone.
+#[test]
+fn pieces_add_up_to_the_whole() {
+    let place = Place::pads();
+    let before_the_equations =
+        |said: &Said| said.out.lines().take_while(|l| !l.contains("equations")).collect::<Vec<_>>().join("\n");
+    let alone = place.run(&["check", "brake.toml"]);
+    let said = place.run(&["static", "brake.toml", "--friction", "0.4", "-o", "1"]);
+    assert_eq!((alone.code, said.code), (0, 0), "{}{}", alone.err, said.err);
+    let (whole, n_cells) = displacements(&place.read("1/equilibrium_mu0.400.vtu"));
+    let largest = whole.values().flatten().flatten().fold(0.0, |most: f32, u| most.max(u.abs()));
+    for ranks in [2, 3] {
+        let check = place.run_on(ranks, &["check", "brake.toml"]);
+        assert_eq!(before_the_equations(&check), before_the_equations(&alone));
+        let folder = ranks.to_string();
+        let said = place.run_on(ranks, &["static", "brake.toml", "--friction", "0.4", "-o", &folder]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        let list = place.read(&format!("{folder}/equilibrium_mu0.400.pvtu"));
+        let (mut seen, mut cells) = (HashSet::new(), 0);
+        for rank in 0..ranks {
+            let name = format!("pieces/equilibrium_mu0.400.{rank}.vtu");
+            assert!(list.contains(&format!("Source=\"{name}\"")), "{list}");
+            let (piece, n) = displacements(&place.read(&format!("{folder}/{name}")));
+            assert!(n < n_cells * 2 / ranks, "{n} of {n_cells} cells on rank {rank} of {ranks}");
+            cells += n;
+            for (x, u) in &piece {
+                let is_near = |a: &[f32; 3], b: &[f32; 3]| (0..3).all(|i| (a[i] - b[i]).abs() <= 1e-6 * largest);
+                assert!(
+                    u.iter().all(|u| whole[x].iter().any(|w| is_near(u, w))),
+                    "{u:?}, and {:?} on one rank",
+                    whole[x]
+                );
+            }
+            seen.extend(piece.into_keys());
+        }
+        assert_eq!((cells, seen.len()), (n_cells, whole.len()), "{ranks} ranks");
+    }
+}
+
+/// Runs one of the tests below, which are told apart from tests by `ignore`, on two ranks.
+fn on_two_ranks(name: &str) -> Said {
+    let start = Instant::now();
+    let said = run_test_on_two_ranks(&format!("parallel::{name}"));
+    assert!(start.elapsed() < Duration::from_secs(60), "{name} hung");
+    said
+}
+
+#[test]
+fn a_panic_on_one_rank_ends_all() {
+    let said = on_two_ranks("rank_one_panics");
+    assert_eq!(said.code, 101, "{}", said.err);
+    assert!(said.err.contains("rank 1 has a bug"), "{}", said.err);
+}
+
+#[test]
+fn an_error_of_the_library_on_one_rank_ends_all() {
+    let said = on_two_ranks("rank_one_fails");
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert!(said.err.contains("error on rank 1: MUMPS: it has a bug"), "{}", said.err);
+}
+
+#[test]
+fn an_input_error_on_one_rank_is_told_once_by_the_first() {
+    let said = on_two_ranks("rank_one_misses_a_file");
+    assert_eq!(said.code, 2, "{}", said.err);
+    assert_eq!(said.err.matches("error: rank 1 has no such file").count(), 1, "{}", said.err);
+}
+
+/// Runs `work` as the program runs a command, while the other rank waits for this one.
+fn as_the_program(work: fn() -> squeal::Result<()>) -> ! {
+    let comm = Session::start(&[]).unwrap();
+    let code = squeal::cli::guard(&comm, || {
+        if comm.rank() == 1 {
+            work()?;
+        }
+        comm.barrier();
+        Ok(())
+    });
+    drop(comm);
+    std::process::exit(code)
+}
+
+#[test]
+#[ignore = "one of the ranks of a_panic_on_one_rank_ends_all"]
+fn rank_one_panics() {
+    as_the_program(|| panic!("rank 1 has a bug"))
+}
+
+#[test]
+#[ignore = "one of the ranks of an_error_of_the_library_on_one_rank_ends_all"]
+fn rank_one_fails() {
+    as_the_program(|| Err(squeal::Error::library("MUMPS")("it has a bug")))
+}
+
+#[test]
+#[ignore = "one of the ranks of an_input_error_on_one_rank_is_told_once_by_the_first"]
+fn rank_one_misses_a_file() {
+    let comm = Session::start(&[]).unwrap();
+    let own = if comm.rank() == 1 { Err(squeal::Error::input("rank 1 has no such file")) } else { Ok(()) };
+    let code = squeal::cli::guard(&comm, || comm.agree(own));
+    drop(comm);
+    std::process::exit(code)
+}
+
+#[test]
+fn numbers_and_values_reach_other_ranks() {
+    let said = on_two_ranks("ranks_exchange_numbers_and_values");
+    assert_eq!(said.code, 0, "{} {}", said.out, said.err);
+}
+
+#[test]
+fn an_error_of_mpi_ends_all() {
+    let said = on_two_ranks("ranks_broadcast_from_a_rank_that_is_not_there");
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert!(said.err.contains("MPI_Bcast failed: MPI_ERR_ROOT"), "{}", said.err);
+}
+
+#[test]
+#[ignore = "one of the ranks of numbers_and_values_reach_other_ranks"]
+fn ranks_exchange_numbers_and_values() {
+    let comm = Session::start(&[]).unwrap();
+    let (rank, other) = (comm.rank(), 1 - comm.rank());
+    assert_eq!((comm.sum(rank + 1), comm.max(-1.5_f32), comm.min(rank as i64)), (3, -1.5, 0));
+    // Of equal values the first; a larger one wherever it is.
+    let first = comm.max_loc_all(&[2.0, rank as f64, -(rank as f64)]);
+    assert_eq!(first.iter().map(|found| found.rank()).collect::<Vec<_>>(), [0, 1, 0]);
+    assert_eq!(first.iter().map(|found| found.value).collect::<Vec<_>>(), [2.0, 1.0, 0.0]);
+    assert_eq!(comm.join(&vec![rank as u8; 1 + rank]), [0, 1, 1]);
+    let theirs = comm.exchange(&[vec![rank as u32; 2], vec![10 + rank as u32]]);
+    assert_eq!(theirs, if rank == 0 { [vec![0, 0], vec![1, 1]] } else { [vec![10], vec![11]] });
+    assert_eq!(comm.broadcast(1, vec![rank as i32; 1 + rank]), [1, 1]);
+    let value = (rank == 1, format!("rank {rank}"), vec![[0.5, rank as f64]]);
+    assert_eq!(comm.broadcast_value(1, value.clone()), (true, "rank 1".to_owned(), vec![[0.5, 1.0]]));
+    assert_eq!(
+        comm.join_values(value).iter().map(|(_, text, _)| text.as_str()).collect::<Vec<_>>(),
+        ["rank 0", "rank 1"]
+    );
+    assert_eq!(comm.gather_values(Some(rank)), if rank == 0 { vec![Some(0), Some(1)] } else { Vec::new() });
+    if rank == 0 {
+        comm.send_value(&[1.5, 2.5], other)
+    } else {
+        assert_eq!(comm.receive_value::<[f64; 2]>(other), [1.5, 2.5])
+    }
+    let own = if rank == 1 { Err(squeal::Error::not_converged("late")) } else { Ok(()) };
+    let agreed = comm.agree(own).unwrap_err();
+    assert_eq!((agreed.kind(), agreed.to_string().as_str()), (squeal::ErrorKind::NotConverged, "late"));
+}
+
+#[test]
+#[ignore = "one of the ranks of an_error_of_mpi_ends_all"]
+fn ranks_broadcast_from_a_rank_that_is_not_there() {
+    let comm = Session::start(&[]).unwrap();
+    comm.broadcast(7, vec![1_u8]);
+}

@@ -1,0 +1,291 @@
+//! A run that ends early, at whatever moment and by whatever signal, goes on with the same command and finds what it
+//! would have found.
+//!
+//! No two runs are the same to the last bit, since clocks decide which factors are made anew. So at the frictions asked
+//! for eigenvalues are compared to 1e-9, and what tracking solves in between to the tolerance of Hopf points.
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::support::program::{Place, Said, mpirun, swap};
+use squeal::results::{Results, Value, file};
+
+/// A sweep in which two modes couple between the frictions asked for.
+const SWEEP: [&str; 6] = ["stability", "brake.toml", "--band=0:1500", "--friction=0.2,0.4", "-o", "run"];
+
+/// Starts the program without waiting for it.
+fn start(place: &Place, ranks: usize, arguments: &[&str]) -> Child {
+    let program = assert_cmd::cargo::cargo_bin("squeal");
+    let mut command = if ranks == 1 {
+        Command::new(program)
+    } else {
+        let mpirun = mpirun(ranks, &program);
+        let mut command = Command::new(mpirun.get_program());
+        command.args(mpirun.get_args());
+        mpirun.get_envs().for_each(|(name, value)| {
+            command.env(name, value.unwrap_or_default());
+        });
+        command
+    };
+    command.args(arguments).current_dir(place.path("")).env("OPENBLAS_NUM_THREADS", "1").env("RUST_BACKTRACE", "0");
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Values that an unfinished run has finished.
+fn n_done(place: &Place) -> usize {
+    let done = |name: &String| name.starts_with("value-");
+    let folder = place.path(".run.unfinished/.resume");
+    if folder.exists() { place.list(".run.unfinished/.resume").iter().filter(|name| done(name)).count() } else { 0 }
+}
+
+/// Waits until so many values are done, or the run is over.
+fn wait_for(place: &Place, child: &mut Child, n: usize) {
+    let patience = Instant::now() + Duration::from_secs(200);
+    while n_done(place) < n && child.try_wait().unwrap().is_none() {
+        assert!(Instant::now() < patience, "{n} values do not come");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn signal(name: &str, process: u32) {
+    let sent = Command::new("bash").args(["-c", &format!("kill -{name} {process}")]).status().unwrap();
+    assert!(sent.success());
+}
+
+fn end(child: Child) -> Said {
+    child.wait_with_output().unwrap().into()
+}
+
+fn results(place: &Place, folder: &str) -> Results {
+    file::read(&place.path(&format!("{folder}/results.h5"))).unwrap()
+}
+
+/// Values by friction, those asked for and the others.
+fn sorted(results: &Results) -> [Vec<&Value>; 2] {
+    [true, false].map(|asked| {
+        let mut values: Vec<&Value> = results.values.iter().filter(|value| value.asked == asked).collect();
+        values.sort_by(|a, b| a.friction.total_cmp(&b.friction));
+        values
+    })
+}
+
+#[track_caller]
+fn assert_same(found: &Results, expected: &Results) {
+    let ([asked, between], [same, others]) = (sorted(found), sorted(expected));
+    assert_eq!((asked.len(), between.len()), (same.len(), others.len()));
+    for (a, b) in asked.iter().zip(&same) {
+        assert_eq!((a.friction, a.modes.len(), &a.status, a.count), (b.friction, b.modes.len(), &b.status, b.count));
+        assert!(a.pressure.iter().zip(&b.pressure).all(|(p, q)| (p - q).abs() <= 1e-6 * q.abs()));
+        for (x, y) in a.modes.iter().zip(&b.modes) {
+            let error = (x.lambda - y.lambda).norm() / y.lambda.norm();
+            assert!(error < 1e-9, "{} and {} at {}: {error:.1e}", x.lambda, y.lambda, a.friction);
+            assert_eq!(
+                (x.unstable, x.shape.is_some(), x.sources.len()),
+                (y.unstable, y.shape.is_some(), y.sources.len())
+            );
+        }
+    }
+    for (a, b) in between.iter().zip(&others) {
+        assert!((a.friction - b.friction).abs() < 1e-3 && a.modes.len() == b.modes.len());
+    }
+    let [found, expected] = [found, expected].map(|results| results.diagram.as_ref().unwrap());
+    let lengths = |d: &squeal::tracking::Diagram| d.branches.iter().map(|b| b.points.len()).collect::<Vec<_>>();
+    assert_eq!((lengths(found), &found.doubtful), (lengths(expected), &expected.doubtful));
+    assert_eq!(found.hopf.len(), expected.hopf.len());
+    for (a, b) in found.hopf.iter().zip(&expected.hopf) {
+        assert_eq!((a.branch, a.onset, a.partner.map(|p| p.branch)), (b.branch, b.onset, b.partner.map(|p| p.branch)));
+        assert!((a.value - b.value).abs() < 1e-3 && (a.omega - b.omega).abs() < 1e-3 * b.omega, "{a:?} {b:?}");
+    }
+}
+
+/// Numbers from 0 to 1 that look like chance.
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Kills a run at random moments, again and again as it goes on, and lets it end after so many. Gives the moments
+/// (values done, s).
+fn kill_and_go_on(place: &Place, expected: &Results, chance: &mut Chance, n_kills: usize) -> Vec<(usize, f64)> {
+    let n_values = expected.values.len() as f64;
+    let longest = expected.values.iter().map(|value| value.seconds).fold(0.0, f64::max);
+    let mut moments = Vec::new();
+    for i in 0..n_kills {
+        let from = n_values * i as f64 / n_kills as f64;
+        let n = (from + chance.next() * n_values / n_kills as f64) as usize;
+        let mut child = start(place, 1, &SWEEP);
+        wait_for(place, &mut child, n);
+        std::thread::sleep(Duration::from_secs_f64(longest * chance.next()));
+        moments.push((n_done(place), longest));
+        // The run may be over before.
+        let _ = child.kill();
+        let killed = end(child);
+        if killed.code == 0 {
+            break;
+        }
+        assert!(!place.path("run").exists(), "nothing half written under the name");
+    }
+    if !place.path("run").exists() {
+        let said = place.run(&SWEEP);
+        assert_eq!(said.code, 0, "{}", said.err);
+        assert!(n_done(place) == 0 && said.out.contains("that an earlier run has found"), "{}", said.out);
+    }
+    assert_same(&results(place, "run"), expected);
+    assert!(!place.path(".run.unfinished").exists());
+    assert!(
+        place.list("run").iter().all(|name| name == ".squeal" || !name.starts_with('.')),
+        "{:?}",
+        place.list("run")
+    );
+    moments
+}
+
+/// How often to kill: more by hand.
+fn n_rounds(default: usize) -> usize {
+    std::env::var("SQUEAL_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(default)
+}
+
+#[test]
+fn a_killed_run_goes_on() {
+    let place = Place::pads();
+    let said = place.run(&SWEEP);
+    assert_eq!(said.code, 0, "{}", said.err);
+    std::fs::rename(place.path("run"), place.path("expected")).unwrap();
+    let expected = results(&place, "expected");
+    let hopf = &expected.diagram.as_ref().unwrap().hopf;
+    assert!(!hopf.is_empty() && expected.values.len() > 3, "{hopf:?}");
+    let mut chance = Chance(7);
+    for round in 0..n_rounds(1) {
+        let moments = kill_and_go_on(&place, &expected, &mut chance, 2);
+        println!("round {round}: killed at {moments:?} (values done, seconds of the longest)");
+        std::fs::remove_dir_all(place.path("run")).unwrap();
+    }
+}
+
+/// A rank is killed; mpirun ends the others.
+#[test]
+fn a_killed_rank_ends_a_run_that_goes_on() {
+    let place = Place::pads();
+    let arguments = ["stability", "brake.toml", "--band=0:1000", "--friction=0.2,0.3", "-o", "run"];
+    let mut child = start(&place, 2, &arguments);
+    wait_for(&place, &mut child, 1);
+    let children = std::fs::read_to_string(format!("/proc/{0}/task/{0}/children", child.id())).unwrap();
+    signal("KILL", children.split_whitespace().last().unwrap().parse().unwrap());
+    assert_ne!(end(child).code, 0);
+    assert!(!place.path("run").exists() && n_done(&place) >= 1);
+    let said = place.run(&arguments);
+    assert_eq!(said.code, 2, "{}", said.err);
+    assert!(said.err.contains("number of ranks was 2, is 1"), "{}", said.err);
+    let said = place.run_on(2, &arguments);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let alone = place.run(&[&arguments[..5], &["alone"]].concat());
+    assert_eq!(alone.code, 0, "{}", alone.err);
+    assert_same(&results(&place, "run"), &results(&place, "alone"));
+}
+
+/// What is followed over friction by vectors alone needs the damping of each value, too.
+#[test]
+fn friction_damping_goes_on() {
+    let place = Place::with_pads(|text| swap(&text, "[stability]", "[stability]\nfriction_damping = true"));
+    let arguments = ["stability", "brake.toml", "--band=0:1000", "--friction=0.2,0.25,0.3", "-o", "run"];
+    let said = place.run(&arguments);
+    assert_eq!(said.code, 0, "{}", said.err);
+    std::fs::rename(place.path("run"), place.path("expected")).unwrap();
+    let mut child = start(&place, 1, &arguments);
+    wait_for(&place, &mut child, 2);
+    child.kill().unwrap();
+    end(child);
+    let said = place.run(&arguments);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_same(&results(&place, "run"), &results(&place, "expected"));
+}
+
+#[test]
+fn ctrl_c_ends_after_the_friction_at_hand() {
+    let place = Place::blocks();
+    let arguments = ["static", "brake.toml", "--friction=0:1:0.002", "-o", "run"];
+    for (name, code) in [("INT", 130), ("TERM", 143)] {
+        let mut child = start(&place, 1, &arguments);
+        let n = n_done(&place);
+        wait_for(&place, &mut child, n + 2);
+        signal(name, child.id());
+        let Said { code: found, out, err } = end(child);
+        assert_eq!((found, out.as_str()), (code, ""), "{err}");
+        for part in
+            ["ending after this friction; a second signal", "stopped after friction 0.", "The same command goes on"]
+        {
+            assert!(err.contains(part), "{part}: {err}");
+        }
+        assert!(!err.contains("error") && n_done(&place) > n && !place.path("run").exists(), "{err}");
+    }
+    let said = place.run(&arguments);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(results(&place, "run").values.len(), 501);
+    assert!(said.err.contains("an earlier run has finished"), "{}", said.err);
+}
+
+#[test]
+fn what_was_begun_otherwise_is_not_gone_on_with() {
+    let place = Place::blocks();
+    let with = |friction: &'static str| ["static", "brake.toml", friction, "-o", "run"];
+    let mut child = start(&place, 1, &with("--friction=0:1:0.002"));
+    wait_for(&place, &mut child, 2);
+    // Two runs do not write one folder.
+    let said = place.run(&with("--friction=0:1:0.002"));
+    assert!(said.code == 2 && said.err.contains("another run is writing run"), "{}", said.err);
+    child.kill().unwrap();
+    end(child);
+    let refused = |says: &str| {
+        let said = place.run(&with("--friction=0:1:0.002"));
+        assert_eq!(said.code, 2, "{}", said.err);
+        for part in ["run is unfinished (", says, "--force to start anew"] {
+            assert!(said.err.contains(part), "{part}: {}", said.err);
+        }
+    };
+    let said = place.run(&with("--friction=0.1"));
+    assert!(said.code == 2 && said.err.contains("frictions was 0, 0.002, "), "{}", said.err);
+    let model = place.read("brake.toml");
+    place.write("brake.toml", swap(&model, "-1000", "-1001"));
+    refused("SHA-256 of the model was ");
+    place.write("brake.toml", &model);
+    let mesh = place.read("blocks.msh");
+    place.write("blocks.msh", format!("{mesh}\n"));
+    refused("SHA-256 of the mesh was ");
+    place.write("blocks.msh", &mesh);
+    let value = std::fs::read(place.path(".run.unfinished/.resume/value-0001.h5")).unwrap();
+    place.write(".run.unfinished/.resume/value-0001.h5", &value[..value.len() / 2]);
+    let said = place.run(&with("--friction=0:1:0.002"));
+    assert!(said.code == 2 && said.err.contains("value-0001.h5 is incomplete or damaged"), "{}", said.err);
+    let said = place.run(&[&with("--friction=0.1")[..], &["--force"]].concat());
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(results(&place, "run").about.frictions, [0.1]);
+}
+
+/// What fits on the disc is kept, and the run goes on when there is room.
+#[test]
+fn a_full_disc_is_told() {
+    let place = Place::blocks();
+    let arguments = ["static", "brake.toml", "--friction=0:0.5:0.01", "-o", "run"];
+    let program = assert_cmd::cargo::cargo_bin("squeal");
+    // A limit on the length of files stands for a full disc. The signal that comes with it is ignored.
+    let script = format!("trap '' XFSZ; exec {} {}", program.display(), arguments.join(" "));
+    let mut command = Command::new("bash");
+    command.args(["-c", &script]).current_dir(place.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    wait_for(&place, &mut child, 1);
+    let limit = Command::new("prlimit").args(["--pid", &child.id().to_string(), "--fsize=4096"]).status().unwrap();
+    assert!(limit.success());
+    let said = end(child);
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert!(said.err.contains("File too large") && said.err.contains(".run.unfinished"), "{}", said.err);
+    assert!(!place.path("run").exists() && n_done(&place) >= 1);
+    let said = place.run(&arguments);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(results(&place, "run").values.len(), 51);
+    assert!(Path::new(&place.path("run/equilibrium_mu0.500.vtu")).exists());
+}

@@ -1,0 +1,13 @@
+//! The physics by way of the library: equilibrium, modes, energies and reduced models against theory and other
+//! programs.
+
+mod balance;
+mod branches;
+mod calculix;
+mod eigensolvers;
+mod explain;
+mod factors;
+mod manufactured_solution;
+mod super_element;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,331 @@
+//! Super-elements against the models that they reduce: a pad pressed by a piston on a sliding disc, all blocks.
+//!
+//! ```text
+//!           | force           z
+//!       +---v---+             |_ y     the disc turns about an axis far away: it slides along y
+//!       | piston|
+//!     +-+-------+-+           piston and pad stick; 4 reference nodes between pad and disc
+//!     |    pad    |
+//!   +-+-----------+-+
+//!   |     disc      |         held at its bottom
+//!   +---------------+
+//! ```
+
+use crate::support::block::Block;
+use crate::support::{assert_close, brake};
+use num_complex::Complex64;
+use squeal::Result;
+use squeal::analysis::Sweep;
+use squeal::assembly::System;
+use squeal::contact::{Interface, Response, Status};
+use squeal::equilibrium::Equilibrium;
+use squeal::equilibrium::LabelledFactor;
+use squeal::mesh::Mesh;
+use squeal::model::NormalLaw;
+use squeal::native::{Block as Columns, Comm, Precision, Session};
+use squeal::reduction::craig_bampton::{self, Structure};
+use squeal::reduction::super_element::{Origin, SuperElement};
+use squeal::reduction::{contacts, craig_bampton::Reduced};
+use squeal::stability::{BandRequest, BandSolver, EigenOptions, QuadraticProblem};
+use squeal::structure::FullModel;
+
+const MODEL: &str = r#"
+[material.iron]
+young = 110e9
+poisson = 0.27
+density = 7100
+[material.lining]
+young = 9e9
+poisson = 0.25
+density = 2600
+[part.disc]
+material = "iron"
+rayleigh = { alpha = 5.0, beta = 1e-7 }
+[part.pad]
+material = "lining"
+rayleigh = { alpha = 20.0, beta = 2e-7 }
+[part.piston]
+material = "iron"
+[[fix]]
+nodes = "disc_z0"
+axes = "xyz"
+[[fix]]
+nodes = "piston_z1"
+axes = "xy"
+[[rotation]]
+part = "disc"
+axis = [0, 0, 1]
+through = [-0.1, 0.01, 0]
+speed = 5.0
+[[contact]]
+name = "disc / pad"
+slave = "pad_z0"
+master = "disc_z1"
+law = { linear = 2e13 }
+friction = 0.4
+[[contact]]
+name = "piston / pad"
+slave = "piston_z0"
+master = "pad_z1"
+law = { linear = 2e13 }
+friction = 0.6
+stick = 1e13
+separation = false
+[[load]]
+name = "force"
+on = "piston_z1"
+force = [0, 0, -1000]
+[stability]
+band = [0, 30000]
+"#;
+
+const N_CONTACTS: usize = 4;
+const FRICTION: f64 = 0.4;
+const BAND: [f64; 2] = [0.0, 30000.0];
+
+/// A block of `cells` from `corner` on, in millimetres.
+fn block(mesh: &mut Mesh, part: &str, cells: [usize; 3], corner: [f64; 3], size: [f64; 3]) {
+    let map = |s: [f64; 3]| [0, 1, 2].map(|i| 1e-3 * (corner[i] + size[i] * s[i]));
+    Block { part, cells, wraps: false, map: &map }.add_to(mesh);
+}
+
+/// The brake with its reduced contacts.
+fn blocks(text: &str) -> FullModel {
+    let mut mesh = Mesh::default();
+    block(&mut mesh, "disc", [3, 3, 1], [0.0, 0.0, 0.0], [30.0, 31.0, 10.0]);
+    block(&mut mesh, "pad", [2, 2, 1], [5.0, 5.0, 10.0], [20.0, 21.0, 5.0]);
+    block(&mut mesh, "piston", [1, 1, 1], [8.0, 9.0, 15.0], [12.0, 13.0, 8.0]);
+    let mut brake = brake(text, mesh);
+    brake.interface = contacts::reduce(&brake.model, &brake.mesh, &brake.interface, N_CONTACTS).unwrap();
+    brake
+}
+
+/// The full model at its equilibrium.
+struct Full {
+    brake: FullModel,
+    system: System,
+    equilibrium: Equilibrium,
+    eigenvalues: Vec<Complex64>,
+}
+
+fn eigenvalues(sweep: &mut Sweep, equilibrium: &Equilibrium) -> Vec<Complex64> {
+    let band = sweep.modes(equilibrium, BAND, &mut ()).unwrap();
+    assert!(band.count.agrees());
+    band.modes.iter().map(|mode| mode.lambda).collect()
+}
+
+impl Full {
+    fn new(comm: &Comm, text: &str, friction: f64) -> Full {
+        let brake = blocks(text);
+        let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
+        let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
+        let eigenvalues = eigenvalues(&mut sweep, &equilibrium);
+        drop(sweep);
+        Full { brake, system, equilibrium, eigenvalues }
+    }
+
+    fn reduce(&self, limit: f64) -> (Reduced, SuperElement) {
+        let loaded = [self.brake.mesh.node_set("piston_z1").unwrap()];
+        let Full { brake, system, equilibrium, .. } = self;
+        let structure = Structure { system, interface: &brake.interface, equilibrium, loaded: &loaded };
+        let reduced = craig_bampton::reduce(&structure, limit, &mut |_| ()).unwrap();
+        let origin = Origin {
+            title: "blocks".into(),
+            model: "none".into(),
+            mesh: "none".into(),
+            mesh_hash: String::new(),
+            program: String::new(),
+            friction: equilibrium.friction,
+            n_equations: system.dofs.n_global(),
+            band: BAND,
+            limit,
+            friction_damping: false,
+        };
+        let element = SuperElement::new(origin, &structure, &reduced, &[[0.0; 3]]).unwrap();
+        (reduced, element)
+    }
+}
+
+/// Equilibrium and eigenvalues of a super-element.
+fn analyse(
+    comm: &Comm,
+    element: &SuperElement,
+    law: Option<NormalLaw>,
+    friction: f64,
+) -> (Interface, Equilibrium, Vec<Complex64>) {
+    let interface = element.interface(law);
+    let system = element.assemble(comm, &interface, 1.0).unwrap();
+    let mut sweep = Sweep::new(&system, &interface, false).unwrap();
+    let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
+    let eigenvalues = eigenvalues(&mut sweep, &equilibrium);
+    drop(sweep);
+    (interface, equilibrium, eigenvalues)
+}
+
+/// Largest distance of eigenvalues over their modulus.
+fn largest_error(found: &[Complex64], exact: &[Complex64]) -> f64 {
+    assert_eq!(found.len(), exact.len());
+    found.iter().zip(exact).map(|(f, e)| (f - e).norm() / e.norm()).fold(0.0, f64::max)
+}
+
+/// With every fixed-interface mode kept the basis is a change of coordinates: eigenvalues to 1e-10 (measured 8e-13).
+#[test]
+fn all_modes_kept_give_the_full_models_eigenvalues() {
+    let comm = Session::start(&[]).unwrap();
+    let full = Full::new(&comm, MODEL, FRICTION);
+    let (_, element) = full.reduce(f64::INFINITY);
+    // The load point keeps its two held coordinates.
+    assert_eq!(element.n_coordinates(), full.system.dofs.n_global() + 2);
+    let (_, _, found) = analyse(&comm, &element, None, FRICTION);
+    let error = largest_error(&found, &full.eigenvalues);
+    println!("{} modes, largest error {error:.1e}", found.len());
+    assert!(found.len() >= 5 && error < 1e-10, "{error}");
+}
+
+/// In the modal coordinates of the first friction the others have the modes that a search with a factor of their own
+/// finds: eigenvalues to 1e-9 (measured 2.7e-10, the other search's), and left vectors solve the transposed problem as
+/// those of the search do, to 1e-10 (measured 2.3e-11).
+#[test]
+fn modal_coordinates_of_one_friction_serve_the_others() {
+    const WIDE: [f64; 2] = [0.0, 60000.0];
+    let comm = Session::start(&[]).unwrap();
+    let (_, element) = Full::new(&comm, MODEL, FRICTION).reduce(2.0 * WIDE[1]);
+    let interface = element.interface(Some(NormalLaw::Cubic { k1: 2e13, k3: 1e25 }));
+    let system = element.assemble(&comm, &interface, 1.0).unwrap();
+    let mut sweep = Sweep::new(&system, &interface, false).unwrap();
+    for friction in [FRICTION, 0.2] {
+        let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
+        let modes = sweep.modes(&equilibrium, WIDE, &mut ()).unwrap().modes;
+        let left = sweep.left_vectors(&modes, |_| 1e-7).unwrap();
+        let look = |problem: &QuadraticProblem| {
+            let mut solver = BandSolver::new(EigenOptions::default(), Vec::new());
+            let (mut factor, request) =
+                (LabelledFactor::new(Precision::Double), BandRequest { band: WIDE, shift: 1.0 });
+            let direct = solver.solve_band(problem, &mut factor, &request, &mut |_| ())?.modes;
+            let [found, exact] =
+                [&modes, &direct].map(|modes| modes.iter().map(|mode| mode.lambda).collect::<Vec<_>>());
+            let errors = transposed_errors(problem, &found, &left)?;
+            let (right, left) = (largest_error(&found, &exact), errors.into_iter().fold(0.0, f64::max));
+            println!("friction {friction}: {} modes, right {right:.1e}, left {left:.1e}", found.len());
+            assert!(found.len() > 6 && right < 1e-9 && left < 1e-10, "{right} {left}");
+            Ok(())
+        };
+        sweep.linearise(&equilibrium, look).unwrap();
+    }
+}
+
+/// `|P(lambda)^T v| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |v|)`, `v = conj(y)`, largest components.
+fn transposed_errors(problem: &QuadraticProblem, lambdas: &[Complex64], y: &Columns) -> Result<Vec<f64>> {
+    let products = [problem.matrices.k, problem.matrices.c, problem.matrices.m].map(|a| y.multiplied_by_transpose(a));
+    let norms = [problem.matrices.k.norm_inf()?, problem.matrices.c.norm_inf()?, problem.matrices.m.norm_inf()?];
+    let [k, c, m] = products;
+    let products = [k?, c?, m?];
+    let largest = |column: &dyn Fn(usize) -> Complex64| (0..y.n_local()).map(|i| column(i).norm()).fold(0.0, f64::max);
+    let error = |(j, lambda): (usize, &Complex64)| {
+        let of = |a: &Columns, i: usize| Complex64::new(a.column(2 * j)[i], -a.column(2 * j + 1)[i]);
+        let powers = [Complex64::ONE, *lambda, lambda * lambda];
+        let residual = |i: usize| products.iter().zip(powers).map(|(a, power)| power * of(a, i)).sum::<Complex64>();
+        let scale: f64 = norms.iter().zip(powers).map(|(norm, power)| norm * power.norm()).sum();
+        largest(&residual) / (scale * largest(&|i| of(y, i)))
+    };
+    Ok(lambdas.iter().enumerate().map(error).collect())
+}
+
+/// A basis that grows can only lower the frequencies of a conservative model, and never below the exact ones
+/// (Rayleigh-Ritz).
+#[test]
+fn frequencies_fall_to_the_exact_ones_as_modes_are_added() {
+    let comm = Session::start(&[]).unwrap();
+    let undamped: String =
+        MODEL.lines().filter(|line| !line.starts_with("rayleigh")).map(|l| format!("{l}\n")).collect();
+    let full = Full::new(&comm, &undamped, 0.0);
+    let exact: Vec<f64> = full.eigenvalues.iter().map(|l| l.im).collect();
+    let mut above: Vec<f64> = vec![f64::INFINITY; exact.len()];
+    for limit in [50e3, 100e3, 200e3] {
+        let (reduced, element) = full.reduce(limit);
+        let (_, _, found) = analyse(&comm, &element, None, 0.0);
+        let errors: Vec<f64> = found.iter().zip(&exact).map(|(f, e)| f.im / e - 1.0).collect();
+        println!("{} fixed-interface modes: {errors:?}", reduced.frequencies.len());
+        for (error, above) in errors.iter().zip(&mut above) {
+            assert!(*error > -1e-9 && *error < *above + 1e-9, "{error} after {above}");
+            *above = *error;
+        }
+    }
+    assert!(above.iter().all(|error| *error < 1e-8), "{above:?}");
+}
+
+/// The free brake moves rigidly in its constraint modes alone: no strain, and the mass and inertia of the full model.
+#[test]
+fn constraint_modes_hold_rigid_motions_with_their_mass_and_inertia() {
+    let comm = Session::start(&[]).unwrap();
+    let mut brake = blocks(MODEL);
+    brake.held.fill([false; 3]);
+    let system = brake.assemble(&comm, &brake.families().unwrap()).unwrap();
+    let stuck = Response { force: [0.0; 3], tangent: [[0.0; 3]; 3], normal_force: 0.0, status: Status::Stick };
+    let responses = vec![stuck; brake.interface.points.len()];
+    let equilibrium = Equilibrium { u: system.zeros().unwrap(), responses, friction: 0.0, steps: vec![] };
+    let loaded = [brake.mesh.node_set("piston_z1").unwrap()];
+    let structure =
+        Structure { system: &system, interface: &brake.interface, equilibrium: &equilibrium, loaded: &loaded };
+    let reduced = craig_bampton::reduce(&structure, 50e3, &mut |_| ()).unwrap();
+    let n = reduced.load.len();
+    let scale = reduced.stiffness.amax();
+    for axis in 0..6 {
+        let rigid = |node: u32| {
+            let [x, y, z] = brake.mesh.nodes[node as usize].map(|x| 10.0 * x);
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]][axis]
+        };
+        let mut q: Vec<f64> = (0..reduced.retained.len()).flat_map(|p| reduced.retained.gap(p, rigid)).collect();
+        q.resize(n, 0.0);
+        let times = |a: &[f64]| -> Vec<f64> {
+            a.chunks_exact(n).map(|row| row.iter().zip(&q).map(|(a, q)| a * q).sum()).collect()
+        };
+        let energy: f64 = times(reduced.mass.as_slice()).iter().zip(&q).map(|(a, q)| a * q).sum();
+        let mut u = system.zeros().unwrap();
+        let nodal: Vec<f64> = (0..brake.mesh.nodes.len() as u32).flat_map(rigid).collect();
+        u.local_mut(|values| values.copy_from_slice(&nodal)).unwrap();
+        let mut mu = system.zeros().unwrap();
+        system.m.multiply(&u, &mut mu).unwrap();
+        assert_close("inertia", energy, u.dot(&mu).unwrap(), 1e-11);
+        if axis < 3 {
+            let mass = 1e-9 * (7100.0 * (30.0 * 31.0 * 10.0 + 12.0 * 13.0 * 8.0) + 2600.0 * 20.0 * 21.0 * 5.0);
+            assert_close("mass", energy, mass, 1e-11);
+        }
+        let force = times(reduced.stiffness.as_slice()).iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        assert!(force < 1e-10 * scale, "{force} of {scale}");
+    }
+}
+
+/// At its creation point the reduced equilibrium has the full one's force at every contact, whatever the law of its
+/// contacts.
+#[test]
+fn every_contact_force_is_reproduced_under_any_law() {
+    let comm = Session::start(&[]).unwrap();
+    let full = Full::new(&comm, MODEL, FRICTION);
+    let (_, element) = full.reduce(60e3);
+    let pair = &full.brake.interface.pairs[0];
+    let exact: Vec<[f64; 3]> = full.equilibrium.responses[pair.points.clone()].iter().map(|r| r.force).collect();
+    let cubic = NormalLaw::Cubic { k1: 8e8, k3: 5e19 };
+    for law in [None, Some(NormalLaw::Linear { stiffness: 3e9 }), Some(cubic)] {
+        let (interface, equilibrium, _) = analyse(&comm, &element, law, FRICTION);
+        let xi = interface.points.iter().map(|point| point.law.correction.abs()).fold(0.0, f64::max);
+        let error = equilibrium.responses.iter().zip(&exact).flat_map(|(found, exact)| {
+            let size = exact.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+            [0, 1, 2].map(|i| (found.force[i] - exact[i]).abs() / size)
+        });
+        let error = error.fold(0.0, f64::max);
+        println!("{law:?}: largest xi {xi:.1e} m, largest error of a force {error:.1e}");
+        assert!(error < 1e-8, "{law:?}: {error}");
+        assert_eq!(law.is_some(), xi > 1e-9);
+    }
+}
+
+#[test]
+fn a_band_beyond_the_modes_kept_is_refused() {
+    let comm = Session::start(&[]).unwrap();
+    let (_, element) = Full::new(&comm, MODEL, FRICTION).reduce(60e3);
+    assert_eq!(element.require_band([0.0, 30e3]).unwrap(), None);
+    assert!(element.require_band([0.0, 31e3]).unwrap().unwrap().contains("above 30000 Hz are less exact"));
+    assert!(element.require_band([0.0, 61e3]).unwrap_err().to_string().contains("up to 60000 Hz only"));
+}

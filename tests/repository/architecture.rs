@@ -1,0 +1,150 @@
+//! The order of the modules: the table in `src/lib.rs` is the rule. A module may import those above it; `unsafe` stands
+//! in one alone.
+
+use std::fs;
+use std::path::Path;
+
+use super::source::{code, identifier, line, root, sources, words};
+
+/// The files at the root of the crate that are no modules.
+const ROOT: [&str; 2] = ["lib", "main"];
+
+/// The only module that may be unsafe, and import the bindings.
+const UNSAFE: &str = "native";
+
+/// The modules in the order of the table in the crate's documentation: the first column, below the head `module`.
+fn modules(lib: &str) -> Vec<String> {
+    let rows = lib.lines().map_while(|line| line.strip_prefix("//!")).map(str::trim);
+    let cell =
+        |row: &str| row.strip_prefix('|').and_then(|row| row.split('|').next()).map(|cell| cell.trim().to_owned());
+    let table = rows.map(cell).skip_while(|cell| cell.as_deref() != Some("module")).map_while(|cell| cell).skip(2);
+    table.map(|cell| cell.trim_matches(['[', ']', '`']).to_owned()).collect()
+}
+
+/// The modules that the crate's root declares, sorted.
+fn declared(lib: &str) -> Vec<String> {
+    let code = code(lib);
+    let mut names: Vec<String> =
+        words(&code, "mod").map(|at| identifier(code[at + 3..].trim_start()).to_owned()).collect();
+    names.sort();
+    names
+}
+
+fn lib() -> String {
+    fs::read_to_string(root().join("src/lib.rs")).unwrap()
+}
+
+#[test]
+fn the_table_lists_each_module_once() {
+    let lib = lib();
+    let mut listed = modules(&lib);
+    listed.sort();
+    assert_eq!(listed, declared(&lib), "the table of src/lib.rs, and its modules");
+}
+
+#[test]
+fn modules_import_only_modules_above_them() {
+    let order = modules(&lib());
+    let all = sources("src");
+    let complaints: Vec<String> = all
+        .iter()
+        .flat_map(|source| complaints_about(source.path.strip_prefix("src").unwrap(), &source.text, &order))
+        .collect();
+    assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
+}
+
+/// What is wrong with a file, given by its path in `src/`.
+fn complaints_about(file: &Path, text: &str, order: &[String]) -> Vec<String> {
+    let names: Vec<&str> = file.iter().map(|name| name.to_str().unwrap().trim_end_matches(".rs")).collect();
+    let (module, depth) = (names[0], names.iter().filter(|name| **name != "mod").count());
+    let code = code(text);
+    let complain = |at: usize, what: String| format!("src/{}:{}: {what}", file.display(), line(&code, at));
+    let mut complaints = Vec::new();
+    for word in ["unsafe", "squeal_sys"].into_iter().filter(|_| module != UNSAFE) {
+        let what = format!("`{word}` belongs in src/{UNSAFE} alone");
+        complaints.extend(words(&code, word).map(|at| complain(at, what.clone())));
+    }
+    if ROOT.contains(&module) {
+        return complaints;
+    }
+    let Some(place) = order.iter().position(|name| name == module) else {
+        return vec![format!("src/{}: the module `{module}` is not in the table of src/lib.rs", file.display())];
+    };
+    for (at, import) in imports(&code) {
+        if import != module && !order[..place].iter().any(|above| above == import) {
+            complaints.push(complain(at, format!("`{module}` imports `{import}`, which is not above it")));
+        }
+    }
+    let outside = format!("\nuse {}", "super::".repeat(depth));
+    if let Some(at) = format!("\n{code}").find(&outside) {
+        complaints.push(complain(at, "a module is left by `crate::`, not by `super::`".to_owned()));
+    }
+    complaints
+}
+
+/// The modules that `crate::module` and `crate::{module, module::...}` name, each with its place.
+fn imports(code: &str) -> Vec<(usize, &str)> {
+    let mut found = Vec::new();
+    for at in words(code, "crate") {
+        let Some(path) = code[at + 5..].strip_prefix("::") else { continue };
+        match path.strip_prefix('{') {
+            Some(list) => found.extend(listed(list).into_iter().map(|(offset, name)| (at + 8 + offset, name))),
+            None => found.push((at, identifier(path))),
+        }
+    }
+    // The error module's types stand at the root of the crate.
+    found.into_iter().map(|(at, name)| (at, if ["Error", "Result"].contains(&name) { "error" } else { name })).collect()
+}
+
+/// First names of the items of a list up to its closing brace.
+fn listed(list: &str) -> Vec<(usize, &str)> {
+    let (mut nesting, mut is_first, mut found) = (0, true, Vec::new());
+    for (at, c) in list.char_indices() {
+        match c {
+            '}' if nesting == 0 => break,
+            '{' => nesting += 1,
+            '}' => nesting -= 1,
+            ',' if nesting == 0 => is_first = true,
+            _ if is_first && !c.is_whitespace() => {
+                found.push((at, identifier(&list[at..])));
+                is_first = false;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+const LIB: &str = "//! Text.\n//!\n//! | symbol | meaning |\n//! |---|---|\n//! | `x` | place |\n//!\n\
+                   //! | module | what it does |\n//! |---|---|\n//! | `error` | errors |\n//! | [`mesh`] | meshes |\n\
+                   //! | [`model`] | models |\n//! | [`native`] | MPI |\n//!\n//! After.\n\nmod error;\npub mod mesh;\n\
+                   pub mod model;\n// mod none;\npub mod native;\npub use error::Error;\n";
+
+#[test]
+fn the_table_is_found_among_others() {
+    assert_eq!(modules(LIB), ["error", "mesh", "model", "native"]);
+    assert_eq!(declared(LIB), ["error", "mesh", "model", "native"]);
+    assert!(modules("//! No table.\n").is_empty());
+}
+
+#[test]
+fn what_is_forbidden_is_found() {
+    let order = modules(LIB);
+    let said = |file: &str, text: &str| complaints_about(Path::new(file), text, &order).join("\n");
+    assert_eq!(said("model/read.rs", "// crate::cli\nuse crate::mesh::Mesh;\nuse crate::{Error, Result};\n"), "");
+    assert_eq!(said("model/read.rs", "fn f() { g(\"crate::native // x\"); crate::mesh::read() }"), "");
+    let upwards = said("mesh/tets.rs", "use super::Point;\n\nuse crate::model::Model;\n");
+    assert_eq!(upwards, "src/mesh/tets.rs:3: `mesh` imports `model`, which is not above it");
+    let in_a_list = said("mesh/read.rs", "use crate::{\n    Error,\n    model::{Model, Part},\n    native,\n};\n");
+    assert!(in_a_list.contains(":3: `mesh` imports `model`"), "{in_a_list}");
+    assert!(in_a_list.contains(":4: `mesh` imports `native`"), "{in_a_list}");
+    assert!(said("mesh/law/mod.rs", "fn f() { crate::native::init() }").contains("imports `native`"));
+    assert!(
+        said("mesh/law/mod.rs", "use super::super::native::Comm;").contains("src/mesh/law/mod.rs:1: a module is left")
+    );
+    assert!(said("kitchen.rs", "").contains("`kitchen` is not in the table"));
+    assert!(said("model/mod.rs", "fn f() {\n    unsafe {}\n}").contains("src/model/mod.rs:2: `unsafe`"));
+    assert!(said("lib.rs", "unsafe {}").contains("src/lib.rs:1: `unsafe`"));
+    assert!(said("model/mod.rs", "use squeal_sys as sys;").contains("src/model/mod.rs:1: `squeal_sys`"));
+    assert_eq!(said("native/petsc/vector.rs", "use squeal_sys as sys;\nunsafe {}"), "");
+}

@@ -1,0 +1,88 @@
+//! Lines that fit, functions and files that can be read at one go.
+
+use super::source::{Source, code, functions, production, sources};
+
+/// Columns of a line.
+const WIDTH: usize = 120;
+/// Lines of a function.
+const LONGEST_FUNCTION: usize = 45;
+/// Lines of a file.
+const LONGEST_FILE: usize = 400;
+
+/// Files that are longer still, to be divided.
+const TOO_LONG: &[&str] = &["cli/mod.rs", "native/direct/mumps.rs", "native/petsc/matrix.rs"];
+
+/// Folders with comments that are wider still, to be wrapped.
+const TOO_WIDE: &[&str] = &[
+    "src/analysis",
+    "src/cli",
+    "src/contact/search.rs",
+    "src/equilibrium",
+    "src/error.rs",
+    "src/hdf.rs",
+    "src/mesh/piece.rs",
+    "src/native",
+    "src/output",
+    "src/reduction",
+    "src/report",
+    "src/results",
+    "src/stability",
+    "src/structure",
+    "src/tracking",
+];
+
+#[test]
+fn lines_fit() {
+    // Formatting leaves strings as they are, so that of a line of code only indentation and code count.
+    let width = |code: &str| {
+        let indentation = code.len() - code.trim_start().len();
+        indentation + code.split_whitespace().collect::<Vec<_>>().join(" ").len()
+    };
+    let fits = |(line, code): (&str, &str)| {
+        let is_comment = line.trim_start().starts_with("//");
+        line.chars().count() <= WIDTH || (!is_comment && width(code) <= WIDTH)
+    };
+    let too_wide = |source: &Source| -> Vec<String> {
+        let code = code(&source.text);
+        let lines = source.text.lines().zip(code.lines()).enumerate().filter(|(_, pair)| !fits(*pair));
+        lines.map(|(i, _)| format!("{}:{}", source.path.display(), i + 1)).collect()
+    };
+    let all: Vec<String> = ["src", "tests", "benches", "sys"]
+        .iter()
+        .flat_map(|folder| sources(folder))
+        .filter(|source| !TOO_WIDE.iter().any(|known| source.path.starts_with(known)))
+        .flat_map(|source| too_wide(&source))
+        .collect();
+    assert!(all.is_empty(), "more than {WIDTH} columns:\n{}", all.join("\n"));
+}
+
+/// Whether a file has nothing but tests.
+fn is_test(source: &Source) -> bool {
+    let name = |part: &std::ffi::OsStr| ["tests", "testing", "tests.rs", "testing.rs"].iter().any(|test| part == *test);
+    source.path.iter().any(name)
+}
+
+#[test]
+fn functions_are_short() {
+    let mut long = Vec::new();
+    for source in sources("src").iter().filter(|source| !is_test(source)) {
+        for (name, line, n) in functions(&production(&code(&source.text))) {
+            if n > LONGEST_FUNCTION {
+                long.push(format!("{}:{line}: {name} has {n} lines", source.path.display()));
+            }
+        }
+    }
+    assert!(long.is_empty(), "more than {LONGEST_FUNCTION} lines:\n{}", long.join("\n"));
+}
+
+#[test]
+fn files_are_short() {
+    let is_known = |source: &Source| TOO_LONG.iter().any(|known| source.path.ends_with(known));
+    let is_long = |source: &Source| source.text.lines().count() > LONGEST_FILE;
+    let wrong: Vec<String> = sources("src")
+        .iter()
+        .filter(|source| is_long(source) != is_known(source))
+        .map(|source| format!("{}: {} lines", source.path.display(), source.text.lines().count()))
+        .collect();
+    assert!(wrong.is_empty(), "longer than {LONGEST_FILE} lines, or listed and not longer:\n{}", wrong.join("\n"));
+}

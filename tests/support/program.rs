@@ -1,0 +1,147 @@
+//! The real program, alone and under mpirun, in a folder of its own.
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use std::time::Duration;
+
+use assert_cmd::Command;
+use assert_cmd::cargo::cargo_bin;
+use tempfile::TempDir;
+
+use super::data;
+use super::pad_on_disc::{MODEL, PadOnDisc};
+
+/// A run that takes longer hangs. mpirun ends its ranks a little earlier, so that none is left behind.
+const PATIENCE: u64 = 240;
+
+/// `mpirun -n ranks program`, ready for arguments.
+pub fn mpirun(ranks: usize, program: &Path) -> Command {
+    let mut command = Command::new("mpirun");
+    command.args(["-q", "--allow-run-as-root", "--bind-to", "none", "--oversubscribe"]);
+    command.args(["--timeout", &(PATIENCE - 20).to_string(), "-n", &ranks.to_string()]).arg(program);
+    quiet(&mut command);
+    command
+}
+
+/// One thread a rank, which leaves its core to others while it waits; no backtraces, and no way of copying between
+/// processes that containers forbid.
+fn quiet(command: &mut Command) {
+    command.timeout(Duration::from_secs(PATIENCE));
+    command.env("OPENBLAS_NUM_THREADS", "1").env("RUST_BACKTRACE", "0");
+    command.env("OMPI_MCA_btl_vader_single_copy_mechanism", "none").env("OMPI_MCA_mpi_yield_when_idle", "1");
+}
+
+/// What a run said.
+pub struct Said {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
+}
+
+impl From<Output> for Said {
+    fn from(output: Output) -> Said {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Said { code: output.status.code().unwrap_or(-1), out: text(output.stdout), err: text(output.stderr) }
+    }
+}
+
+/// A folder in which the program runs, with a model file `brake.toml` and what that needs.
+pub struct Place {
+    folder: TempDir,
+}
+
+impl Place {
+    /// An empty folder.
+    pub fn empty() -> Place {
+        Place { folder: tempfile::tempdir().unwrap() }
+    }
+
+    /// The two pads on a disc of tests/data.
+    pub fn pads() -> Place {
+        Place::with_pads(|text| text)
+    }
+
+    /// The same with another model file.
+    pub fn with_pads(change: impl FnOnce(String) -> String) -> Place {
+        let place = Place::empty();
+        std::fs::copy(data("pads_on_disc.msh"), place.path("pads_on_disc.msh")).unwrap();
+        place.write("brake.toml", change(std::fs::read_to_string(data("pads_on_disc.toml")).unwrap()));
+        place
+    }
+
+    /// A small pad on a small disc: [`MODEL`] and its mesh.
+    pub fn blocks() -> Place {
+        Place::with_blocks(|text| text, &PadOnDisc::default())
+    }
+
+    /// The same with another model file and mesh.
+    pub fn with_blocks(change: impl FnOnce(String) -> String, mesh: &PadOnDisc) -> Place {
+        let place = Place::empty();
+        place.write("blocks.msh", mesh.gmsh());
+        place.write("brake.toml", change(MODEL.into()));
+        place
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), bytes).unwrap();
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// All names in a folder of the place, hidden ones too, sorted.
+    pub fn list(&self, name: &str) -> Vec<String> {
+        let entries = std::fs::read_dir(self.path(name)).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// The program, ready for arguments.
+    pub fn command(&self) -> Command {
+        let mut command = Command::new(cargo_bin("squeal"));
+        command.current_dir(self.folder.path());
+        quiet(&mut command);
+        command
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Said {
+        self.command().args(arguments).output().unwrap().into()
+    }
+
+    pub fn run_on(&self, ranks: usize, arguments: &[&str]) -> Said {
+        let mut command = mpirun(ranks, &cargo_bin("squeal"));
+        command.current_dir(self.folder.path()).args(arguments).output().unwrap().into()
+    }
+}
+
+/// Requires that the program refused its input: exit code 2, nothing printed, and one error message with all of these
+/// parts.
+#[track_caller]
+pub fn assert_refused(said: &Said, parts: &[&str]) {
+    let Said { code, out, err } = said;
+    assert_eq!(*code, 2, "{out}{err}");
+    assert_eq!(err.lines().filter(|line| line.starts_with("error")).count(), 1, "one message: {err}");
+    assert!(err.starts_with("error: ") && out.is_empty(), "{out}{err}");
+    for part in parts {
+        assert!(err.contains(part), "{part:?} is not in: {err}");
+    }
+}
+
+/// Runs an ignored test of this executable, by its full name, on two ranks.
+pub fn run_test_on_two_ranks(name: &str) -> Said {
+    let mut command = mpirun(2, &std::env::current_exe().unwrap());
+    command.args(["--exact", name, "--ignored", "--nocapture", "--test-threads=1"]).output().unwrap().into()
+}
+
+/// Replaces the one place where a text stands.
+#[track_caller]
+pub fn swap(text: &str, old: &str, new: &str) -> String {
+    assert!(text.contains(old), "{old:?} is not in the file");
+    text.replacen(old, new, 1)
+}
