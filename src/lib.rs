@@ -59,7 +59,7 @@
 //! | [`stability`] | linearisation, modes of a band, none missed; energies and sensitivities | [`stability::solve`] |
 //! | [`reduction`] | reference nodes, super-elements and their files | [`reduction::craig_bampton::reduce`] |
 //! | [`results`] | what an analysis found, as plain data, and its file | [`results::Results`], [`results::file`] |
-//! | [`structure`] | a brake, full or reduced: reading, distribution, assembly, surface | [`structure::Structure::read`] |
+//! | [`structure`] | a brake, full or reduced: reading, assembly, surface | [`structure::Structure::read`] |
 //! | [`comparison`] | which modes of two results are the same, and by how much they differ | [`comparison::compare`] |
 //! | [`output`] | results folders, tables, JSON, VTU | [`output::results_folder::write`] |
 //! | [`analysis`] | statics, stability, reduction, external matrices, free modes, study | [`analysis::stability`] |

@@ -23,9 +23,11 @@
 //! An expression has `+ - * / ^`, brackets, numbers, the parameter, `pi`, and functions such as `sin`, `sqrt`, `exp`,
 //! `abs`.
 
+use std::f64::consts::PI;
 use std::path::Path;
 
 use exmex::prelude::*;
+use exmex::{FloatOpsFactory, MakeOperators, Operator};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -33,17 +35,31 @@ use super::Role;
 use super::combined::Term;
 use crate::{Error, Result};
 
+/// The operators and functions of expressions, with `pi` by its usual name.
+#[derive(Debug, Clone)]
+struct Operators;
+
+impl MakeOperators<f64> for Operators {
+    fn make<'a>() -> Vec<Operator<'a, f64>> {
+        let mut all = FloatOpsFactory::<f64>::make();
+        all.push(Operator::make_constant("pi", PI));
+        all
+    }
+}
+
+type Expression = FlatEx<f64, Operators>;
+
 /// A factor of a matrix: an expression of the parameter.
 #[derive(Debug, Clone)]
 pub struct Coefficient {
-    expression: FlatEx<f64>,
+    expression: Expression,
     text: String,
 }
 
 impl Coefficient {
     /// The factor 1.
     pub fn one() -> Coefficient {
-        Coefficient { expression: FlatEx::parse("1").expect("a number"), text: "1".into() }
+        Coefficient { expression: Expression::parse("1").expect("a number"), text: "1".into() }
     }
 
     /// Reads an expression in one parameter.
@@ -51,7 +67,12 @@ impl Coefficient {
     /// # Errors
     /// What is wrong, in words.
     pub fn parse(text: &str, parameter: &str) -> std::result::Result<Coefficient, String> {
-        let expression = FlatEx::<f64>::parse(text).map_err(|reason| format!("{text:?} is no expression: {reason}"))?;
+        if !Expression::parse(parameter).is_ok_and(|expression| expression.var_names() == [parameter]) {
+            return Err(format!(
+                "{parameter:?} is no name for a parameter: give one that means nothing else, such as \"p\""
+            ));
+        }
+        let expression = Expression::parse(text).map_err(|reason| format!("{text:?} is no expression: {reason}"))?;
         match expression.var_names().iter().find(|name| *name != parameter) {
             Some(name) => Err(format!("{text:?} has the unknown name {name:?}: the parameter is {parameter:?}")),
             None => Ok(Coefficient { expression, text: text.into() }),
@@ -152,5 +173,16 @@ mod tests {
         assert!(Coefficient::parse("2*", "v").is_err());
         assert!(Coefficient::parse("1/(v-3)", "v").unwrap().at(3.0).is_err());
         assert!(Coefficient::parse("v", "v").unwrap().varies() && !Coefficient::one().varies());
+    }
+
+    #[test]
+    fn expressions_know_pi_and_refuse_it_as_a_parameter() {
+        let value = |text: &str, parameter: &str| Coefficient::parse(text, parameter).unwrap().at(0.5).unwrap();
+        assert_eq!(value("2*pi*v", "v"), PI);
+        assert_eq!(value("pi*pin", "pin"), 0.5 * PI);
+        for name in ["pi", "e", "sin", "2", "a+b", ""] {
+            let message = Coefficient::parse("1", name).unwrap_err();
+            assert!(message.contains("is no name for a parameter"), "{name}: {message}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The order of the modules: the table in `src/lib.rs` is the rule. A module may import those above it; `unsafe` stands
 //! in one alone.
 
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
@@ -44,45 +45,71 @@ fn the_table_lists_each_module_once() {
 
 #[test]
 fn modules_import_only_modules_above_them() {
-    let order = modules(&lib());
-    let all = sources("src");
-    let complaints: Vec<String> = all
+    let rule = Rule::new(&lib());
+    let complaints: Vec<String> = sources("src")
         .iter()
-        .flat_map(|source| complaints_about(source.path.strip_prefix("src").unwrap(), &source.text, &order))
+        .flat_map(|source| rule.complaints_about(source.path.strip_prefix("src").unwrap(), &source.text))
         .collect();
     assert!(complaints.is_empty(), "\n{}\n", complaints.join("\n"));
 }
 
-/// What is wrong with a file, given by its path in `src/`.
-fn complaints_about(file: &Path, text: &str, order: &[String]) -> Vec<String> {
-    let names: Vec<&str> = file.iter().map(|name| name.to_str().unwrap().trim_end_matches(".rs")).collect();
-    let (module, depth) = (names[0], names.iter().filter(|name| **name != "mod").count());
-    let code = code(text);
-    let complain = |at: usize, what: String| format!("src/{}:{}: {what}", file.display(), line(&code, at));
-    let mut complaints = Vec::new();
-    for word in ["unsafe", "squeal_sys"].into_iter().filter(|_| module != UNSAFE) {
-        let what = format!("`{word}` belongs in src/{UNSAFE} alone");
-        complaints.extend(words(&code, word).map(|at| complain(at, what.clone())));
-    }
-    if ROOT.contains(&module) {
-        return complaints;
-    }
-    let Some(place) = order.iter().position(|name| name == module) else {
-        return vec![format!("src/{}: the module `{module}` is not in the table of src/lib.rs", file.display())];
-    };
-    for (at, import) in imports(&code) {
-        if import != module && !order[..place].iter().any(|above| above == import) {
-            complaints.push(complain(at, format!("`{module}` imports `{import}`, which is not above it")));
-        }
-    }
-    let outside = format!("\nuse {}", "super::".repeat(depth));
-    if let Some(at) = format!("\n{code}").find(&outside) {
-        complaints.push(complain(at, "a module is left by `crate::`, not by `super::`".to_owned()));
-    }
-    complaints
+/// What the crate's root says.
+struct Rule {
+    /// The modules from the top of the table.
+    order: Vec<String>,
+    /// What stands at the root of the crate under its own name, and its module.
+    exports: HashMap<String, String>,
 }
 
-/// The modules that `crate::module` and `crate::{module, module::...}` name, each with its place.
+impl Rule {
+    fn new(lib: &str) -> Rule {
+        Rule { order: modules(lib), exports: exports(lib) }
+    }
+
+    /// What is wrong with a file, given by its path in `src/`.
+    fn complaints_about(&self, file: &Path, text: &str) -> Vec<String> {
+        let names: Vec<&str> = file.iter().map(|name| name.to_str().unwrap().trim_end_matches(".rs")).collect();
+        let (module, depth) = (names[0], names.iter().filter(|name| **name != "mod").count());
+        let code = code(text);
+        let complain = |at: usize, what: String| format!("src/{}:{}: {what}", file.display(), line(&code, at));
+        let mut complaints = Vec::new();
+        for word in ["unsafe", "squeal_sys"].into_iter().filter(|_| module != UNSAFE) {
+            let what = format!("`{word}` belongs in src/{UNSAFE} alone");
+            complaints.extend(words(&code, word).map(|at| complain(at, what.clone())));
+        }
+        if ROOT.contains(&module) {
+            return complaints;
+        }
+        let Some(place) = self.order.iter().position(|name| name == module) else {
+            return vec![format!("src/{}: the module `{module}` is not in the table of src/lib.rs", file.display())];
+        };
+        for (at, name) in imports(&code) {
+            let import = self.exports.get(name).map_or(name, String::as_str);
+            if import != module && !self.order[..place].iter().any(|above| above == import) {
+                complaints.push(complain(at, format!("`{module}` imports `{import}`, which is not above it")));
+            }
+        }
+        let outside = format!("\nuse {}", "super::".repeat(depth));
+        if let Some(at) = format!("\n{code}").find(&outside) {
+            complaints.push(complain(at, "a module is left by `crate::`, not by `super::`".to_owned()));
+        }
+        complaints
+    }
+}
+
+/// The names that the crate's root re-exports, `pub use module::...;`, each with its module.
+fn exports(lib: &str) -> HashMap<String, String> {
+    let code = code(lib);
+    let mut all = HashMap::new();
+    for statement in code.split("pub use ").skip(1).map(|rest| rest.split(';').next().unwrap_or_default()) {
+        let mut names = statement.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|name| !name.is_empty());
+        let module = names.next().unwrap_or_default();
+        all.extend(names.map(|name| (name.to_owned(), module.to_owned())));
+    }
+    all
+}
+
+/// The names that `crate::name` and `crate::{name, name::...}` import, each with its place.
 fn imports(code: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     for at in words(code, "crate") {
@@ -92,8 +119,7 @@ fn imports(code: &str) -> Vec<(usize, &str)> {
             None => found.push((at, identifier(path))),
         }
     }
-    // The error module's types stand at the root of the crate.
-    found.into_iter().map(|(at, name)| (at, if ["Error", "Result"].contains(&name) { "error" } else { name })).collect()
+    found
 }
 
 /// First names of the items of a list up to its closing brace.
@@ -118,7 +144,7 @@ fn listed(list: &str) -> Vec<(usize, &str)> {
 const LIB: &str = "//! Text.\n//!\n//! | symbol | meaning |\n//! |---|---|\n//! | `x` | place |\n//!\n\
                    //! | module | what it does |\n//! |---|---|\n//! | `error` | errors |\n//! | [`mesh`] | meshes |\n\
                    //! | [`model`] | models |\n//! | [`native`] | MPI |\n//!\n//! After.\n\nmod error;\npub mod mesh;\n\
-                   pub mod model;\n// mod none;\npub mod native;\npub use error::Error;\n";
+                   pub mod model;\n// mod none;\npub mod native;\npub use error::{Error, Result};\npub use model::Model;\n";
 
 #[test]
 fn the_table_is_found_among_others() {
@@ -129,12 +155,13 @@ fn the_table_is_found_among_others() {
 
 #[test]
 fn what_is_forbidden_is_found() {
-    let order = modules(LIB);
-    let said = |file: &str, text: &str| complaints_about(Path::new(file), text, &order).join("\n");
+    let rule = Rule::new(LIB);
+    let said = |file: &str, text: &str| rule.complaints_about(Path::new(file), text).join("\n");
     assert_eq!(said("model/read.rs", "// crate::cli\nuse crate::mesh::Mesh;\nuse crate::{Error, Result};\n"), "");
     assert_eq!(said("model/read.rs", "fn f() { g(\"crate::native // x\"); crate::mesh::read() }"), "");
     let upwards = said("mesh/tets.rs", "use super::Point;\n\nuse crate::model::Model;\n");
     assert_eq!(upwards, "src/mesh/tets.rs:3: `mesh` imports `model`, which is not above it");
+    assert!(said("mesh/read.rs", "use crate::Model;").contains("`mesh` imports `model`"));
     let in_a_list = said("mesh/read.rs", "use crate::{\n    Error,\n    model::{Model, Part},\n    native,\n};\n");
     assert!(in_a_list.contains(":3: `mesh` imports `model`"), "{in_a_list}");
     assert!(in_a_list.contains(":4: `mesh` imports `native`"), "{in_a_list}");

@@ -10,7 +10,7 @@ const LONGEST_FUNCTION: usize = 45;
 const LONGEST_FILE: usize = 400;
 
 /// Files that are longer still, to be divided.
-const TOO_LONG: &[&str] = &["cli/mod.rs", "native/direct/mumps.rs", "native/petsc/matrix.rs"];
+const TOO_LONG: &[&str] = &[];
 
 /// Folders with comments that are wider still, to be wrapped.
 const TOO_WIDE: &[&str] = &[
@@ -34,13 +34,10 @@ const TOO_WIDE: &[&str] = &[
 #[test]
 fn lines_fit() {
     // Formatting leaves strings as they are, so that of a line of code only indentation and code count.
-    let width = |code: &str| {
-        let indentation = code.len() - code.trim_start().len();
-        indentation + code.split_whitespace().collect::<Vec<_>>().join(" ").len()
-    };
     let fits = |(line, code): (&str, &str)| {
-        let is_comment = line.trim_start().starts_with("//");
-        line.chars().count() <= WIDTH || (!is_comment && width(code) <= WIDTH)
+        let start = line.trim_start();
+        let rest: usize = code.split_whitespace().map(|word| word.len() + 1).sum();
+        line.chars().count() <= WIDTH || (!start.starts_with("//") && line.len() - start.len() + rest <= WIDTH)
     };
     let too_wide = |source: &Source| -> Vec<String> {
         let code = code(&source.text);
@@ -62,17 +59,26 @@ fn is_test(source: &Source) -> bool {
     source.path.iter().any(name)
 }
 
+/// Functions that are longer still, to be divided.
+const TOO_LONG_FUNCTIONS: &[[&str; 2]] = &[
+    ["analysis/run.rs", "run"],
+    ["cli/check.rs", "parts"],
+    ["stability/band.rs", "solve"],
+    ["structure/free_motions.rs", "free_motions"],
+];
+
 #[test]
 fn functions_are_short() {
-    let mut long = Vec::new();
+    let mut wrong = Vec::new();
     for source in sources("src").iter().filter(|source| !is_test(source)) {
         for (name, line, n) in functions(&production(&code(&source.text))) {
-            if n > LONGEST_FUNCTION {
-                long.push(format!("{}:{line}: {name} has {n} lines", source.path.display()));
+            let is_known = TOO_LONG_FUNCTIONS.iter().any(|[file, known]| source.path.ends_with(file) && name == *known);
+            if (n > LONGEST_FUNCTION) != is_known {
+                wrong.push(format!("{}:{line}: {name} has {n} lines", source.path.display()));
             }
         }
     }
-    assert!(long.is_empty(), "more than {LONGEST_FUNCTION} lines:\n{}", long.join("\n"));
+    assert!(wrong.is_empty(), "longer than {LONGEST_FUNCTION} lines, or listed and not longer:\n{}", wrong.join("\n"));
 }
 
 #[test]
