@@ -7,6 +7,8 @@
 //! Indices have 32 or 64 bits, as PETSc was configured; entries = -1 marks a dense matrix, its values by rows.
 //! Source: PETSc's manual page of `MatLoad`.
 
+use std::fmt::Display;
+
 use super::entries::{Entries, Naming, Storage};
 use super::lines::MatrixFile;
 use crate::{Error, Result};
@@ -29,50 +31,60 @@ pub fn index_width(head: &[u8]) -> Option<usize> {
 /// # Errors
 /// [`Error::Input`] with the file, whatever is wrong.
 pub fn read(mut source: MatrixFile, width: usize) -> Result<Entries> {
-    let place = source.path().display().to_string();
-    let fail = |what: String| Err(Error::input(format!("{place}: {what}")));
-    let head = indices(&mut source, 4, width)?;
-    let &[class, rows, columns, n_entries] = &head[..] else { unreachable!("four were read") };
-    if class != MATRIX {
-        return fail("this is a PETSc vector, not a matrix".into());
-    }
-    if rows != columns || !(1..=i64::from(i32::MAX)).contains(&rows) {
-        return fail(format!(
-            "{rows} x {columns} is not the size of a square matrix. M, C and K are square, all of one size"
-        ));
-    }
-    let mut entries = Entries::new(Naming::Rows(rows as usize), Storage::Full);
-    let (n, n_entries) = (rows as usize, usize::try_from(n_entries).ok());
-    let lengths = match n_entries {
-        Some(_) => indices(&mut source, n, width)?,
-        None => vec![rows; n],
+    let (n, n_entries) = size(&mut source, width)?;
+    let (lengths, columns) = match n_entries {
+        Some(n_entries) => pattern(&mut source, width, n, n_entries)?,
+        None => (vec![n as i64; n], (0..n).flat_map(|_| 0..n as i64).collect()),
     };
-    let total: i64 = lengths.iter().sum();
-    if lengths.iter().any(|length| !(0..=rows).contains(length)) || n_entries.is_some_and(|n| n as i64 != total) {
-        return fail("the lengths of its rows do not add up. It is damaged, or has complex values".into());
-    }
-    let places = match n_entries {
-        Some(n_entries) => indices(&mut source, n_entries, width)?,
-        None => (0..n).flat_map(|_| 0..rows).collect(),
-    };
-    if let Some(j) = places.iter().find(|j| !(0..rows).contains(*j)) {
-        return fail(format!("column {j} is outside a matrix of {n} rows. It is damaged"));
-    }
-    let row_of = lengths.iter().enumerate().flat_map(|(i, &length)| std::iter::repeat_n(i as u32, length as usize));
+    let rows = lengths.iter().enumerate().flat_map(|(i, &length)| std::iter::repeat_n(i as u32, length as usize));
+    let mut entries = Entries::new(Naming::Rows(n), Storage::Full);
     let mut bytes = [0; 8];
-    for (i, j) in row_of.zip(places) {
+    for (i, j) in rows.zip(columns) {
         source.fill(&mut bytes)?;
         let value = f64::from_be_bytes(bytes);
         if !value.is_finite() {
-            return fail(format!("row {}, column {}: {value} is no finite number", i + 1, j + 1));
+            return fail(&source, format!("row {}, column {}: {value} is no finite number", i + 1, j + 1));
         }
         if value != 0.0 || n_entries.is_some() {
             entries.items.push((i, j as u32, value));
         }
     }
-    match source.is_at_end()? {
-        true => Ok(entries),
-        false => fail("there is more in the file than one matrix with real values. Complex ones are not read".into()),
+    if !source.is_at_end()? {
+        let what = "there is more in the file than one matrix with real values. Complex ones are not read";
+        return fail(&source, what);
+    }
+    Ok(entries)
+}
+
+fn fail<T>(source: &MatrixFile, what: impl Display) -> Result<T> {
+    Err(Error::input(format!("{}: {what}", source.path().display())))
+}
+
+/// Number of rows, and of entries; none where the file has all of them.
+fn size(source: &mut MatrixFile, width: usize) -> Result<(usize, Option<usize>)> {
+    let head = indices(source, 4, width)?;
+    let &[class, rows, columns, n_entries] = &head[..] else { unreachable!("four were read") };
+    if class != MATRIX {
+        return fail(source, "this is a PETSc vector, not a matrix");
+    }
+    if rows != columns || !(1..=i64::from(i32::MAX)).contains(&rows) {
+        let what = "is not the size of a square matrix. M, C and K are square, all of one size";
+        return fail(source, format!("{rows} x {columns} {what}"));
+    }
+    Ok((rows as usize, usize::try_from(n_entries).ok()))
+}
+
+/// Lengths of the rows, and the columns of their entries.
+fn pattern(source: &mut MatrixFile, width: usize, n: usize, n_entries: usize) -> Result<(Vec<i64>, Vec<i64>)> {
+    let rows = n as i64;
+    let lengths = indices(source, n, width)?;
+    if lengths.iter().any(|length| !(0..=rows).contains(length)) || lengths.iter().sum::<i64>() != n_entries as i64 {
+        return fail(source, "the lengths of its rows do not add up. It is damaged, or has complex values");
+    }
+    let columns = indices(source, n_entries, width)?;
+    match columns.iter().find(|j| !(0..rows).contains(*j)) {
+        Some(j) => fail(source, format!("column {j} is outside a matrix of {n} rows. It is damaged")),
+        None => Ok((lengths, columns)),
     }
 }
 

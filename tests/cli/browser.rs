@@ -1,5 +1,5 @@
-//! `squeal report` on the two pads on a disc (tests/validation/pads_on_disc.rs), and its page in a browser: what a reader
-//! sees and can do.
+//! `squeal report` on the two pads on a disc (tests/validation/pads_on_disc.rs), and its page in a browser: what
+//! a reader sees and can do.
 
 use std::path::Path;
 
