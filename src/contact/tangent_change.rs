@@ -6,8 +6,8 @@
 //! sum_a B_a^T (D_a - D_a0) B_a = U V^T        D_a - D_a0 = sum_k left_k right_k^T,  |right_k| = 1
 //! ```
 //!
-//! with one dyad where a sliding point opens or closes, and at most three. They come from the singular values of the change; where it is
-//! symmetric, from its eigenvalues, so that `left = lambda right` with the sign of lambda.
+//! with one dyad where a sliding point opens or closes, and at most three. They come from the singular values of the
+//! change; where it is symmetric, from its eigenvalues, so that `left = lambda right` with the sign of lambda.
 
 use nalgebra::{Matrix3, SymmetricEigen};
 
@@ -45,7 +45,8 @@ impl TangentChange {
     /// A change this much smaller than the tangents themselves is rounding.
     pub const ROUNDING: f64 = 1e-12;
 
-    /// The change of points from one tangent to another; what is `negligible` relative to a point's tangents is left out.
+    /// The change of points from one tangent to another; what is `negligible` relative to a point's tangents is left
+    /// out.
     pub fn between<'t>(
         tangents: impl Iterator<Item = (usize, &'t Tangent, &'t Tangent)>,
         negligible: f64,
