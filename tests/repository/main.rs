@@ -2,6 +2,7 @@
 
 mod architecture;
 mod documentation;
+mod examples;
 mod sizes;
 mod source;
 #[path = "../support/mod.rs"]

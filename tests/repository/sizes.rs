@@ -44,7 +44,7 @@ fn lines_fit() {
         let lines = source.text.lines().zip(code.lines()).enumerate().filter(|(_, pair)| !fits(*pair));
         lines.map(|(i, _)| format!("{}:{}", source.path.display(), i + 1)).collect()
     };
-    let all: Vec<String> = ["src", "tests", "benches", "sys"]
+    let all: Vec<String> = ["src", "tests", "examples", "benches", "sys"]
         .iter()
         .flat_map(|folder| sources(folder))
         .filter(|source| !TOO_WIDE.iter().any(|known| source.path.starts_with(known)))

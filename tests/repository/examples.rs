@@ -1,10 +1,10 @@
 //! The programs of `examples/` run as they stand there.
 
-#[path = "../examples/external_matrices.rs"]
+#[path = "../../examples/external_matrices.rs"]
 mod external_matrices;
-#[path = "../examples/friction_sweep.rs"]
+#[path = "../../examples/friction_sweep.rs"]
 mod friction_sweep;
-#[path = "../examples/super_element.rs"]
+#[path = "../../examples/super_element.rs"]
 mod super_element;
 
 #[test]
