@@ -28,6 +28,7 @@ demo: setup results/demo/report.html ## the main job on the demo brake (medium m
 test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## all tests
 	@scripts/setup.sh --tests
 	cargo nextest run --workspace --release
+	node --test tests/page/*.test.mjs
 
 validation: setup $(patsubst %,meshes/build/td1-%.msh,coarse medium fine) ## writes docs/validation.md: our numbers beside everybody else's
 	@scripts/setup.sh --tests
@@ -56,10 +57,12 @@ bench: setup meshes/build/brake-medium.msh ## seconds, entries and memory of ass
 	cargo bench --bench assembly
 	cargo bench --bench path
 
-lint: setup ## formatting, clippy and documentation, warnings denied
+lint: setup ## formatting, clippy and documentation, the page's scripts and style; warnings denied
+	@scripts/setup.sh --lint
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --release -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release
+	tools/node_modules/.bin/biome check --config-path=tools/biome.json --error-on-warnings src/report/assets tests/page
 
 setup: ## system packages, as far as they are missing
 	@scripts/setup.sh

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what debian-packages.txt lists, as far as it is missing; with --tests also what debian-packages-tests.txt lists and cargo-nextest.
+# Installs what debian-packages.txt lists, as far as it is missing; with --tests also what debian-packages-tests.txt lists, Node.js and
+# cargo-nextest; with --lint Node.js and, into tools/node_modules, the linter of the report's scripts.
 # Works as root or with sudo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,6 +12,10 @@ missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
 done
+
+# Node.js may be another than Debian's.
+[ "${1:-}" != "--tests" ] || command -v node >/dev/null || missing+=(nodejs)
+[ "${1:-}" != "--lint" ] || command -v npm >/dev/null || missing+=(npm)
 
 if [ "${#missing[@]}" -gt 0 ]; then
   echo "installing ${missing[*]}"
@@ -24,6 +29,9 @@ if [ "${#missing[@]}" -gt 0 ]; then
 fi
 
 command -v cargo >/dev/null || { echo "Rust is missing: see https://rustup.rs" >&2; exit 1; }
+if [ "${1:-}" = "--lint" ] && [ ! tools/node_modules/.package-lock.json -nt tools/package-lock.json ]; then
+  npm ci --prefix tools --no-audit --no-fund
+fi
 if [ "${1:-}" = "--tests" ] && ! cargo nextest --version >/dev/null 2>&1; then
   cargo install --locked cargo-nextest
 fi

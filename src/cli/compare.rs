@@ -29,7 +29,7 @@ fn compare(shell: &Shell, places: [&Path; 2], output: Option<&Path>, force: bool
         folder.write("comparison.svg", |out| out.write_all(comparison_plot::errors(&comparison).as_bytes()))?;
         folder.finish()?;
     }
-    shell.tell(&text, || serde_json::json!(comparison))
+    shell.tell(&text, &comparison)
 }
 
 /// The results in a folder, or of the file itself.

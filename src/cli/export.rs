@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use serde_json::json;
 
 use crate::Result;
 use crate::analysis::{ExportOptions, Exported, MatrixFormat, export};
 use crate::output::folder::Folder;
+use crate::output::json::ExportDocument;
 use crate::structure::{FullModel, Structure};
 
 use super::watch::Watch;
@@ -50,7 +50,7 @@ pub fn run(shell: &Shell, run: &Run, format: Format, part: Option<&str>) -> Resu
     });
     comm.agree(written)?;
     let (friction, n) = (exported.friction, exported.n_dofs);
-    shell.tell(&text, || json!({"folder": place.display().to_string(), "friction": friction, "equations": n}))
+    shell.tell(&text, &ExportDocument { folder: place.display().to_string(), friction, equations: n })
 }
 
 fn text(exported: &Exported, place: &Path) -> String {

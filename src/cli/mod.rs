@@ -22,12 +22,12 @@ use std::time::Duration;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use serde_json::{Value as Json, json};
+use serde::Serialize;
 
 use crate::analysis::Output;
 use crate::model::NormalLaw;
 use crate::native::{Comm, Session};
-use crate::output::json;
+use crate::output::json::{self, Failed, Warned};
 use crate::results::Results;
 use crate::structure::StructureOptions;
 use crate::{Error, Result};
@@ -70,10 +70,10 @@ impl Shell<'_> {
     ///
     /// # Errors
     /// The system's.
-    pub fn tell(&self, text: &str, document: impl FnOnce() -> Json) -> Result<()> {
+    pub fn tell(&self, text: &str, document: &impl Serialize) -> Result<()> {
         match (self.comm.is_root() && !self.silent, self.json) {
             (false, _) => Ok(()),
-            (true, true) => tell(&format!("{:#}\n", document())),
+            (true, true) => tell(&json::text(document)),
             (true, false) => tell(text),
         }
     }
@@ -86,7 +86,7 @@ impl Shell<'_> {
     /// The system's; [`Error::NotConverged`].
     fn print_results(&self, results: &Results, place: &Path, summary: fn(&Results, &str) -> String) -> Result<()> {
         let place = place.display().to_string();
-        self.tell(&summary(results, &place), || json::document(results, &place))?;
+        self.tell(&summary(results, &place), &json::ResultsDocument::new(results, &place))?;
         self.comm.agree(match &results.failure {
             Some(failure) => Err(Error::not_converged(failure.reason.clone())),
             None => Ok(()),
@@ -103,7 +103,7 @@ impl Shell<'_> {
 
 /// A warning as text, or as JSON like errors.
 fn warning_line(warning: &str, as_json: bool) -> String {
-    if as_json { json!({"warning": warning}).to_string() } else { format!("warning: {warning}") }
+    if as_json { json::line(&Warned { warning }) } else { format!("warning: {warning}") }
 }
 
 #[derive(Subcommand)]
@@ -397,7 +397,7 @@ fn end(comm: &Comm, error: &Error, json: bool) -> i32 {
 /// Writes to standard error, as far as anyone listens.
 fn tell_error(what: &str, error: &Error, as_json: bool) {
     let text = match (as_json, error.kind()) {
-        (true, _) => json!({"error": error.to_string(), "exit_code": error.exit_code()}).to_string(),
+        (true, _) => json::line(&Failed { error: error.to_string(), exit_code: error.exit_code() }),
         // That a run was stopped is no mistake.
         (false, crate::ErrorKind::Interrupted { .. }) => error.to_string(),
         (false, _) => format!("{what}: {error}"),

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
 
 use crate::analysis::{ExternalOptions, FreeModesOptions, external_modes, free_modes};
 use crate::matrices::family::{self, Coefficient, MatrixFamily};
@@ -87,7 +86,7 @@ fn of_part(shell: &Shell, arguments: &Modes, model: &Path, part: &str) -> Result
     watch.finish();
     let text = output::free_modes::summary(&found, &place.display().to_string());
     comm.agree(folder.map_or(Ok(()), |folder| output::free_modes::write(&found, folder, &text)))?;
-    shell.tell(&text, || json!(FreeModesDocument::from(&found)))
+    shell.tell(&text, &FreeModesDocument::from(&found))
 }
 
 fn of_matrices(shell: &Shell, arguments: &Modes) -> Result<()> {
@@ -107,7 +106,7 @@ fn of_matrices(shell: &Shell, arguments: &Modes) -> Result<()> {
     let text = output::external::summary(&results, &place.display().to_string());
     let folder = Folder::open_empty(comm, &place, arguments.force)?;
     comm.agree(folder.map_or(Ok(()), |folder| output::external::write(&results, folder, &text)))?;
-    shell.tell(&text, || json!(ExternalDocument::from(&results)))
+    shell.tell(&text, &ExternalDocument::from(&results))
 }
 
 impl Modes {

@@ -4,11 +4,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
 
 use super::Shell;
 use crate::output::files::write_whole;
 use crate::output::folder::adopt;
+use crate::output::json::Reported;
 use crate::output::overwrite::{FileKind, SIGNATURE, is_free, may_write_file};
 use crate::output::results_folder::RESULTS;
 use crate::output::vtu;
@@ -45,7 +45,7 @@ pub fn run(shell: &Shell, report: &Report) -> Result<()> {
     let Some((headline, files)) = told else { return Ok(()) };
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let list: String = names.iter().map(|name| format!("  {name}\n")).collect();
-    shell.tell(&format!("{headline}\n{list}"), || json!({"headline": headline, "files": names}))
+    shell.tell(&format!("{headline}\n{list}"), &Reported { headline, files: names })
 }
 
 /// Writes all that is asked for, and tells the first sentence and the files that a person opens.

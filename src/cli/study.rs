@@ -22,5 +22,5 @@ pub fn run(shell: &Shell, arguments: &Study) -> Result<()> {
     watch.finish();
     let Some(found) = found? else { return Ok(()) };
     let text = study_folder::write(&options.folder, &found, options.super_element)?;
-    shell.tell(&text, || serde_json::json!(found))
+    shell.tell(&text, &found)
 }

@@ -2,6 +2,9 @@
 
 use std::io::Write;
 
+use serde::Serialize;
+
+use super::rows::write_csv;
 use crate::comparison::{Comparison, ComparisonAtValue, ModePair, UnpairedMode};
 
 /// The largest, by modulus, of some numbers of pairs, and the mean modulus.
@@ -33,7 +36,7 @@ pub fn text(comparison: &Comparison, names: [&str; 2]) -> String {
     let Comparison { band: [from, to], n_points, interpolated, largest_growth, frictions } = comparison;
     let how = if *interpolated { "points of A, where B is interpolated" } else { "points of both" };
     let mut text = format!(
-        "A: {}\nB: {}\n\nmodes of {from}-{to} Hz, shapes at {n_points} {how}; B against A, growth rates relative to {largest_growth:.1} /s\n\n\
+        "A: {}\nB: {}\n\nmodes of {from}-{to} Hz, shapes at {n_points} {how}; B compared with A, growth rates relative to {largest_growth:.1} /s\n\n\
          {:>8} {:>6}  {:^29}  {:^29}  {:^19}  {:^11}\n{:>8} {:>6}  {:>9} {:>11} {:>8}  {:>9} {:>11} {:>8}  {:>6} {:>11}  {:>5} {:>5}\n",
         names[0],
         names[1],
@@ -59,7 +62,7 @@ pub fn text(comparison: &Comparison, names: [&str; 2]) -> String {
     text += &frictions.iter().map(line).collect::<String>();
     let unstable = |pair: &&ModePair| pair.unstable.contains(&true);
     if frictions.iter().any(|at| at.pairs.iter().any(|pair| unstable(&pair))) {
-        text += "\nmodes that grow in A or in B\n friction       A: Hz       1/s      B: Hz       1/s  frequency, %  growth rate, %     MAC\n";
+        text += "\nmodes unstable in A or in B\n friction       A: Hz       1/s      B: Hz       1/s  frequency, %  growth rate, %     MAC\n";
         for at in frictions {
             text += &at.pairs.iter().filter(unstable).map(|pair| unstable_line(at.friction, pair)).collect::<String>();
         }
@@ -104,37 +107,65 @@ fn lone_text(frictions: &[ComparisonAtValue]) -> String {
     if text.is_empty() { text } else { format!("\n{text}") }
 }
 
-/// All modes as CSV: `friction, mode_a, mode_b` (from 1), `frequency_a_hz, frequency_b_hz, growth_rate_a_per_s, growth_rate_b_per_s,
-/// unstable_a, unstable_b, frequency_error, growth_error, mac`; what a mode without partner has no number for is empty.
+/// A mode of A, of B, or of both; modes are numbered from 1.
+#[derive(Default, Serialize)]
+struct ComparisonRow {
+    friction: f64,
+    mode_a: Option<usize>,
+    mode_b: Option<usize>,
+    frequency_a_hz: Option<f64>,
+    frequency_b_hz: Option<f64>,
+    growth_rate_a_per_s: Option<f64>,
+    growth_rate_b_per_s: Option<f64>,
+    unstable_a: Option<bool>,
+    unstable_b: Option<bool>,
+    frequency_error: Option<f64>,
+    growth_error: Option<f64>,
+    mac: Option<f64>,
+}
+
+impl ComparisonRow {
+    fn new(friction: f64, a: Option<&UnpairedMode>, b: Option<&UnpairedMode>) -> ComparisonRow {
+        ComparisonRow {
+            friction,
+            mode_a: a.map(|mode| mode.mode + 1),
+            mode_b: b.map(|mode| mode.mode + 1),
+            frequency_a_hz: a.map(|mode| mode.frequency),
+            frequency_b_hz: b.map(|mode| mode.frequency),
+            growth_rate_a_per_s: a.map(|mode| mode.growth_rate),
+            growth_rate_b_per_s: b.map(|mode| mode.growth_rate),
+            unstable_a: a.map(|mode| mode.unstable),
+            unstable_b: b.map(|mode| mode.unstable),
+            ..ComparisonRow::default()
+        }
+    }
+
+    fn of_pair(friction: f64, pair: &ModePair) -> ComparisonRow {
+        let [a, b] = [0, 1].map(|side| UnpairedMode {
+            mode: pair.modes[side],
+            frequency: pair.frequencies[side],
+            growth_rate: pair.growth_rates[side],
+            unstable: pair.unstable[side],
+        });
+        ComparisonRow {
+            frequency_error: Some(pair.frequency_error),
+            growth_error: Some(pair.growth_error),
+            mac: Some(pair.mac),
+            ..ComparisonRow::new(friction, Some(&a), Some(&b))
+        }
+    }
+}
+
+/// All modes as CSV, those without partner with empty cells.
 ///
 /// # Errors
 /// The writer's.
 pub fn csv(out: &mut dyn Write, comparison: &Comparison) -> std::io::Result<()> {
-    writeln!(
-        out,
-        "friction,mode_a,mode_b,frequency_a_hz,frequency_b_hz,growth_rate_a_per_s,growth_rate_b_per_s,unstable_a,unstable_b,\
-         frequency_error,growth_error,mac"
-    )?;
-    for at in &comparison.frictions {
-        for pair in &at.pairs {
-            let ([i, j], [f, g], [a, b]) = (pair.modes.map(|mode| mode + 1), pair.frequencies, pair.growth_rates);
-            let [s, t] = pair.unstable.map(u8::from);
-            let (df, da, mac) = (pair.frequency_error, pair.growth_error, pair.mac);
-            let mu = at.friction;
-            writeln!(out, "{mu},{i},{j},{f:.9e},{g:.9e},{a:.9e},{b:.9e},{s},{t},{df:.6e},{da:.6e},{mac:.6}")?;
-        }
-        for (side, lones) in at.unmatched.iter().enumerate() {
-            for lone in lones {
-                let cells = [
-                    (lone.mode + 1).to_string(),
-                    format!("{:.9e}", lone.frequency),
-                    format!("{:.9e}", lone.growth_rate),
-                    u8::from(lone.unstable).to_string(),
-                ];
-                let sided = cells.map(|cell| if side == 0 { format!("{cell},") } else { format!(",{cell}") });
-                writeln!(out, "{},{},,,", at.friction, sided.join(","))?;
-            }
-        }
-    }
-    Ok(())
+    let rows = comparison.frictions.iter().flat_map(|at| {
+        let pairs = at.pairs.iter().map(|pair| ComparisonRow::of_pair(at.friction, pair));
+        let only_a = at.unmatched[0].iter().map(|mode| ComparisonRow::new(at.friction, Some(mode), None));
+        let only_b = at.unmatched[1].iter().map(|mode| ComparisonRow::new(at.friction, None, Some(mode)));
+        pairs.chain(only_a).chain(only_b)
+    });
+    write_csv(out, rows)
 }

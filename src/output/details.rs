@@ -47,7 +47,7 @@ fn equilibrium(value: &Value, pairs: &[Pair]) -> String {
 fn modes(value: &Value) -> String {
     let Some(Count { below, expected, found }) = value.count else { return String::new() };
     let mut text = format!(
-        "  {} modes; below {below:.1} Hz {found} found, {expected} by inertia\n  mode  frequency Hz  growth 1/s  damping %  backward error\n",
+        "  {} modes; below {below:.1} Hz {found} found, Sturm count {expected}\n  mode  frequency Hz  growth 1/s  damping %  backward error\n",
         value.modes.len(),
     );
     for (number, mode) in (1..).zip(&value.modes) {

@@ -1,10 +1,6 @@
-//! What explains unstable modes, as a table and in a sentence.
+//! What explains unstable modes, in a sentence.
 
-use std::f64::consts::TAU;
-use std::io::Write;
-
-use crate::results::{Kind, Source};
-use crate::results::{ModeData, Results};
+use crate::results::{Kind, ModeData, Source};
 
 /// The word for a kind.
 pub fn kind(kind: Kind) -> &'static str {
@@ -15,49 +11,11 @@ pub fn kind(kind: Kind) -> &'static str {
     }
 }
 
-/// Shares and sensitivities as CSV, a row for each mode and source: shares of kinetic and strain energy; what it feeds in and takes out, as
-/// contributions to the growth rate (1/s); and how growth rate (1/s) and frequency (Hz) follow its friction (by 1) and a factor on its
-/// damping, stiffness and mass.
-///
-/// # Errors
-/// The writer's.
-pub fn sources(out: &mut dyn Write, results: &Results) -> csv::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    let fixed = ["friction", "mode", "frequency_hz", "kind", "name"];
-    let shares = ["kinetic_share", "strain_share", "fed_per_s", "damped_per_s"];
-    let slopes = ["friction", "damping", "stiffness", "mass"]
-        .map(|what| [format!("growth_per_{what}"), format!("frequency_per_{what}")]);
-    let names = fixed.into_iter().chain(shares).map(String::from).chain(slopes.into_iter().flatten());
-    table.write_record(names)?;
-    for (friction, number, mode) in results.modes() {
-        for source in &mode.sources {
-            let mut record = vec![friction.to_string(), number.to_string(), format!("{:.9e}", mode.frequency())];
-            record.extend([kind(source.kind).to_owned(), source.name.clone()]);
-            let share = source.share;
-            record.extend([share.kinetic, share.strain, share.fed, share.damped].map(|x| format!("{x:.9e}")));
-            let sensitivity = source.sensitivity;
-            let derivatives = [
-                source.friction,
-                sensitivity.map(|s| s.damping),
-                sensitivity.map(|s| s.stiffness),
-                sensitivity.map(|s| s.mass),
-            ];
-            for derivative in derivatives {
-                let text = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.9e}"));
-                record.extend([text(derivative.map(|z| z.re)), text(derivative.map(|z| z.im / TAU))]);
-            }
-            table.write_record(record)?;
-        }
-    }
-    table.flush()?;
-    Ok(())
-}
-
-/// A line: what feeds a mode, what damps it, and where it moves, largest first.
+/// A line: the sources of a mode's energy input, dissipation and kinetic energy, largest first.
 pub fn sentence(friction: f64, mode: &ModeData) -> String {
     let sources = &mode.sources;
     format!(
-        "{:.1} Hz at friction {friction}: fed by {}; damped by {}; moves {}",
+        "{:.1} Hz at friction {friction}: energy input by {}; dissipation by {}; kinetic energy in {}",
         mode.frequency(),
         largest(sources, |source| source.share.fed.max(0.0)),
         largest(sources, |source| -source.share.damped),
@@ -82,10 +40,11 @@ pub fn largest(sources: &[Source], of: impl Fn(&Source) -> f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use num_complex::Complex64;
 
     use super::*;
-    use crate::results::Value;
     use crate::stability::Share;
 
     fn source(name: &str, fed: f64, damped: f64, kinetic: f64) -> Source {
@@ -99,13 +58,7 @@ mod tests {
         let mode = ModeData { lambda: Complex64::new(8.0, TAU * 1786.04), sources, ..ModeData::default() };
         assert_eq!(
             sentence(0.5, &mode),
-            "1786.0 Hz at friction 0.5: fed by a / b 75 %, c 25 %; damped by d 75 %, c 25 %; moves c 80 %, a / b 20 %"
+            "1786.0 Hz at friction 0.5: energy input by a / b 75 %, c 25 %; dissipation by d 75 %, c 25 %; kinetic energy in c 80 %, a / b 20 %"
         );
-        let value = Value { friction: 0.5, asked: true, modes: vec![mode], ..Value::default() };
-        let mut out = Vec::new();
-        super::sources(&mut out, &Results { values: vec![value], ..Results::default() }).unwrap();
-        let text = String::from_utf8(out).unwrap();
-        assert_eq!(text.lines().count(), 4);
-        assert!(text.lines().all(|line| line.split(',').count() == 17), "{text}");
     }
 }

@@ -1,6 +1,5 @@
 //! Modes of external matrices as text and tables; real eigenvalues are shown as what they are.
 
-use std::f64::consts::TAU;
 use std::io;
 
 use serde::Serialize;
@@ -11,7 +10,8 @@ use crate::stability::{Count, Evidence};
 
 use super::branches;
 use super::folder::Folder;
-use super::tables::csv_file;
+use super::results_folder::write_branches;
+use super::rows::{self, AtFriction, ModeRow};
 
 /// From this condition number on a warning is given: of sixteen digits four are left.
 const ILL_CONDITIONED: f64 = 1e12;
@@ -150,7 +150,7 @@ fn has_shapes(results: &ExternalResults) -> bool {
 /// The system's, with the file's path.
 pub fn write(results: &ExternalResults, folder: Folder, summary: &str) -> Result<()> {
     folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
-    csv_file(&folder, "modes.csv", |out| modes_table(out, results))?;
+    folder.write("modes.csv", |out| modes_table(out, results))?;
     if results.values.len() > 1 {
         let of = |value: &ExternalValue| {
             format!("{} = {}\n{}\n", results.parameter, value.value, value_text(results, value))
@@ -159,48 +159,54 @@ pub fn write(results: &ExternalResults, folder: Folder, summary: &str) -> Result
         folder.write("details.txt", |out| out.write_all(text.as_bytes()))?;
     }
     if let Some(diagram) = &results.diagram {
-        let band = results.band.map(|f| TAU * f);
-        folder.write("branches.csv", |out| branches::points(out, diagram, band, &results.parameter))?;
-        folder.write("hopf.csv", |out| branches::hopf(out, diagram, &results.parameter))?;
+        write_branches(&folder, diagram, results.band, &results.parameter)?;
     }
     for value in results.values.iter().filter(|value| !value.shapes.is_empty()) {
         let name = if results.varies { format!("shapes_{}.csv", value.value) } else { "shapes.csv".into() };
-        csv_file(&folder, &name, |out| shapes_table(out, results, value))?;
+        folder.write(&name, |out| shapes_table(out, results, value))?;
     }
     folder.finish()
 }
 
-/// Modes as CSV: the parameter under its name where there is one, `mode, frequency_hz, growth_rate_per_s, damping_ratio, backward_error,
-/// unstable, largest_row`, and `largest_node, largest_dof` where rows have names.
-fn modes_table(out: &mut dyn io::Write, results: &ExternalResults) -> csv::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    let columns =
-        ["mode", "frequency_hz", "growth_rate_per_s", "damping_ratio", "backward_error", "unstable", "largest_row"];
-    let parameter = Some(results.parameter.as_str()).filter(|_| results.varies);
-    let names: &[&str] = if results.names.is_some() { &["largest_node", "largest_dof"] } else { &[] };
-    table.write_record(parameter.into_iter().chain(columns).chain(names.iter().copied()))?;
-    for value in &results.values {
-        for mode in &value.modes {
-            let first = parameter.map(|_| value.value.to_string());
-            let own = [
-                mode.number.to_string(),
-                format!("{:.15e}", mode.frequency()),
-                format!("{:.15e}", mode.lambda.re),
-                format!("{:.6e}", mode.damping_ratio()),
-                format!("{:.2e}", mode.backward_error),
-                u8::from(mode.is_unstable).to_string(),
-                mode.largest_row.to_string(),
-            ];
-            let last = mode.largest_dof.iter().flat_map(|(node, dof)| [node.to_string(), dof.to_string()]);
-            table.write_record(first.into_iter().chain(own).chain(last))?;
+/// A mode and where its vector is largest: the row, from 1, and its node and degree of freedom where rows have names.
+#[derive(Default, Serialize)]
+pub(super) struct ExternalModeRow {
+    #[serde(flatten)]
+    pub mode: ModeRow,
+    pub largest_row: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_node: Option<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_dof: Option<i32>,
+}
+
+impl From<&ExternalMode> for ExternalModeRow {
+    fn from(mode: &ExternalMode) -> Self {
+        ExternalModeRow {
+            mode: ModeRow::new(mode.number, mode.lambda, mode.backward_error, mode.is_unstable),
+            largest_row: mode.largest_row,
+            largest_node: mode.largest_dof.map(|(node, _)| node),
+            largest_dof: mode.largest_dof.map(|(_, dof)| dof),
         }
     }
-    Ok(table.flush()?)
+}
+
+/// Modes as CSV, with the parameter under its name where it varies.
+fn modes_table(out: &mut dyn io::Write, results: &ExternalResults) -> io::Result<()> {
+    let rows_of = |value: &ExternalValue| value.modes.iter().map(ExternalModeRow::from).collect::<Vec<_>>();
+    if !results.varies {
+        return rows::write_csv(out, results.values.iter().flat_map(rows_of));
+    }
+    let with_value = |value: &ExternalValue| {
+        let friction = value.value;
+        rows_of(value).into_iter().map(move |row| AtFriction { friction, row })
+    };
+    rows::write_csv_over(out, &results.parameter, results.values.iter().flat_map(with_value))
 }
 
 /// Shapes as CSV, a line for each dof: `row`, `node, dof` where rows have names, and `re_1, im_1, re_2, ...` of the modes, the largest
 /// entry of each of modulus 1.
-fn shapes_table(out: &mut dyn io::Write, results: &ExternalResults, value: &ExternalValue) -> csv::Result<()> {
+fn shapes_table(out: &mut dyn io::Write, results: &ExternalResults, value: &ExternalValue) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let names: &[&str] = if results.names.is_some() { &["node", "dof"] } else { &[] };
     let of_modes = (1..=value.shapes.len()).flat_map(|i| [format!("re_{i}"), format!("im_{i}")]);
@@ -211,46 +217,32 @@ fn shapes_table(out: &mut dyn io::Write, results: &ExternalResults, value: &Exte
         let entries = value.shapes.iter().flat_map(|[re, im]| [format!("{:.9e}", re[i]), format!("{:.9e}", im[i])]);
         table.write_record(std::iter::once((row + 1).to_string()).chain(name).chain(entries))?;
     }
-    Ok(table.flush()?)
+    table.flush()
 }
 
 /// The results as one JSON document.
 #[derive(Serialize)]
 pub struct ExternalDocument {
-    equations: usize,
-    band_hz: [f64; 2],
-    values: Vec<ValueDocument>,
+    pub(super) equations: usize,
+    pub(super) band_hz: [f64; 2],
+    pub(super) values: Vec<ExternalValueDocument>,
 }
 
 #[derive(Serialize)]
-struct ValueDocument {
-    parameter: f64,
-    condition: f64,
-    confirmed: bool,
-    modes: Vec<ModeDocument>,
-}
-
-#[derive(Serialize)]
-struct ModeDocument {
-    frequency_hz: f64,
-    growth_rate_per_s: f64,
-    unstable: bool,
-    backward_error: f64,
+pub(super) struct ExternalValueDocument {
+    pub parameter: f64,
+    pub condition: f64,
+    pub confirmed: bool,
+    pub modes: Vec<ExternalModeRow>,
 }
 
 impl From<&ExternalResults> for ExternalDocument {
     fn from(results: &ExternalResults) -> Self {
-        let mode = |mode: &ExternalMode| ModeDocument {
-            frequency_hz: mode.frequency(),
-            growth_rate_per_s: mode.lambda.re,
-            unstable: mode.is_unstable,
-            backward_error: mode.backward_error,
-        };
-        let value = |value: &ExternalValue| ValueDocument {
+        let value = |value: &ExternalValue| ExternalValueDocument {
             parameter: value.value,
             condition: value.condition,
             confirmed: value.count.agrees(),
-            modes: value.modes.iter().map(mode).collect(),
+            modes: value.modes.iter().map(ExternalModeRow::from).collect(),
         };
         ExternalDocument {
             equations: results.n_dofs,

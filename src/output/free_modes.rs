@@ -1,15 +1,13 @@
 //! Free modes of a part as text and tables.
 
-use std::io;
-
 use serde::Serialize;
 
 use crate::Result;
-use crate::results::{FreeModes, MeasuredComparison};
+use crate::results::{FreeMode, FreeModes, MeasuredComparison};
 use crate::stability::Count;
 
 use super::folder::Folder;
-use super::tables::csv_file;
+use super::rows::write_csv;
 
 /// The modes in words, with the files of their folder.
 pub fn summary(found: &FreeModes, place: &str) -> String {
@@ -63,47 +61,63 @@ fn files_text(found: &FreeModes, place: &str) -> String {
 /// The system's, with the file's path.
 pub fn write(found: &FreeModes, folder: Folder, summary: &str) -> Result<()> {
     folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
-    csv_file(&folder, "modes.csv", |out| modes_table(out, found))?;
+    folder.write("modes.csv", |out| write_csv(out, mode_rows(found)))?;
     if let Some(measured) = &found.measured {
-        csv_file(&folder, "mac.csv", |out| mac_table(out, measured, &found.frequencies()))?;
+        folder.write("mac.csv", |out| write_csv(out, mac_rows(measured, &found.frequencies())))?;
     }
     folder.finish()
 }
 
-fn modes_table(out: &mut dyn io::Write, found: &FreeModes) -> csv::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    table.write_record(["mode", "frequency_hz", "backward_error"])?;
-    for (number, mode) in (1..).zip(&found.modes) {
-        let error = format!("{:.2e}", mode.backward_error);
-        table.write_record([format!("{number}"), format!("{:.15e}", mode.frequency), error])?;
-    }
-    Ok(table.flush()?)
+/// A mode.
+#[derive(Default, Serialize)]
+struct FreeModeRow {
+    mode: usize,
+    frequency_hz: f64,
+    backward_error: f64,
 }
 
-/// Every measured mode against every computed one, alone and with those of its frequency.
-fn mac_table(out: &mut dyn io::Write, measured: &MeasuredComparison, computed: &[f64]) -> csv::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    table.write_record(["measured_hz", "mode", "computed_hz", "mac", "mac_with_modes_of_its_frequency"])?;
-    for (i, frequency) in measured.frequencies.iter().enumerate() {
+/// A measured mode and a computed one, the latter alone and with all modes of its frequency.
+#[derive(Default, Serialize)]
+struct MacRow {
+    measured_hz: f64,
+    mode: usize,
+    computed_hz: f64,
+    mac: f64,
+    mac_with_modes_of_its_frequency: f64,
+}
+
+fn mode_rows(found: &FreeModes) -> impl Iterator<Item = FreeModeRow> {
+    let row = |(mode, data): (usize, &FreeMode)| FreeModeRow {
+        mode,
+        frequency_hz: data.frequency,
+        backward_error: data.backward_error,
+    };
+    (1..).zip(&found.modes).map(row)
+}
+
+/// Every measured mode with every computed one.
+fn mac_rows(measured: &MeasuredComparison, computed: &[f64]) -> Vec<MacRow> {
+    let mut rows = Vec::new();
+    for (i, &measured_hz) in measured.frequencies.iter().enumerate() {
         for (g, j) in measured.groups.iter().enumerate().flat_map(|(g, group)| group.clone().map(move |j| (g, j))) {
-            table.write_record([
-                frequency.to_string(),
-                (j + 1).to_string(),
-                format!("{:.9e}", computed[j]),
-                format!("{:.6}", measured.single[(i, j)]),
-                format!("{:.6}", measured.grouped[(i, g)]),
-            ])?;
+            rows.push(MacRow {
+                measured_hz,
+                mode: j + 1,
+                computed_hz: computed[j],
+                mac: measured.single[(i, j)],
+                mac_with_modes_of_its_frequency: measured.grouped[(i, g)],
+            });
         }
     }
-    Ok(table.flush()?)
+    rows
 }
 
 /// The modes as one JSON document.
 #[derive(Serialize)]
 pub struct FreeModesDocument {
-    part: String,
-    rigid_motions: usize,
-    frequencies_hz: Vec<f64>,
+    pub(super) part: String,
+    pub(super) rigid_motions: usize,
+    pub(super) frequencies_hz: Vec<f64>,
 }
 
 impl From<&FreeModes> for FreeModesDocument {

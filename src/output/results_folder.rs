@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use super::folder::Folder;
+use super::rows::{self, AtFriction, ContactRow, HopfRow, IterationRow, ModeRow, ModeSourceRow, SourceRow};
+use super::{branches, details};
 use crate::Result;
-use crate::output::folder::Folder;
-use crate::output::tables::csv_file;
-use crate::output::{branches, details, explain, tables};
 use crate::results::{Results, file};
+use crate::tracking::Diagram;
 
 /// Name of the results file.
 pub const RESULTS: &str = "results.h5";
@@ -18,23 +19,59 @@ pub const RESULTS: &str = "results.h5";
 /// The system's and HDF5's, with the file's path.
 pub fn write(folder: &Folder, results: &Results, summary: &str) -> Result<()> {
     file::write(&folder.draft().join(RESULTS), results)?;
-    csv_file(folder, "contact.csv", |out| tables::pairs(out, results))?;
-    csv_file(folder, "convergence.csv", |out| tables::convergence(out, results))?;
+    folder.write("contact.csv", |out| rows::write_csv(out, contact(results)))?;
+    folder.write("convergence.csv", |out| rows::write_csv(out, convergence(results)))?;
     if results.about.band[1] > 0.0 {
-        modes(folder, results)?;
+        write_modes(folder, results)?;
     }
     let failure = results.failure.as_ref().map_or_else(String::new, |f| format!("\nnot converged: {}\n", f.reason));
     folder.write("summary.txt", |out| out.write_all((summary.to_owned() + &failure).as_bytes()))
 }
 
-fn modes(folder: &Folder, results: &Results) -> Result<()> {
-    folder.write("modes.csv", |out| tables::modes(out, results))?;
+fn write_modes(folder: &Folder, results: &Results) -> Result<()> {
+    folder.write("modes.csv", |out| rows::write_csv(out, modes(results)))?;
     folder.write("details.txt", |out| out.write_all(details::text(results).as_bytes()))?;
     if results.modes().any(|(_, _, mode)| !mode.sources.is_empty()) {
-        csv_file(folder, "explained.csv", |out| explain::sources(out, results))?;
+        folder.write("explained.csv", |out| rows::write_csv(out, sources(results)))?;
     }
     let Some(diagram) = &results.diagram else { return Ok(()) };
-    let band = results.about.band.map(|f| TAU * f);
-    folder.write("branches.csv", |out| branches::points(out, diagram, band, "friction"))?;
-    folder.write("hopf.csv", |out| branches::hopf(out, diagram, "friction"))
+    write_branches(folder, diagram, results.about.band, "friction")
+}
+
+/// Writes the branches within a band (Hz) over a parameter, and their Hopf points.
+///
+/// # Errors
+/// The system's, with the file's path.
+pub fn write_branches(folder: &Folder, diagram: &Diagram, band: [f64; 2], parameter: &str) -> Result<()> {
+    let points = branches::points(diagram, band.map(|f| TAU * f));
+    folder.write("branches.csv", |out| rows::write_csv_over(out, parameter, points))?;
+    let hopf = diagram.hopf.iter().map(HopfRow::new);
+    folder.write("hopf.csv", |out| rows::write_csv_over(out, parameter, hopf))
+}
+
+fn modes(results: &Results) -> impl Iterator<Item = AtFriction<ModeRow>> {
+    results.modes().map(|(friction, number, mode)| AtFriction { friction, row: ModeRow::of(number, mode) })
+}
+
+fn contact(results: &Results) -> impl Iterator<Item = AtFriction<ContactRow<'_>>> {
+    results.asked().flat_map(|value| {
+        let pairs = results.about.pairs.iter().zip(&value.pairs);
+        pairs.map(|(pair, forces)| AtFriction { friction: value.friction, row: ContactRow::new(&pair.name, forces) })
+    })
+}
+
+/// The iterates of all values and of a failure.
+fn convergence(results: &Results) -> impl Iterator<Item = AtFriction<IterationRow<'_>>> {
+    let done = results.values.iter().map(|value| (value.friction, &value.steps));
+    let failed = results.failure.iter().filter_map(|failure| Some((failure.friction?, &failure.steps)));
+    done.chain(failed).flat_map(|(friction, steps)| {
+        steps.iter().flat_map(IterationRow::of).map(move |row| AtFriction { friction, row })
+    })
+}
+
+fn sources(results: &Results) -> impl Iterator<Item = AtFriction<ModeSourceRow<'_>>> {
+    results.modes().flat_map(|(friction, mode, data)| {
+        let row = move |source| ModeSourceRow { mode, frequency_hz: data.frequency(), source: SourceRow::new(source) };
+        data.sources.iter().map(move |source| AtFriction { friction, row: row(source) })
+    })
 }

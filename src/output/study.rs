@@ -1,14 +1,17 @@
 //! A brake in several models: tables for people and programs.
 
-use std::io::Write;
+use std::io::{Result, Write};
 
+use serde::Serialize;
+
+use super::rows::write_csv;
 use crate::comparison::{CurvePoint, Errors, StudiedModel, Study};
 
 /// Sizes and times, errors, and the instabilities over friction.
 pub fn text(study: &Study) -> String {
     let Study { title, band: [from, to], mesh: [n_nodes, n_tets], frictions, .. } = study;
     let head = format!(
-        "{title}: reduced models against full contact, modes of {from}-{to} Hz at {} friction{}\nmesh: {n_nodes} nodes, {n_tets} tetrahedra\n",
+        "{title}: reduced models compared with full contact, modes of {from}-{to} Hz at {} friction value{}\nmesh: {n_nodes} nodes, {n_tets} tetrahedra\n",
         frictions.len(),
         if frictions.len() == 1 { "" } else { "s" }
     );
@@ -93,10 +96,10 @@ fn errors_text(study: &Study) -> String {
         "{:w$}  {:^21}  {:>10}  {:>6}  {:^13}",
         "errors over all modes", "frequency, %", "growth", "least", "unmatched"
     );
-    text += &format!("{}\n", if instabilities.is_empty() { "" } else { "  grows where the reference does" });
+    text += &format!("{}\n", if instabilities.is_empty() { "" } else { "  unstable where the reference is" });
     text += &format!(
         "{:w$}  {:>10} {:>10}  {:>10}  {:>6}  {:>6} {:>6}",
-        "and frictions", "worst", "mean", "rate, %", "MAC", "ref.", "model"
+        "and values", "worst", "mean", "rate, %", "MAC", "ref.", "model"
     );
     text += &(instabilities.iter().map(|name| format!("  {name:>9}")).collect::<String>() + "\n");
     for model in &study.models {
@@ -146,87 +149,118 @@ fn spurious_text(study: &Study) -> String {
     for model in study.models.iter().filter(|model| !model.spurious.is_empty()) {
         let one = |[mu, hertz, growth]: &[f64; 3]| format!("{hertz:.1} Hz at {mu:.3} ({growth:+.1} /s)");
         let list: Vec<String> = model.spurious.iter().map(one).collect();
-        text += &format!("{} grows where the reference does not: {}\n", model.name, list.join(", "));
+        text += &format!("{} is unstable where the reference is not: {}\n", model.name, list.join(", "));
     }
     if text.is_empty() { text } else { format!("\n{text}") }
 }
 
-/// Sizes and times as CSV: `model, contact_points, retained_points, equations, seconds_per_friction, seconds_to_make`.
-///
-/// # Errors
-/// The writer's.
-pub fn sizes(out: &mut dyn Write, study: &Study) -> csv::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    table.write_record([
-        "model",
-        "contact_points",
-        "retained_points",
-        "equations",
-        "seconds_per_friction",
-        "seconds_to_make",
-    ])?;
-    for StudiedModel { name, sizes, seconds, making_seconds, .. } in models(study) {
-        table.write_record([
-            name.clone(),
-            sizes.n_contacts.to_string(),
-            sizes.n_retained.map_or_else(String::new, |n| n.to_string()),
-            sizes.n_equations.to_string(),
-            format!("{seconds:.6}"),
-            making_seconds.map_or_else(String::new, |s| format!("{s:.3}")),
-        ])?;
-    }
-    Ok(table.flush()?)
+/// Size and times of a model.
+#[derive(Default, Serialize)]
+struct SizesRow<'a> {
+    model: &'a str,
+    contact_points: usize,
+    retained_points: Option<usize>,
+    equations: usize,
+    seconds_per_friction: f64,
+    seconds_to_make: Option<f64>,
 }
 
-/// Errors as CSV: `model, friction, modes, worst_frequency_error, mean_frequency_error, worst_growth_error, least_mac, unmatched_reference,
-/// unmatched_model`.
-///
-/// # Errors
-/// The writer's.
-pub fn errors(out: &mut dyn Write, study: &Study) -> csv::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    table.write_record([
-        "model",
-        "friction",
-        "modes",
-        "worst_frequency_error",
-        "mean_frequency_error",
-        "worst_growth_error",
-        "least_mac",
-        "unmatched_reference",
-        "unmatched_model",
-    ])?;
-    for (model, e) in study.models.iter().flat_map(|model| model.errors.iter().map(move |e| (model, e))) {
-        let mut record = vec![model.name.clone(), e.friction.to_string(), e.n_pairs.to_string()];
-        record.extend([e.worst_frequency, e.mean_frequency, e.worst_growth].map(|x| format!("{x:.6e}")));
-        record.push(format!("{:.6}", e.least_mac));
-        record.extend(e.n_unmatched.map(|n| n.to_string()));
-        table.write_record(record)?;
-    }
-    Ok(table.flush()?)
+/// Errors of a model at a friction value.
+#[derive(Default, Serialize)]
+struct ErrorsRow<'a> {
+    model: &'a str,
+    friction: f64,
+    modes: usize,
+    worst_frequency_error: f64,
+    mean_frequency_error: f64,
+    worst_growth_error: f64,
+    least_mac: f64,
+    unmatched_reference: usize,
+    unmatched_model: usize,
 }
 
-/// The instabilities over friction as CSV: `instability` (from 1), `model, friction, frequency_hz, growth_rate_per_s, unstable, mac`.
-///
-/// # Errors
-/// The writer's.
-pub fn curves(out: &mut dyn Write, study: &Study) -> csv::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    table.write_record(["instability", "model", "friction", "frequency_hz", "growth_rate_per_s", "unstable", "mac"])?;
-    for model in models(study) {
-        for (i, curve) in model.curves.iter().enumerate() {
-            for point in curve {
-                table.write_record([
-                    (i + 1).to_string(),
-                    model.name.clone(),
-                    point.friction.to_string(),
-                    format!("{:.9e}", point.frequency),
-                    format!("{:.9e}", point.growth_rate),
-                    u8::from(point.unstable).to_string(),
-                    format!("{:.6}", point.mac),
-                ])?;
-            }
+/// An instability (from 1) in a model at a friction value.
+#[derive(Default, Serialize)]
+struct CurveRow<'a> {
+    instability: usize,
+    model: &'a str,
+    friction: f64,
+    frequency_hz: f64,
+    growth_rate_per_s: f64,
+    unstable: bool,
+    mac: f64,
+}
+
+impl<'a> SizesRow<'a> {
+    fn new(model: &'a StudiedModel) -> SizesRow<'a> {
+        SizesRow {
+            model: &model.name,
+            contact_points: model.sizes.n_contacts,
+            retained_points: model.sizes.n_retained,
+            equations: model.sizes.n_equations,
+            seconds_per_friction: model.seconds,
+            seconds_to_make: model.making_seconds,
         }
     }
-    Ok(table.flush()?)
+}
+
+impl<'a> ErrorsRow<'a> {
+    fn new(model: &'a StudiedModel, errors: &Errors) -> ErrorsRow<'a> {
+        ErrorsRow {
+            model: &model.name,
+            friction: errors.friction,
+            modes: errors.n_pairs,
+            worst_frequency_error: errors.worst_frequency,
+            mean_frequency_error: errors.mean_frequency,
+            worst_growth_error: errors.worst_growth,
+            least_mac: errors.least_mac,
+            unmatched_reference: errors.n_unmatched[0],
+            unmatched_model: errors.n_unmatched[1],
+        }
+    }
+}
+
+impl<'a> CurveRow<'a> {
+    fn new(model: &'a StudiedModel, instability: usize, point: &CurvePoint) -> CurveRow<'a> {
+        CurveRow {
+            instability,
+            model: &model.name,
+            friction: point.friction,
+            frequency_hz: point.frequency,
+            growth_rate_per_s: point.growth_rate,
+            unstable: point.unstable,
+            mac: point.mac,
+        }
+    }
+}
+
+/// Sizes and times as CSV.
+///
+/// # Errors
+/// The writer's.
+pub fn sizes(out: &mut dyn Write, study: &Study) -> Result<()> {
+    write_csv(out, models(study).map(SizesRow::new))
+}
+
+/// Errors as CSV.
+///
+/// # Errors
+/// The writer's.
+pub fn errors(out: &mut dyn Write, study: &Study) -> Result<()> {
+    let rows = |model| move |errors| ErrorsRow::new(model, errors);
+    write_csv(out, study.models.iter().flat_map(|model| model.errors.iter().map(rows(model))))
+}
+
+/// The instabilities over friction as CSV.
+///
+/// # Errors
+/// The writer's.
+pub fn curves(out: &mut dyn Write, study: &Study) -> Result<()> {
+    let mut rows = Vec::new();
+    for model in models(study) {
+        for (number, curve) in (1..).zip(&model.curves) {
+            rows.extend(curve.iter().map(|point| CurveRow::new(model, number, point)));
+        }
+    }
+    write_csv(out, rows)
 }

@@ -44,7 +44,7 @@ fn files(results: &Results, place: &str) -> String {
     let states = [(state, "displacements and contact, for ParaView")];
     let shape = if alone { "mode_*.vtu" } else { "mode_*.pvtu" };
     let shapes = [(shape, "shapes of the unstable modes, for ParaView")];
-    let reasons = [("explained.csv", "energies, feed, damping, sensitivities")];
+    let reasons = [("explained.csv", "energies, energy input, dissipation, sensitivities")];
     let curves = [("branches.csv", "modes followed over friction"), ("hopf.csv", "where they become unstable")];
     let any_equilibrium = results.asked().next().is_some();
     let any_unstable = results.modes().any(|(_, _, mode)| mode.unstable);

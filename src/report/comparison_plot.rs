@@ -27,10 +27,10 @@ pub fn errors(comparison: &Comparison) -> String {
         }
     }
     let n = comparison.frictions.len();
-    let title = format!("B against A, {n} friction{}", if n == 1 { "" } else { "s" });
+    let title = format!("B compared with A, {n} friction value{}", if n == 1 { "" } else { "s" });
     sheet.text([80.0, 22.0], Anchor::Start, &title, r#"font-weight="bold""#);
     sheet.circle([80.0, 42.0], 3.5, &format!(r#"fill="{}""#, colour(0)));
-    sheet.text([90.0, 46.0], Anchor::Start, "grows in A or in B", &format!(r#"fill="{INK}""#));
+    sheet.text([90.0, 46.0], Anchor::Start, "unstable in A or in B", &format!(r#"fill="{INK}""#));
     sheet.finish("Errors of frequencies and growth rates and MAC of all modes against frequency")
 }
 

@@ -15,13 +15,13 @@ use crate::results::{ModeData, Value};
 #[derive(Serialize)]
 pub struct Data<'a> {
     parts: Vec<&'a str>,
-    pairs: Vec<PairRow<'a>>,
-    values: Vec<ValueRow<'a>>,
+    pairs: Vec<PairData<'a>>,
+    values: Vec<ValueData<'a>>,
     /// Indices of the values asked for.
     asked: &'a [usize],
-    instabilities: Vec<InstabilityRow>,
+    instabilities: Vec<InstabilityData>,
     /// By the mode's name.
-    explained: BTreeMap<String, Vec<SourceRow<'a>>>,
+    explained: BTreeMap<String, Vec<SourceData<'a>>>,
     surface: Option<Outer>,
     #[serde(flatten)]
     shapes: Shapes,
@@ -29,13 +29,13 @@ pub struct Data<'a> {
 }
 
 #[derive(Serialize)]
-struct PairRow<'a> {
+struct PairData<'a> {
     name: &'a str,
     sliding: bool,
 }
 
 #[derive(Serialize)]
-struct ValueRow<'a> {
+struct ValueData<'a> {
     friction: f64,
     /// Frequency in Hz, growth rate in 1/s, damping ratio, backward error, whether unstable, branch from 1 or null.
     modes: Vec<(f64, f64, f64, f64, bool, Option<usize>)>,
@@ -50,7 +50,7 @@ struct ValueRow<'a> {
 }
 
 #[derive(Serialize)]
-struct InstabilityRow {
+struct InstabilityData {
     name: String,
     /// Its modes at the frictions asked for.
     modes: Vec<String>,
@@ -60,7 +60,7 @@ struct InstabilityRow {
 }
 
 #[derive(Serialize)]
-struct SourceRow<'a> {
+struct SourceData<'a> {
     kind: &'static str,
     name: &'a str,
     kinetic: f64,
@@ -79,7 +79,7 @@ impl<'a> Data<'a> {
         let rows = findings.results.values.iter().zip(&findings.branch_of);
         Data {
             parts: about.parts.iter().map(|part| part.name.as_str()).collect(),
-            pairs: about.pairs.iter().map(|pair| PairRow { name: &pair.name, sliding: pair.sliding }).collect(),
+            pairs: about.pairs.iter().map(|pair| PairData { name: &pair.name, sliding: pair.sliding }).collect(),
             values: rows.map(|(value, branches)| value_row(value, branches)).collect(),
             asked: &findings.asked,
             explained: explained(findings),
@@ -91,7 +91,7 @@ impl<'a> Data<'a> {
     }
 }
 
-fn value_row<'a>(value: &'a Value, branches: &[Option<usize>]) -> ValueRow<'a> {
+fn value_row<'a>(value: &'a Value, branches: &[Option<usize>]) -> ValueData<'a> {
     let mode = |(mode, branch): (&ModeData, &Option<usize>)| {
         let numbers = (mode.frequency(), mode.growth_rate(), mode.damping_ratio());
         (numbers.0, numbers.1, numbers.2, mode.backward_error, mode.unstable, branch.map(|b| b + 1))
@@ -105,7 +105,7 @@ fn value_row<'a>(value: &'a Value, branches: &[Option<usize>]) -> ValueRow<'a> {
         let last = step.iterations.last().map_or(f64::NAN, |it| it.residual);
         (step.label.as_str(), step.converged, step.iterations.len().saturating_sub(1), last)
     });
-    ValueRow {
+    ValueData {
         friction: value.friction,
         modes: value.modes.iter().zip(branches).map(mode).collect(),
         pairs: pairs.collect(),
@@ -116,10 +116,10 @@ fn value_row<'a>(value: &'a Value, branches: &[Option<usize>]) -> ValueRow<'a> {
     }
 }
 
-fn instability_row(findings: &Findings, one: &Instability) -> InstabilityRow {
+fn instability_row(findings: &Findings, one: &Instability) -> InstabilityData {
     let partner = findings.onset(one).and_then(|hopf| hopf.partner).map(|partner| partner.branch);
     let asked = one.modes.iter().filter(|place| findings.results.values[place.value].asked);
-    InstabilityRow {
+    InstabilityData {
         name: words::frequency(findings.mode(one.worst).frequency()),
         modes: asked.map(|place| place.name()).collect(),
         worst: one.worst.name(),
@@ -127,17 +127,17 @@ fn instability_row(findings: &Findings, one: &Instability) -> InstabilityRow {
     }
 }
 
-fn explained<'a>(findings: &'a Findings) -> BTreeMap<String, Vec<SourceRow<'a>>> {
+fn explained<'a>(findings: &'a Findings) -> BTreeMap<String, Vec<SourceData<'a>>> {
     let places = findings.results.values.iter().enumerate();
     let modes = places.flat_map(|(value, row)| (0..row.modes.len()).map(move |mode| Place { value, mode }));
     let told = modes.filter(|&place| !findings.mode(place).sources.is_empty());
     told.map(|place| (place.name(), findings.mode(place).sources.iter().map(source_row).collect())).collect()
 }
 
-fn source_row(source: &Source) -> SourceRow<'_> {
+fn source_row(source: &Source) -> SourceData<'_> {
     let (share, s) = (source.share, source.sensitivity);
     let slopes = [source.friction, s.map(|s| s.damping), s.map(|s| s.stiffness), s.map(|s| s.mass)];
-    SourceRow {
+    SourceData {
         kind: explain::kind(source.kind),
         name: &source.name,
         kinetic: share.kinetic,

@@ -194,8 +194,8 @@ fn packed(bytes: impl Iterator<Item = u8>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing;
     use super::*;
+    use crate::results::testing;
 
     fn bytes(text: &str) -> Vec<u8> {
         STANDARD.decode(text).unwrap()

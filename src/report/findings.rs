@@ -232,8 +232,8 @@ impl End {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing;
     use super::*;
+    use crate::results::testing;
 
     #[test]
     fn instabilities_are_branches_between_hopf_points_the_strongest_first() {

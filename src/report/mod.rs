@@ -10,6 +10,7 @@ pub mod comparison_plot;
 pub mod data;
 pub mod drawing;
 pub mod findings;
+pub mod model_section;
 pub mod page;
 pub mod paraview;
 pub mod plots;
@@ -17,6 +18,4 @@ pub mod raster;
 pub mod study_folder;
 pub mod study_plot;
 pub mod svg;
-#[cfg(test)]
-mod testing;
 pub mod words;

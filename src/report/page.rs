@@ -1,23 +1,25 @@
-//! The report as one HTML page: templates of `assets/`, figures, words, and the data as JSON. It asks nothing of the network, and the browser
-//! holds it to that: a content security policy admits this page's own style and program, by their digests, and nothing else.
+//! The report as one HTML page: words, figures, and the data as JSON for the scripts of `assets/`. It loads nothing from the network, and the
+//! browser enforces that: a content security policy admits this page's own style and script, by their digests, and nothing else.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
 use super::data::Data;
 use super::findings::{Findings, Instability};
+use super::model_section;
 use super::plots::{self, Figure};
-use super::svg::{PALETTE, escaped};
-use super::words::{self, Answer};
+use super::svg::PALETTE;
+use super::words::{self, Answer, unbroken};
 use crate::output::overwrite::{FileKind, head_contains};
-use crate::results::{About, Pair, Part, Results, Status};
+use crate::results::{Results, Status, Value};
 use crate::{Error, Result};
 
-const PAGE: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/page.css");
 /// Names are declared before they are used.
-const SCRIPT: [&str; 9] = [
+const SCRIPT: [&str; 10] = [
+    include_str!("assets/numbers.js"),
     include_str!("assets/base.js"),
     include_str!("assets/charts.js"),
     include_str!("assets/table.js"),
@@ -42,226 +44,310 @@ pub const KIND: FileKind = FileKind {
 pub fn page(results: &Results) -> Result<String> {
     let findings = Findings::new(results);
     let figures = plots::figures(&findings);
-    let about = &results.about;
     let json = serde_json::to_string(&Data::new(&findings));
     let json = json.map_err(Error::library("the report's data cannot be written as JSON"))?;
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPT.join("\n"));
-    let values = [
-        ("style-hash", digest(STYLE)),
-        ("script-hash", digest(&script)),
-        ("style", STYLE.to_owned()),
-        ("script", script),
-        // Inside a script element a `<` could begin its end.
-        ("data", json.replace('<', "\\u003c")),
-        ("title", escaped(title(results))),
-        ("subtitle", escaped(&subtitle(&findings))),
-        ("headline", said(&words::headline(&findings))),
-        ("verdict-class", verdict_class(results).into()),
-        ("cautions", list("cautions", &words::cautions(&findings))),
-        ("answers", answers(&findings)),
-        ("charts", plot(&figures, "stability-chart") + &plot(&figures, "growth-rates")),
-        ("instabilities", instabilities(&findings, &figures)),
-        ("convergence", plot(&figures, "convergence")),
-        ("counts", counts(&findings)),
-        ("model", model(results)),
-        ("model-text", escaped(&about.model_text)),
-        ("costs", escaped(&results.costs)),
-        ("program", escaped(&about.program)),
-    ];
-    Ok(filled(PAGE, &values))
+    let policy =
+        format!("default-src 'none'; style-src '{}'; script-src '{}'; img-src data:", digest(STYLE), digest(&script));
+    let about = &results.about;
+    let title = if about.title.is_empty() { &about.model } else { &about.title };
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="generator" content="squeal";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(PreEscaped(policy));
+                title { (title) ": squeal report" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                (top(title, &findings))
+                main {
+                    (answer_section(&findings))
+                    (charts_section(&figures))
+                    (instabilities_section(&findings, &figures))
+                    (pressure_section())
+                    (modes_section())
+                    (checks_section(&findings, &figures))
+                    (model_section::section(results))
+                }
+                footer { p { "Written by " (about.program) ". This page is one file and needs no network." } }
+                div #tip role="tooltip" hidden {}
+                // Inside a script element a `<` could begin its end.
+                script #data type="application/json" { (PreEscaped(json.replace('<', "\\u003c"))) }
+                script { (PreEscaped(script)) }
+            }
+        }
+    };
+    Ok(page.into_string())
 }
 
-/// The style of the first sentence.
-fn verdict_class(results: &Results) -> &'static str {
-    match results.verdict().status {
-        Status::Unstable => "unstable",
-        Status::Stable => "quiet",
-        Status::Unknown => "unknown",
-    }
-}
-
-/// A digest as a content security policy wants it.
+/// A digest as a content security policy has it.
 fn digest(text: &str) -> String {
     format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 
-/// Words as HTML, which keeps a friction on one line.
-fn said(text: &str) -> String {
-    escaped(text).replace("\u{3bc} = ", "\u{3bc}\u{a0}=\u{a0}")
-}
-
-/// A template with its `{{names}}` replaced, once: what a value says is left alone.
-fn filled(template: &str, values: &[(&str, String)]) -> String {
-    let mut out = String::new();
-    let mut rest = template;
-    while let Some((before, after)) = rest.split_once("{{") {
-        let (name, after) = after.split_once("}}").expect("a template closes its braces");
-        let value = values.iter().find(|(known, _)| *known == name);
-        out += before;
-        out += &value.unwrap_or_else(|| panic!("the template names {name}")).1;
-        rest = after;
+fn top(title: &str, findings: &Findings) -> Markup {
+    const SECTIONS: [(&str, &str); 7] = [
+        ("#answer", "Answer"),
+        ("#charts", "Stability chart"),
+        ("#instabilities", "Instabilities"),
+        ("#pressure", "Contact pressure"),
+        ("#modes", "Modes"),
+        ("#checks", "Checks"),
+        ("#model", "Model"),
+    ];
+    html! {
+        header.top {
+            h1 { (title) }
+            p { (subtitle(findings)) }
+            nav aria-label="Sections" { @for (target, name) in SECTIONS { a href=(target) { (name) } " " } }
+        }
     }
-    out + rest
-}
-
-fn title(results: &Results) -> &str {
-    if results.about.title.is_empty() { &results.about.model } else { &results.about.title }
 }
 
 fn subtitle(findings: &Findings) -> String {
     let about = &findings.results.about;
     let [from, to] = about.band;
-    let frictions: Vec<f64> = findings.asked.iter().map(|&v| findings.results.values[v].friction).collect();
-    let frictions = match frictions[..] {
-        [] => "no friction".into(),
-        [one] => format!("friction {one}"),
-        [first, .., last] => format!("{} frictions from {first} to {last}", frictions.len()),
+    let values: Vec<f64> = findings.asked.iter().map(|&v| findings.results.values[v].friction).collect();
+    let values = match values[..] {
+        [] => "no friction value".into(),
+        [one] => format!("\u{3bc} = {one}"),
+        [first, .., last] => format!("{} friction values, \u{3bc} = {first} to {last}", values.len()),
     };
-    format!("Complex modes {from}\u{2013}{to} Hz at {frictions}; {} equations", about.n_equations)
+    unbroken(&format!("Complex modes {from}\u{2013}{to} Hz at {values}; {} dofs", about.n_equations))
 }
 
-fn answers(findings: &Findings) -> String {
-    findings.instabilities.iter().enumerate().map(|(i, one)| answer(findings, i, one)).collect()
-}
-
-fn answer(findings: &Findings, i: usize, one: &Instability) -> String {
-    let Answer { squeals, moves, couples, fed, held, helps } = words::answer(findings, one);
-    let row = |name: &str, text: &str| match text {
-        "" => String::new(),
-        _ => format!("<dt>{name}</dt><dd>{}</dd>\n", said(text)),
+fn answer_section(findings: &Findings) -> Markup {
+    let style = match findings.results.verdict().status {
+        Status::Unstable => "unstable",
+        Status::Stable => "quiet",
+        Status::Unknown => "unknown",
     };
-    let helps = match &helps[..] {
-        [] => String::new(),
-        _ => format!("<dt>Would help, to first order</dt><dd>{}</dd>\n", list("", &helps)),
-    };
-    format!(
-        "<article class=\"card answer own{}\"><h2>{}</h2>\n<dl>\n{}{}{}{}{}{helps}</dl></article>\n",
-        i % PALETTE.len(),
-        escaped(&words::frequency(findings.mode(one.worst).frequency())),
-        row("Squeals", &squeals),
-        row("Moves", &moves),
-        row("Why", &couples),
-        row("Fed by", &fed),
-        row("Held by damping", &held),
-    )
-}
-
-fn list(class: &str, items: &[String]) -> String {
-    if items.is_empty() {
-        return String::new();
+    html! {
+        section #answer aria-label="Answer" {
+            p.verdict.(style) { (unbroken(&words::headline(findings))) }
+            (list("cautions", &words::cautions(findings)))
+            div.split {
+                div.answers { @for (i, one) in findings.instabilities.iter().enumerate() { (answer(findings, i, one)) } }
+                (shape())
+            }
+        }
     }
-    let items: String = items.iter().map(|item| format!("<li>{}</li>", escaped(item))).collect();
-    format!("<ul class=\"{class}\">{items}</ul>")
 }
 
-fn plot(figures: &[Figure], name: &str) -> String {
+fn answer(findings: &Findings, i: usize, one: &Instability) -> Markup {
+    let Answer { range, moves, mechanism, input, dissipation, remedies } = words::answer(findings, one);
+    let rows = [
+        ("Squeals", range),
+        ("Mechanism", mechanism),
+        ("Kinetic energy in", moves),
+        ("Energy input by", input),
+        ("Dissipation by", dissipation),
+    ];
+    html! {
+        article.(format!("card answer own{}", i % PALETTE.len())) {
+            h2 { (words::frequency(findings.mode(one.worst).frequency())) }
+            dl {
+                @for (name, text) in rows.iter().filter(|(_, text)| !text.is_empty()) {
+                    dt { (name) }
+                    dd { (unbroken(text)) }
+                }
+                @if !remedies.is_empty() {
+                    dt { "Largest reductions of the growth rate (first-order sensitivities)" }
+                    dd { (list("", &remedies)) }
+                }
+            }
+        }
+    }
+}
+
+fn list(class: &str, items: &[String]) -> Markup {
+    html! { @if !items.is_empty() { ul class=(class) { @for item in items { li { (unbroken(item)) } } } } }
+}
+
+/// The moving shape, which the scripts draw.
+fn shape() -> Markup {
+    const KEYS: &str = "Mode shape in 3D. Arrow keys turn it, plus and minus zoom, space plays and pauses.";
+    html! {
+        figure #shape.card hidden {
+            figcaption { strong #shape-title {} " " span #shape-note {} }
+            div #stage {
+                canvas #view tabindex="0" aria-label=(KEYS) {}
+                div #legend aria-hidden="true" {
+                    span #legend-top { "1" }
+                    canvas width="12" height="90" {}
+                    span { "0" }
+                }
+            }
+            div.controls {
+                button #play type="button" aria-pressed="true" { "Pause" }
+                label { "Mode " select #shape-mode {} }
+                label { "Amplitude " input #amplitude type="range" min="0" max="100" value="40"; }
+                label {
+                    "Colour "
+                    select #colouring { option value="size" { "displacement" } option value="part" { "parts" } }
+                }
+                span.views {
+                    "View "
+                    @for (view, name) in [("iso", "3D"), ("x", "x"), ("y", "y"), ("z", "z")] {
+                        button type="button" data-view=(view) { (name) }
+                    }
+                }
+            }
+            fieldset #parts { legend { "Parts shown" } }
+        }
+    }
+}
+
+fn plot(figures: &[Figure], name: &str) -> Markup {
     let own = figures.iter().find(|figure| figure.name == name);
-    own.map_or_else(String::new, |figure| format!("<figure class=\"card plot\">{}</figure>\n", figure.svg))
+    html! { @if let Some(figure) = own { figure.card.plot { (PreEscaped(&figure.svg)) } } }
 }
 
-fn instabilities(findings: &Findings, figures: &[Figure]) -> String {
-    let card = |(i, one): (usize, &Instability)| {
-        let figure = figures.iter().find(|figure| figure.name == format!("instability-{}", i + 1));
-        let plot = figure.map_or_else(String::new, |figure| format!("<div class=\"plot\">{}</div>", figure.svg));
-        format!(
-            "<article class=\"card instability own{}\"><header><h3>{}</h3>\n<div class=\"controls\"><label>Friction <select></select></label>\
-             <button type=\"button\">Show its shape</button></div></header>\n<div>{plot}<img hidden alt=\"\"></div>\n\
-             <div class=\"explained\"></div></article>\n",
-            i % PALETTE.len(),
-            escaped(&words::frequency(findings.mode(one.worst).frequency())),
-        )
-    };
-    match findings.instabilities.is_empty() {
-        true => "<p>None.</p>".into(),
-        false => findings.instabilities.iter().enumerate().map(card).collect(),
+fn charts_section(figures: &[Figure]) -> Markup {
+    html! {
+        section #charts aria-label="Stability chart" {
+            h2 { "Stability chart" }
+            p.hint {
+                "Point at a circle to see its values. Click to choose a mode: it is marked in all figures and tables. In a chart the arrow \
+                 keys choose the next unstable mode."
+            }
+            p #chosen.chosen role="status" {}
+            div.charts { (plot(figures, "stability-chart")) (plot(figures, "growth-rates")) }
+        }
     }
 }
 
-/// For each friction asked for: how many modes, the check of their number, the largest backward error, seconds.
-fn counts(findings: &Findings) -> String {
-    let row = |&v: &usize| {
-        let value = &findings.results.values[v];
-        let error = value.modes.iter().map(|mode| mode.backward_error).fold(0.0, f64::max);
-        let unstable = value.modes.iter().filter(|mode| mode.unstable).count();
-        let (check, class) = match value.count {
-            Some(count) if count.agrees() => (format!("{} below {:.0} Hz", count.expected, count.below), ""),
-            Some(count) => (format!("{} found, {} expected", count.found, count.expected), "unstable"),
-            None => ("\u{2013}".into(), ""),
-        };
-        format!(
-            "<tr class=\"{class}\"><td>{}</td><td>{}</td><td>{unstable}</td><td>{check}</td><td>{error:.1e}</td><td>{:.1}</td></tr>\n",
-            value.friction,
-            value.modes.len(),
-            value.seconds
-        )
-    };
-    let rows: String = findings.asked.iter().map(row).collect();
-    format!(
-        "<div class=\"over\"><table><thead><tr><th>friction</th><th>modes</th><th>unstable</th><th>count by inertia</th>\
-         <th>largest backward error</th><th>time, s</th></tr></thead><tbody>{rows}</tbody></table></div>"
-    )
-}
-
-fn model(results: &Results) -> String {
-    let about = &results.about;
-    let part = |p: &Part| [p.name.clone(), p.material.clone(), format!("{:.3}", p.mass)];
-    let parts = table(["part", "material", "mass, kg"], about.parts.iter().map(part));
-    let pair = |p: &Pair| [p.name.clone(), kind(p).into(), p.n_points.to_string()];
-    let pairs = table(["contact pair", "kind", "points"], about.pairs.iter().map(pair));
-    format!("<dl>{}</dl>\n<div class=\"over\">{parts}{pairs}</div>", facts(about))
-}
-
-/// What was analysed, by what.
-fn facts(about: &About) -> String {
-    let row = |name: &str, text: String| format!("<dt>{name}</dt><dd>{text}</dd>\n");
-    let file = |name: &str, digest: &str| {
-        format!("{}<br><span class=\"digest\">SHA-256 {}</span>", escaped(name), escaped(digest))
-    };
-    let mut rows = row("Model", file(&about.model, &about.model_digest));
-    if !about.mesh.is_empty() {
-        rows += &row("Mesh", file(&about.mesh, &about.mesh_digest));
-        rows += &row("Size", format!("{} nodes, {} tetrahedra", about.n_nodes, about.n_tets));
-    }
-    let plural = if about.n_ranks == 1 { "" } else { "s" };
-    rows += &row("Solved", format!("{} equations on {} rank{plural}", about.n_equations, about.n_ranks));
-    rows += &row("Command", format!("<code>squeal {}</code>", escaped(&about.command)));
-    rows += &row("Program", escaped(&about.program));
-    rows + &row("Libraries", escaped(&about.libraries))
-}
-
-fn kind(pair: &Pair) -> &'static str {
-    match (pair.sliding, pair.swept) {
-        (true, true) => "slides, friction swept",
-        (true, false) => "slides",
-        (false, true) => "sticks, friction swept",
-        (false, false) => "sticks up to its friction",
+fn instabilities_section(findings: &Findings, figures: &[Figure]) -> Markup {
+    let svg = |i: usize| figures.iter().find(|figure| figure.name == format!("instability-{}", i + 1));
+    html! {
+        section #instabilities aria-label="Instabilities" {
+            h2 { "Instabilities" }
+            @if findings.instabilities.is_empty() { p { "None." } }
+            @for (i, one) in findings.instabilities.iter().enumerate() {
+                article.(format!("card instability own{}", i % PALETTE.len())) {
+                    header {
+                        h3 { (words::frequency(findings.mode(one.worst).frequency())) }
+                        div.controls {
+                            label { "Friction coefficient " select {} }
+                            button type="button" { "Show its shape" }
+                        }
+                    }
+                    div {
+                        @if let Some(figure) = svg(i) { div.plot { (PreEscaped(&figure.svg)) } }
+                        img hidden alt="";
+                    }
+                    div.explained {}
+                }
+            }
+        }
     }
 }
 
-/// A table of two texts and a number a row; nothing without rows.
-fn table([a, b, c]: [&str; 3], rows: impl Iterator<Item = [String; 3]>) -> String {
-    let row = |[a, b, c]: [String; 3]| {
-        format!("<tr><td class=\"left\">{}</td><td class=\"left\">{}</td><td>{c}</td></tr>", escaped(&a), escaped(&b))
-    };
-    let rows: String = rows.map(row).collect();
-    if rows.is_empty() {
-        return rows;
+fn pressure_section() -> Markup {
+    html! {
+        section #pressure aria-label="Contact pressure" hidden {
+            h2 { "Contact pressure" }
+            div.controls {
+                label { "Friction coefficient " select #pressure-friction {} }
+                label {
+                    "Show "
+                    select #pressure-field {
+                        option value="pressure" { "pressure" }
+                        option value="status" { "status" }
+                    }
+                }
+                label { input #pressure-all type="checkbox"; " all contact pairs" }
+            }
+            div #maps {}
+        }
     }
-    format!(
-        "<table><thead><tr><th class=\"left\">{a}</th><th class=\"left\">{b}</th><th>{c}</th></tr></thead><tbody>{rows}</tbody></table>"
-    )
+}
+
+fn modes_section() -> Markup {
+    html! {
+        section #modes aria-label="Modes" {
+            h2 { "Modes" }
+            div.controls {
+                label { "Friction coefficient " select #mode-friction {} }
+                label { input #mode-unstable type="checkbox"; " unstable only" }
+                button #mode-clear type="button" { "Clear filters" }
+                span #mode-count role="status" {}
+            }
+            p.hint.screen {
+                "Click a heading to sort. A filter is a number, " code { "> 0" } ", " code { "< 1e-10" } " or "
+                code { "1000 - 2000" } "."
+            }
+            div.scroll tabindex="0" role="region" aria-label="Table of modes" {
+                table #mode-table { thead {} tbody {} }
+            }
+        }
+    }
+}
+
+fn checks_section(findings: &Findings, figures: &[Figure]) -> Markup {
+    html! {
+        section #checks aria-label="Checks" {
+            h2 { "Checks" }
+            div.controls { label { "Friction coefficient " select #check-friction {} } }
+            div #check-body {}
+            (plot(figures, "convergence"))
+            h3 { "Modes: their number and accuracy" }
+            (counts(findings))
+        }
+    }
+}
+
+/// For each friction value: the number of modes, its check by the Sturm count, the largest backward error, seconds.
+fn counts(findings: &Findings) -> Markup {
+    html! {
+        div.over {
+            table {
+                thead {
+                    tr {
+                        @for name in ["\u{3bc}", "modes", "unstable", "Sturm count", "largest backward error", "time, s"] {
+                            th { (name) }
+                        }
+                    }
+                }
+                tbody { @for &v in &findings.asked { (count_row(&findings.results.values[v])) } }
+            }
+        }
+        p.hint {
+            "The Sturm count is the number of modes of the undamped, symmetric problem below a frequency, by Sylvester's law of inertia. \
+             Where as many complex modes are found, none is missing."
+        }
+    }
+}
+
+fn count_row(value: &Value) -> Markup {
+    let error = value.modes.iter().map(|mode| mode.backward_error).fold(0.0, f64::max);
+    let n_unstable = value.modes.iter().filter(|mode| mode.unstable).count();
+    let agrees = value.count.is_none_or(|count| count.agrees());
+    let check = match value.count {
+        Some(count) if agrees => format!("{} below {:.0} Hz", count.expected, count.below),
+        Some(count) => format!("{} found, {} expected", count.found, count.expected),
+        None => "\u{2013}".into(),
+    };
+    html! {
+        tr class=[(!agrees).then_some("unstable")] {
+            td { (value.friction) }
+            td { (value.modes.len()) }
+            td { (n_unstable) }
+            td { (check) }
+            td { (format!("{error:.1e}")) }
+            td { (format!("{:.1}", value.seconds)) }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing;
     use super::*;
-
-    #[test]
-    fn a_template_is_filled_once() {
-        let values = [("a", "{{b}}".to_owned()), ("b", "x".to_owned())];
-        assert_eq!(filled("1 {{a}} 2 {{b}}", &values), "1 {{b}} 2 x");
-    }
+    use crate::results::testing;
 
     #[test]
     fn a_title_that_means_mischief_stays_text() {
@@ -292,7 +378,7 @@ mod tests {
         results.values.retain(|value| value.friction == 0.0);
         results.diagram = None;
         results.about.frictions = vec![0.0];
-        assert!(page(&results).unwrap().contains("Quiet: none of the 8 modes"));
-        assert!(page(&Results::default()).unwrap().contains("No friction has been analysed yet."));
+        assert!(page(&results).unwrap().contains("Quiet: all 8 modes"));
+        assert!(page(&Results::default()).unwrap().contains("No friction value has been analysed yet."));
     }
 }

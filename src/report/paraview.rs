@@ -90,8 +90,8 @@ impl Cycle<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing;
     use super::*;
+    use crate::results::testing;
 
     #[test]
     fn a_collection_names_the_moments_of_one_cycle() {

@@ -63,7 +63,12 @@ fn stability_chart(findings: &Findings) -> String {
             sheet.circle(at, radius(mode.growth_rate()).max(3.0), &style);
         }
     }
-    sheet.text([70.0, 20.0], Anchor::Start, "Stability chart: circles grow, their area is the growth rate", TITLE);
+    sheet.text(
+        [70.0, 20.0],
+        Anchor::Start,
+        "Stability chart: circles are unstable modes, their area is the growth rate",
+        TITLE,
+    );
     let legend = [1.0, 0.3, 0.1].map(|share| rounded(share * largest));
     for (k, &growth) in legend.iter().enumerate().filter(|_| !findings.instabilities.is_empty()) {
         let y = 70.0 + 38.0 * k as f64;
@@ -104,7 +109,12 @@ fn growth_rates(findings: &Findings) -> String {
     }
     hopf_marks(&mut sheet, &panel, findings, findings.hopf().iter(), |_| 0.0);
     end_labels(&mut sheet, &panel, findings);
-    sheet.text([70.0, 20.0], Anchor::Start, "Growth rates: above zero a mode squeals; diamonds are Hopf points", TITLE);
+    sheet.text(
+        [70.0, 20.0],
+        Anchor::Start,
+        "Growth rates: modes above zero are unstable; diamonds are Hopf points",
+        TITLE,
+    );
     sheet.finish("Growth rate of all modes against friction")
 }
 
@@ -191,8 +201,8 @@ fn coupling(findings: &Findings, i: usize, instability: &Instability) -> Option<
     hopf_marks(&mut sheet, &lower, findings, hopf(), |_| 0.0);
     let name = words::frequency(findings.mode(instability.worst).frequency());
     let told = match partner {
-        Some(_) => "two modes meet (solid and dashed) and one begins to grow",
-        None => "a mode that grows by itself",
+        Some(_) => "two modes (solid and dashed) coalesce and one becomes unstable",
+        None => "a mode loses stability without coalescence",
     };
     sheet.text([80.0, 18.0], Anchor::Start, &format!("{name}: {told}"), TITLE);
     Some(sheet.finish(&format!("Frequency and growth rate against friction of the instability at {name}")))

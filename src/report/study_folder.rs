@@ -14,8 +14,8 @@ use super::study_plot;
 /// # Errors
 /// The system's, with the file's path.
 pub fn write(place: &Path, study: &Study, n: usize) -> Result<String> {
-    let table = |name: &str, body: fn(&mut dyn std::io::Write, &Study) -> csv::Result<()>| {
-        write_file(&place.join(name), |out| body(out, study).map_err(std::io::Error::other))
+    let table = |name: &str, body: fn(&mut dyn std::io::Write, &Study) -> std::io::Result<()>| {
+        write_file(&place.join(name), |out| body(out, study))
     };
     let (layouts, elements): (Vec<&StudiedModel>, Vec<&StudiedModel>) =
         study.models.iter().partition(|model| !model.name.starts_with("super-element"));

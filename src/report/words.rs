@@ -1,4 +1,4 @@
-//! The answer in words: does it squeal, where, why, and what would help.
+//! The answer in words: does it squeal, where, by which mechanism, and which changes lower the growth rate most.
 
 use std::f64::consts::TAU;
 
@@ -8,18 +8,18 @@ use crate::results::{Kind, Source, Status};
 
 /// What is said of one instability.
 pub struct Answer {
-    /// The frequency and the frictions.
-    pub squeals: String,
-    /// Where it moves.
+    /// The frequency, the friction values, and the fastest growth.
+    pub range: String,
+    /// Where the kinetic energy is.
     pub moves: String,
-    /// The modes that couple.
-    pub couples: String,
-    /// Which contacts feed it.
-    pub fed: String,
-    /// Which damping holds it.
-    pub held: String,
-    /// What would make it grow less, the most effective first.
-    pub helps: Vec<String>,
+    /// Coalescence of two modes, or loss of stability without it.
+    pub mechanism: String,
+    /// Sources of the energy input.
+    pub input: String,
+    /// Sources of the dissipation.
+    pub dissipation: String,
+    /// The changes that lower the growth rate most, to first order, the largest reduction first.
+    pub remedies: Vec<String>,
 }
 
 /// Instabilities named in the first sentence.
@@ -29,7 +29,7 @@ const NAMED: usize = 3;
 pub fn headline(findings: &Findings) -> String {
     let (found, verdict) = (&findings.instabilities, findings.results.verdict());
     if findings.asked.is_empty() {
-        return "No friction has been analysed yet.".into();
+        return "No friction value has been analysed yet.".into();
     }
     match (verdict.status, &verdict.reasons[..]) {
         (Status::Stable, _) => return quiet(findings),
@@ -50,8 +50,8 @@ fn quiet(findings: &Findings) -> String {
     let (Some(first), Some(last)) = (values.first(), values.last()) else { return String::new() };
     let n = values.iter().map(|value| value.modes.len()).max().unwrap_or(0);
     let [from, to] = findings.results.about.band.map(frequency);
-    let frictions = interval(first.friction, last.friction);
-    format!("Quiet: none of the {n} modes from {from} to {to} grows {frictions}.")
+    let values = interval(first.friction, last.friction);
+    format!("Quiet: all {n} modes from {from} to {to} are stable {values}.")
 }
 
 /// `2.40 kHz above mu = 0.27`.
@@ -61,17 +61,17 @@ fn squeals(findings: &Findings, one: &Instability) -> String {
     format!("{} {}", frequency(findings.mode(one.worst).frequency()), listed(&ranges, " and "))
 }
 
-/// The frictions of a range.
+/// The friction values of a range.
 fn reach(range: &Range, all: [Option<f64>; 2]) -> String {
     let [from, to] = [range.from.value(), range.to.value()];
     match (range.from, range.to) {
         (End::Edge(_), End::Edge(_)) if from < to && all == [Some(from), Some(to)] => {
-            format!("at every friction from {from} to {to}")
+            format!("at all values from \u{3bc} = {from} to {to}")
         }
         (End::Hopf(_), End::Edge(_)) => format!("above \u{3bc} = {from:.2}"),
         (End::Edge(_), End::Hopf(_)) => format!("below \u{3bc} = {to:.2}"),
         (End::Hopf(_), End::Hopf(_)) => format!("between \u{3bc} = {from:.2} and {to:.2}"),
-        (End::Seen(_, before), End::Edge(_)) => format!("from \u{3bc} = {from} on (not at {before})"),
+        (End::Seen(_, before), End::Edge(_)) => format!("from \u{3bc} = {from} (stable at {before})"),
         _ => interval(from, to),
     }
 }
@@ -80,11 +80,11 @@ fn interval(from: f64, to: f64) -> String {
     if from == to { format!("at \u{3bc} = {from}") } else { format!("from \u{3bc} = {from} to {to}") }
 }
 
-/// What is said of an instability, at the friction where it grows fastest.
+/// The answer for an instability, at the friction value where it grows fastest.
 pub fn answer(findings: &Findings, one: &Instability) -> Answer {
     let mode = findings.mode(one.worst);
     let known = |words: String| if mode.sources.is_empty() { String::new() } else { words };
-    let squeals = format!(
+    let range = format!(
         "{}; fastest at \u{3bc} = {}, by {} /s (damping ratio {} %)",
         squeals(findings, one),
         findings.friction(one.worst),
@@ -92,17 +92,17 @@ pub fn answer(findings: &Findings, one: &Instability) -> Answer {
         signed(format!("{:.2}", 100.0 * mode.damping_ratio()))
     );
     Answer {
-        squeals,
+        range,
         moves: known(largest(&mode.sources, |source| source.share.kinetic)),
-        couples: couples(findings, one),
-        fed: known(largest(&mode.sources, |source| source.share.fed.max(0.0))),
-        held: known(largest(&mode.sources, |source| -source.share.damped)),
-        helps: helps(&mode.sources),
+        mechanism: mechanism(findings, one),
+        input: known(largest(&mode.sources, |source| source.share.fed.max(0.0))),
+        dissipation: known(largest(&mode.sources, |source| -source.share.damped)),
+        remedies: remedies(&mode.sources),
     }
 }
 
-/// The two modes that meet.
-fn couples(findings: &Findings, one: &Instability) -> String {
+/// The two modes that coalesce.
+fn mechanism(findings: &Findings, one: &Instability) -> String {
     let Some(own) = one.branch else { return String::new() };
     let start = |b: usize| {
         let point = &findings.branches()[b].points[0];
@@ -112,70 +112,69 @@ fn couples(findings: &Findings, one: &Instability) -> String {
     match findings.onset(one) {
         Some(hopf) => match hopf.partner {
             Some(partner) => format!(
-                "the modes at {} and {} (at \u{3bc} = {first}) meet at {} and \u{3bc} = {:.3}",
+                "the modes at {} and {} (at \u{3bc} = {first}) coalesce at {} and \u{3bc} = {:.3}",
                 start(own),
                 start(partner.branch),
                 frequency(hopf.omega / TAU),
                 hopf.value
             ),
             None => format!(
-                "the mode at {} (at \u{3bc} = {first}) begins to grow by itself at \u{3bc} = {:.3}",
+                "the mode at {} (at \u{3bc} = {first}) loses stability without coalescence at \u{3bc} = {:.3}",
                 start(own),
                 hopf.value
             ),
         },
-        None => "it grows from the first friction on, so that its partner is not known".into(),
+        None => "it is unstable from the first friction value, so its partner is unknown".into(),
     }
 }
 
-/// What is offered as a remedy changes by this much, relative.
+/// Relative change of stiffness, damping or mass in a remedy.
 const CHANGE: f64 = 0.1;
-/// Friction falls by this much.
+/// Reduction of a friction coefficient in a remedy.
 const LESS_FRICTION: f64 = 0.05;
-/// Remedies named.
-const OFFERED: usize = 4;
-/// Remedies are worth naming from this fraction of the largest on.
-const WORTH: f64 = 0.02;
+/// Number of remedies in an answer.
+const N_REMEDIES: usize = 4;
+/// Remedies with less than this fraction of the largest reduction are left out.
+const LEAST_EFFECT: f64 = 0.02;
 
 /// The changes that lower the growth rate most, to first order.
-fn helps(sources: &[Source]) -> Vec<String> {
-    let mut all: Vec<(f64, String)> = sources.iter().flat_map(remedies).filter(|(effect, _)| *effect < 0.0).collect();
+fn remedies(sources: &[Source]) -> Vec<String> {
+    let mut all: Vec<(f64, String)> = sources.iter().flat_map(changes).filter(|(effect, _)| *effect < 0.0).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best = all.first().map_or(0.0, |(effect, _)| *effect);
-    all.retain(|(effect, _)| *effect <= WORTH * best);
-    all.iter().take(OFFERED).map(|(effect, what)| format!("{what}: {} /s", signed(three(*effect)))).collect()
+    all.retain(|(effect, _)| *effect <= LEAST_EFFECT * best);
+    all.iter().take(N_REMEDIES).map(|(effect, what)| format!("{what}: {} /s", signed(three(*effect)))).collect()
 }
 
-/// Changes of a source, each with what it does to the growth rate, 1/s.
-fn remedies(source: &Source) -> Vec<(f64, String)> {
+/// Changes of a source, each with its change of the growth rate, 1/s.
+fn changes(source: &Source) -> Vec<(f64, String)> {
     let name = &source.name;
     let mut all = Vec::new();
     if let Some(s) = source.sensitivity {
         let percent = 100.0 * CHANGE;
-        let stiffer = if s.stiffness.re < 0.0 { "stiffer" } else { "softer" };
-        all.push((-CHANGE * s.stiffness.re.abs(), format!("{name} {percent} % {stiffer}")));
-        all.push((CHANGE * s.damping.re, format!("{percent} % more damping of {name}")));
+        let stiffer = sign(s.stiffness.re < 0.0);
+        all.push((-CHANGE * s.stiffness.re.abs(), format!("stiffness of {name} {stiffer}{percent} %")));
+        all.push((CHANGE * s.damping.re, format!("damping of {name} +{percent} %")));
         if source.kind == Kind::Part {
-            let heavier = if s.mass.re < 0.0 { "heavier" } else { "lighter" };
-            all.push((-CHANGE * s.mass.re.abs(), format!("{name} {percent} % {heavier}")));
+            let heavier = sign(s.mass.re < 0.0);
+            all.push((-CHANGE * s.mass.re.abs(), format!("mass of {name} {heavier}{percent} %")));
         }
     }
     all.extend(
-        source
-            .friction
-            .map(|slope| (-LESS_FRICTION * slope.re, format!("friction of {name} lower by {LESS_FRICTION}"))),
+        source.friction.map(|slope| {
+            (-LESS_FRICTION * slope.re, format!("friction coefficient of {name} \u{2212}{LESS_FRICTION}"))
+        }),
     );
     all
 }
 
-/// What a reader should know before he relies on the rest.
+/// Whatever limits the answer's validity.
 pub fn cautions(findings: &Findings) -> Vec<String> {
     let results = findings.results;
     let mut all: Vec<String> = results.verdict().reasons.iter().map(|doubt| sentence(&doubt.to_string())).collect();
-    let is_followed = results.diagram.is_some();
-    if !is_followed && findings.asked.len() > 1 && !findings.instabilities.is_empty() {
+    if results.diagram.is_none() && findings.asked.len() > 1 && !findings.instabilities.is_empty() {
         all.push(
-            "Modes were not followed over friction: instabilities are told apart by their frequency alone.".into(),
+            "Modes were not followed over friction: instabilities are distinguished by their frequency alone.".into(),
         );
     }
     all
@@ -201,6 +200,16 @@ pub fn frequency(hertz: f64) -> String {
     format!("{value:.decimals$} {unit}")
 }
 
+/// The sign of an increase or a decrease.
+fn sign(is_increase: bool) -> char {
+    if is_increase { '+' } else { '\u{2212}' }
+}
+
+/// Keeps a value of mu on one line.
+pub fn unbroken(text: &str) -> String {
+    text.replace("\u{3bc} = ", "\u{3bc}\u{a0}=\u{a0}")
+}
+
 /// A number with a true minus sign.
 fn signed(number: String) -> String {
     number.replace('-', "\u{2212}")
@@ -222,9 +231,9 @@ fn listed(items: &[String], last: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing;
     use super::*;
     use crate::results::Results;
+    use crate::results::testing;
 
     #[test]
     fn the_first_sentence_says_where_and_from_which_friction_on() {
@@ -235,7 +244,7 @@ mod tests {
         let said = headline(&Findings::new(&alone));
         assert_eq!(
             said,
-            "Squeals at 2.40 kHz from \u{3bc} = 0.3 on (not at 0.2), and at 3.70 kHz from \u{3bc} = 0.2 to 0.5."
+            "Squeals at 2.40 kHz from \u{3bc} = 0.3 (stable at 0.2), and at 3.70 kHz from \u{3bc} = 0.2 to 0.5."
         );
         let mut one = alone.clone();
         one.values.retain(|value| value.friction == 0.5);
@@ -244,7 +253,7 @@ mod tests {
         one.values[0].modes.retain(|mode| !mode.unstable);
         assert_eq!(
             headline(&Findings::new(&one)),
-            "Quiet: none of the 6 modes from 0 Hz to 6.00 kHz grows at \u{3bc} = 0.5."
+            "Quiet: all 6 modes from 0 Hz to 6.00 kHz are stable at \u{3bc} = 0.5."
         );
     }
 
@@ -254,15 +263,19 @@ mod tests {
         let findings = Findings::new(&results);
         let said = answer(&findings, &findings.instabilities[0]);
         assert!(
-            said.couples.starts_with("the modes at 2380 Hz and 2420 Hz (at \u{3bc} = 0) meet at 2.40 kHz"),
+            said.mechanism.starts_with("the modes at 2380 Hz and 2420 Hz (at \u{3bc} = 0) coalesce at 2.40 kHz"),
             "{}",
-            said.couples
+            said.mechanism
         );
         assert_eq!(said.moves, "disc 70 %, pad 30 %");
-        assert_eq!(said.fed, "disc / pad 100 %");
-        assert_eq!(said.held, "disc 50 %, pad 40 %, pin 10 %");
-        assert!(said.helps[0].starts_with("friction of disc / pad lower by 0.05: \u{2212}"), "{:?}", said.helps);
-        assert_eq!(said.helps[1], "disc 10 % stiffer: \u{2212}4.2 /s");
+        assert_eq!(said.input, "disc / pad 100 %");
+        assert_eq!(said.dissipation, "disc 50 %, pad 40 %, pin 10 %");
+        assert!(
+            said.remedies[0].starts_with("friction coefficient of disc / pad \u{2212}0.05: \u{2212}"),
+            "{:?}",
+            said.remedies
+        );
+        assert_eq!(said.remedies[1], "stiffness of disc +10 %: \u{2212}4.2 /s");
     }
 
     #[test]

@@ -7,6 +7,8 @@ mod free_modes;
 mod samples;
 mod shape;
 mod source;
+#[cfg(test)]
+pub mod testing;
 mod verdict;
 
 pub use external::{ExternalMode, ExternalResults, ExternalValue};

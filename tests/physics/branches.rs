@@ -83,9 +83,12 @@ fn the_program_reports_where_a_mode_becomes_unstable_on_two_ranks() {
     for said in [place.run(&with("one")), place.run_on(2, &with("two"))] {
         let Said { code, out, err } = said;
         assert_eq!(code, 0, "{err}");
-        for part in
-            ["unstable from friction 0.304", "couples with 1268.2 Hz, branch 4", "fed by disc / ", "branches.csv"]
-        {
+        for part in [
+            "unstable from friction 0.304",
+            "coalesces with 1268.2 Hz, branch 4",
+            "energy input by disc / ",
+            "branches.csv",
+        ] {
             assert!(out.contains(part), "{part}: {out}");
         }
     }

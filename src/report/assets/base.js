@@ -1,4 +1,4 @@
-// The data, and helpers that all else uses. Text goes to the page as text, never as markup.
+// The data, and helpers of all other scripts. Text goes to the page as text, never as markup.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
@@ -12,24 +12,22 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** Little-endian numbers packed in base64, as an array of the given type. */
-function unpacked(text, Type) {
-  const bytes = atob(text);
-  const buffer = new Uint8Array(bytes.length);
-  for (let i = 0; i < bytes.length; i++) buffer[i] = bytes.charCodeAt(i);
-  return new Type(buffer.buffer);
-}
-
-/** A number with so many decimals and a true minus sign. */
-const fixed = (x, decimals) => x.toFixed(decimals).replace("-", "\u2212");
-const signed = (x, decimals) => (x > 0 ? "+" : "") + fixed(x, decimals);
-const percent = (x, decimals = 1) => `${fixed(100 * x, decimals)}\u00a0%`;
-
 /** A mode by its name "value-mode". */
 function modeOf(name) {
   const [value, mode] = name.split("-").map(Number);
   const [frequency, growth, damping, error, unstable, branch] = data.values[value].modes[mode];
-  return { name, value, number: mode + 1, friction: data.values[value].friction, frequency, growth, damping, error, unstable, branch };
+  return {
+    name,
+    value,
+    number: mode + 1,
+    friction: data.values[value].friction,
+    frequency,
+    growth,
+    damping,
+    error,
+    unstable,
+    branch,
+  };
 }
 
 const modeLabel = (mode) =>
@@ -38,11 +36,13 @@ const modeLabel = (mode) =>
 /** The instability that a mode belongs to, or -1. */
 const instabilityOf = (name) => data.instabilities.findIndex((one) => one.modes.includes(name));
 
-/** The chosen mode. Whoever shows it is told of each choice. */
+/** The chosen mode. Its listeners are called at each choice. */
 const choice = {
   name: null,
   listeners: [],
-  onChange(listener) { this.listeners.push(listener); },
+  onChange(listener) {
+    this.listeners.push(listener);
+  },
   set(name) {
     if (name === this.name) return;
     this.name = name;
@@ -50,7 +50,7 @@ const choice = {
   },
 };
 
-/** Fills a select with the frictions asked for; its values are places among data.asked. */
+/** Fills a select with the requested values of mu; its values are places among data.asked. */
 function fillFrictions(select, chosen) {
   data.asked.forEach((value, i) => select.append(make("option", { value: i }, data.values[value].friction)));
   select.value = chosen;
@@ -65,15 +65,6 @@ function worstAsked() {
 }
 
 const PARTS = ["#8fa3b8", "#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7"];
-const VIRIDIS = [[68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137], [53, 183, 121], [109, 205, 89], [180, 222, 44], [253, 231, 37]];
-
-/** Viridis at x from 0 to 1, as red, green, blue from 0 to 255. */
-function viridis(x) {
-  const at = Math.min(Math.max(x, 0), 1) * (VIRIDIS.length - 1);
-  const i = Math.min(Math.floor(at), VIRIDIS.length - 2);
-  return VIRIDIS[i].map((c, k) => Math.round(c + (at - i) * (VIRIDIS[i + 1][k] - c)));
-}
-
 /** Paints the colour scale over a canvas, upwards or to the right. */
 function paintScale(canvas) {
   const context = canvas.getContext("2d");
@@ -95,5 +86,7 @@ const tip = {
     box.style.left = `${Math.min(event.clientX + 14, innerWidth - width - 8)}px`;
     box.style.top = `${Math.max(8, event.clientY - height - 10)}px`;
   },
-  hide() { byId("tip").hidden = true; },
+  hide() {
+    byId("tip").hidden = true;
+  },
 };

@@ -1,4 +1,4 @@
-// Figures that answer: values under the pointer, a mode chosen by click or keys, the chosen mode marked.
+// Interaction with the figures: values under the pointer, a mode chosen by click or keys, the chosen mode marked.
 
 const NEAR = 14; // pixels
 
@@ -18,7 +18,7 @@ function startCharts() {
     });
     if (data.instabilities.some((one) => one.modes.length)) {
       svg.setAttribute("tabindex", "0");
-      svg.addEventListener("keydown", walk);
+      svg.addEventListener("keydown", chooseByKey);
     }
   }
   choice.onChange(markChosen);
@@ -41,15 +41,15 @@ function nearest(svg, marks, event) {
 function tipText(mode) {
   const lines = [
     `${mode.frequency.toFixed(1)} Hz, mode ${mode.number} at \u03bc = ${mode.friction}`,
-    `growth rate ${signed(mode.growth, 2)} /s${mode.unstable ? ": squeals" : ""}`,
+    `growth rate ${signed(mode.growth, 2)} /s${mode.unstable ? ": unstable" : ""}`,
     `damping ratio ${percent(mode.damping, 3)}`,
   ];
   if (mode.branch) lines.push(`branch ${mode.branch}`);
   return lines.join("\n");
 }
 
-/** Left and right go along friction, up and down to another instability. */
-function walk(event) {
+/** Left and right choose another value of mu, up and down another instability. */
+function chooseByKey(event) {
   const lists = data.instabilities.map((one) => one.modes).filter((modes) => modes.length);
   let row = lists.findIndex((modes) => modes.includes(choice.name));
   let column = row < 0 ? 0 : lists[row].indexOf(choice.name);
@@ -72,7 +72,9 @@ function markChosen(name) {
   document.querySelectorAll(".plot .picked").forEach((mark) => mark.classList.remove("picked"));
   document.querySelectorAll(`.plot [data-mode="${name}"]`).forEach((mark) => mark.classList.add("picked"));
   if (mode.branch) {
-    document.querySelectorAll(`.plot [data-branch="${mode.branch - 1}"]`).forEach((line) => line.classList.add("picked"));
+    document
+      .querySelectorAll(`.plot [data-branch="${mode.branch - 1}"]`)
+      .forEach((line) => line.classList.add("picked"));
   }
   byId("chosen").textContent = `Chosen: ${modeLabel(mode)}`;
 }

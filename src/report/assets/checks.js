@@ -1,4 +1,4 @@
-// The equilibrium's checks at one friction.
+// The equilibrium's checks at one value of mu.
 
 function startChecks() {
   if (!data.asked.length) return;
@@ -10,17 +10,64 @@ function startChecks() {
 
 function fillChecks(at) {
   const value = data.values[data.asked[at]];
-  const heads = ["contact pair", "open", "stick", "slip", "normal force, N", "tangential force, N", "closed area, cm\u00b2", "peak pressure, MPa"];
+  const heads = [
+    "contact pair",
+    "open",
+    "stick",
+    "slip",
+    "normal force, N",
+    "tangential force, N",
+    "closed area, cm\u00b2",
+    "peak pressure, MPa",
+  ];
   const rows = value.pairs.map(([open, stick, slip, normal, tangential, area, peak], i) => {
-    const cells = [open, stick, slip, normal.toFixed(1), tangential.toFixed(1), (1e4 * area).toFixed(2), (1e-6 * peak).toFixed(2)];
-    return make("tr", {}, make("td", { class: "left" }, data.pairs[i].name), ...cells.map((cell) => make("td", {}, cell)));
+    const cells = [
+      open,
+      stick,
+      slip,
+      normal.toFixed(1),
+      tangential.toFixed(1),
+      (1e4 * area).toFixed(2),
+      (1e-6 * peak).toFixed(2),
+    ];
+    return make(
+      "tr",
+      {},
+      make("td", { class: "left" }, data.pairs[i].name),
+      ...cells.map((cell) => make("td", {}, cell)),
+    );
   });
-  const steps = value.steps.map(([label, converged, n, residual]) => make("tr", { class: converged ? "" : "unstable" },
-    make("td", { class: "left" }, label), make("td", {}, n), make("td", {}, residual === null ? "\u2013" : residual.toExponential(1).replace("-", "\u2212")), make("td", {}, converged ? "yes" : "no")));
-  const table = (names, body) => make("div", { class: "over" }, make("table", {},
-    make("thead", {}, make("tr", {}, ...names.map((name, i) => make("th", { scope: "col", class: i ? "" : "left" }, name)))), make("tbody", {}, ...body)));
+  const steps = value.steps.map(([label, converged, n, residual]) =>
+    make(
+      "tr",
+      { class: converged ? "" : "unstable" },
+      make("td", { class: "left" }, label),
+      make("td", {}, n),
+      make("td", {}, residual === null ? "\u2013" : residual.toExponential(1).replace("-", "\u2212")),
+      make("td", {}, converged ? "yes" : "no"),
+    ),
+  );
+  const table = (names, body) =>
+    make(
+      "div",
+      { class: "over" },
+      make(
+        "table",
+        {},
+        make(
+          "thead",
+          {},
+          make("tr", {}, ...names.map((name, i) => make("th", { scope: "col", class: i ? "" : "left" }, name))),
+        ),
+        make("tbody", {}, ...body),
+      ),
+    );
   byId("check-body").replaceChildren(
-    make("h3", {}, `Equilibrium at \u03bc = ${value.friction}: contact pairs`), table(heads, rows),
-    make("h3", {}, "Balance"), make("ul", {}, ...value.checks.map((line) => make("li", {}, line))),
-    make("h3", {}, "Convergence"), table(["Newton solution", "iterations", "relative residual", "converged"], steps));
+    make("h3", {}, `Equilibrium at \u03bc = ${value.friction}: contact pairs`),
+    table(heads, rows),
+    make("h3", {}, "Balance"),
+    make("ul", {}, ...value.checks.map((line) => make("li", {}, line))),
+    make("h3", {}, "Convergence"),
+    table(["Newton solution", "iterations", "relative residual", "converged"], steps),
+  );
 }

@@ -1,4 +1,4 @@
-// Everything listens to the choice; the strongest instability is the first.
+// Starts all parts of the page, then chooses the first instability, which is the strongest.
 
 startShape();
 startCharts();
@@ -7,4 +7,7 @@ startPressure();
 startTable();
 startChecks();
 const first = data.instabilities[0];
-if (first) choice.set(first.modes.includes(first.worst) || !first.modes.length ? first.worst : first.modes[first.modes.length - 1]);
+if (first)
+  choice.set(
+    first.modes.includes(first.worst) || !first.modes.length ? first.worst : first.modes[first.modes.length - 1],
+  );

@@ -1,6 +1,10 @@
 // Contact faces laid flat, coloured by pressure or status.
 
-const STATUS = [["open", [222, 226, 231]], ["slip", [230, 159, 0]], ["stick", [0, 114, 178]]];
+const STATUS = [
+  ["open", [222, 226, 231]],
+  ["slip", [230, 159, 0]],
+  ["stick", [0, 114, 178]],
+];
 const MAP_WIDTH = 640;
 const MARGIN = 24;
 
@@ -9,7 +13,8 @@ function startPressure() {
   byId("pressure").hidden = false;
   fillFrictions(byId("pressure-friction"), worstAsked());
   if (!data.faces.some((face) => data.pairs[face.pair].sliding)) byId("pressure-all").checked = true;
-  for (const id of ["pressure-friction", "pressure-field", "pressure-all"]) byId(id).addEventListener("change", drawMaps);
+  for (const id of ["pressure-friction", "pressure-field", "pressure-all"])
+    byId(id).addEventListener("change", drawMaps);
   choice.onChange((name) => {
     const at = data.asked.indexOf(modeOf(name).value);
     if (at >= 0 && byId("pressure-friction").value !== String(at)) {
@@ -35,14 +40,21 @@ function drawMaps() {
 
 /** The end of the colour scale: what 98 % of the closed points of all frictions stay below, so that a few peaks at edges do not hide the rest. */
 function scaleTop(faces) {
-  const all = faces.flatMap((face) => face.pressure.flatMap((packed) => Array.from(packed, (p) => (p * face.peak) / 65535))).filter((p) => p > 0);
+  const all = faces
+    .flatMap((face) => face.pressure.flatMap((packed) => Array.from(packed, (p) => (p * face.peak) / 65535)))
+    .filter((p) => p > 0);
   all.sort((a, b) => a - b);
   return all[Math.floor(0.98 * (all.length - 1))] || 1;
 }
 
 function map(face, at, top) {
   const isStatus = byId("pressure-field").value === "status";
-  const { canvas, field } = painted(face, at, (node) => (isStatus ? face.status[at][node] : (face.pressure[at][node] * face.peak) / 65535), isStatus, top);
+  const { canvas, field } = painted(
+    face,
+    (node) => (isStatus ? face.status[at][node] : (face.pressure[at][node] * face.peak) / 65535),
+    isStatus,
+    top,
+  );
   const peak = Math.max(...face.pressure[at]) * (face.peak / 65535);
   const [open, stick, slip, normal] = data.values[data.asked[at]].pairs[face.pair];
   const name = data.pairs[face.pair].name;
@@ -50,16 +62,26 @@ function map(face, at, top) {
   canvas.setAttribute("aria-label", `${isStatus ? "Contact status" : "Contact pressure"} of ${name}`);
   canvas.addEventListener("pointermove", (event) => {
     const box = canvas.getBoundingClientRect();
-    const [i, j] = [event.clientX - box.left, event.clientY - box.top].map((x) => Math.floor((x * canvas.width) / box.width));
+    const [i, j] = [event.clientX - box.left, event.clientY - box.top].map((x) =>
+      Math.floor((x * canvas.width) / box.width),
+    );
     const value = field[j * canvas.width + i];
     if (Number.isNaN(value) || value === undefined) tip.hide();
     else tip.show(event, isStatus ? (STATUS[value]?.[0] ?? "no contact point") : `${(1e-6 * value).toFixed(2)} MPa`);
   });
   canvas.addEventListener("pointerleave", () => tip.hide());
-  return make("figure", { class: "card" },
+  return make(
+    "figure",
+    { class: "card" },
     make("figcaption", {}, name),
-    make("p", { class: "note" }, `${(normal / 1000).toFixed(2)} kN; peak ${(1e-6 * peak).toFixed(2)} MPa; ${open} open, ${slip} slip, ${stick} stick`),
-    canvas, isStatus ? statusKey() : pressureKey(top));
+    make(
+      "p",
+      { class: "note" },
+      `${(normal / 1000).toFixed(2)} kN; peak ${(1e-6 * peak).toFixed(2)} MPa; ${open} open, ${slip} slip, ${stick} stick`,
+    ),
+    canvas,
+    isStatus ? statusKey() : pressureKey(top),
+  );
 }
 
 function pressureKey(top) {
@@ -78,22 +100,35 @@ function statusKey() {
 }
 
 /** A canvas with the face, and the value at each pixel (NaN outside). */
-function painted(face, at, valueOf, isStatus, top) {
+function painted(face, valueAt, isStatus, top) {
   const n = face.nodes.length / 2;
   let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
   for (let i = 0; i < n; i++) {
-    left = Math.min(left, face.nodes[2 * i]); right = Math.max(right, face.nodes[2 * i]);
-    low = Math.min(low, face.nodes[2 * i + 1]); high = Math.max(high, face.nodes[2 * i + 1]);
+    left = Math.min(left, face.nodes[2 * i]);
+    right = Math.max(right, face.nodes[2 * i]);
+    low = Math.min(low, face.nodes[2 * i + 1]);
+    high = Math.max(high, face.nodes[2 * i + 1]);
   }
   const scale = (MAP_WIDTH - 2 * MARGIN) / Math.max(right - left, 0.8 * (high - low), 1e-9);
   const height = Math.ceil((high - low) * scale) + 2 * MARGIN;
   const canvas = make("canvas", { width: MAP_WIDTH, height });
   const across = (MAP_WIDTH - (right - left) * scale) / 2;
-  const places = Array.from({ length: n }, (_, i) => [across + (face.nodes[2 * i] - left) * scale, height - MARGIN - (face.nodes[2 * i + 1] - low) * scale]);
+  const places = Array.from({ length: n }, (_, i) => [
+    across + (face.nodes[2 * i] - left) * scale,
+    height - MARGIN - (face.nodes[2 * i + 1] - low) * scale,
+  ]);
   const field = new Float32Array(MAP_WIDTH * height).fill(NaN);
-  const values = Array.from({ length: n }, (_, i) => valueOf(i));
+  const values = Array.from({ length: n }, (_, i) => valueAt(i));
   const draw = isStatus ? corner : blend;
-  for (let t = 0; t < face.triangles.length; t += 3) fillTriangle(field, MAP_WIDTH, [0, 1, 2].map((k) => face.triangles[t + k]), places, values, draw);
+  for (let t = 0; t < face.triangles.length; t += 3)
+    fillTriangle(
+      field,
+      MAP_WIDTH,
+      [0, 1, 2].map((k) => face.triangles[t + k]),
+      places,
+      values,
+      draw,
+    );
   if (!face.triangles.length) places.forEach(([x, y], i) => fillDisc(field, MAP_WIDTH, x, y, values[i]));
   const context = canvas.getContext("2d");
   const image = context.createImageData(MAP_WIDTH, height);
@@ -105,26 +140,6 @@ function painted(face, at, valueOf, isStatus, top) {
   context.putImageData(image, 0, 0);
   drawAxes(context, face.axes, height, scale);
   return { canvas, field };
-}
-
-const blend = (weights, values) => weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2];
-const corner = (weights, values) => values[weights.indexOf(Math.max(...weights))];
-
-function fillTriangle(field, width, nodes, places, values, draw) {
-  const [a, b, c] = nodes.map((i) => places[i]);
-  const own = nodes.map((i) => values[i]);
-  const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-  if (!area) return;
-  const xs = [a[0], b[0], c[0]];
-  const ys = [a[1], b[1], c[1]];
-  for (let j = Math.floor(Math.min(...ys)); j <= Math.max(...ys); j++) {
-    for (let i = Math.floor(Math.min(...xs)); i <= Math.max(...xs); i++) {
-      const [x, y] = [i + 0.5, j + 0.5];
-      const u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area;
-      const v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area;
-      if (u >= -1e-6 && v >= -1e-6 && u + v <= 1 + 1e-6) field[j * width + i] = draw([u, v, 1 - u - v], own);
-    }
-  }
 }
 
 function fillDisc(field, width, x, y, value) {
@@ -141,7 +156,9 @@ function drawAxes(context, [right, up], height, scale) {
   const ink = "#5b6470";
   Object.assign(context, { strokeStyle: ink, fillStyle: ink, lineWidth: 1.5, font: "15px sans-serif" });
   context.beginPath();
-  context.moveTo(8, height - 40); context.lineTo(8, height - 8); context.lineTo(40, height - 8);
+  context.moveTo(8, height - 40);
+  context.lineTo(8, height - 8);
+  context.lineTo(40, height - 8);
   context.stroke();
   context.fillText(up, 4, height - 45);
   context.fillText(right, 44, height - 4);

@@ -1,11 +1,13 @@
-// The mode shape in motion, and what the reader can do with it.
+// The mode shape in motion, and its controls.
 
 const PERIOD = 1600; // ms
 const LARGEST = 0.15; // of the model's size
 const VIEWS = { iso: [0.55, 0.42], x: [-Math.PI / 2, 0], y: [0, Math.PI / 2], z: [0, 0] };
 
 function startShape() {
-  const names = data.asked.flatMap((value) => data.values[value].modes.map((_, mode) => `${value}-${mode}`)).filter((name) => data.shapes[name]);
+  const names = data.asked
+    .flatMap((value) => data.values[value].modes.map((_, mode) => `${value}-${mode}`))
+    .filter((name) => data.shapes[name]);
   if (!data.surface || !names.length) {
     document.querySelector("#answer .split").style.gridTemplateColumns = "minmax(0, 1fr)";
     return;
@@ -31,7 +33,10 @@ function startShape() {
 class Motion {
   constructor(viewer) {
     Object.assign(this, { viewer, isPlaying: false, isSeen: true, isAsked: false, last: null });
-    new IntersectionObserver(([entry]) => { this.isSeen = entry.isIntersecting; this.redraw(); }).observe(viewer.canvas);
+    new IntersectionObserver(([entry]) => {
+      this.isSeen = entry.isIntersecting;
+      this.redraw();
+    }).observe(viewer.canvas);
     new ResizeObserver(() => this.redraw()).observe(viewer.canvas);
     addEventListener("beforeprint", () => this.viewer.draw());
   }
@@ -52,7 +57,8 @@ class Motion {
 
   frame(now) {
     this.isAsked = false;
-    if (this.isPlaying && this.last !== null) this.viewer.phase = (this.viewer.phase + (2 * Math.PI * (now - this.last)) / PERIOD) % (2 * Math.PI);
+    if (this.isPlaying && this.last !== null)
+      this.viewer.phase = (this.viewer.phase + (2 * Math.PI * (now - this.last)) / PERIOD) % (2 * Math.PI);
     this.last = now;
     this.viewer.draw();
     if (this.isPlaying && this.isSeen) this.redraw();
@@ -94,15 +100,20 @@ function startControls(viewer, motion, names) {
     byId("legend").hidden = !viewer.bySize;
     motion.redraw();
   });
-  document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => {
-    [viewer.yaw, viewer.pitch] = VIEWS[button.dataset.view];
-    Object.assign(viewer, { pan: [0, 0], zoom: 1 });
-    motion.redraw();
-  }));
+  document.querySelectorAll("[data-view]").forEach((button) =>
+    button.addEventListener("click", () => {
+      [viewer.yaw, viewer.pitch] = VIEWS[button.dataset.view];
+      Object.assign(viewer, { pan: [0, 0], zoom: 1 });
+      motion.redraw();
+    }),
+  );
   data.surface.parts.forEach(([name], i) => {
     const box = make("input", { type: "checkbox" });
     box.checked = true;
-    box.addEventListener("change", () => { viewer.shown[i] = box.checked; motion.redraw(); });
+    box.addEventListener("change", () => {
+      viewer.shown[i] = box.checked;
+      motion.redraw();
+    });
     const swatch = make("span", { class: "swatch" });
     swatch.style.background = PARTS[i % PARTS.length];
     byId("parts").append(make("label", {}, box, " ", swatch, ` ${name}`));
@@ -111,7 +122,9 @@ function startControls(viewer, motion, names) {
 
 function showShape(viewer, motion, name) {
   const isKept = Boolean(data.shapes[name]);
-  byId("shape-note").textContent = isKept ? "" : `(the results keep no shape of the mode chosen, ${modeOf(name).frequency.toFixed(1)} Hz at \u03bc = ${modeOf(name).friction})`;
+  byId("shape-note").textContent = isKept
+    ? ""
+    : `(the results have no shape of the chosen mode, ${modeOf(name).frequency.toFixed(1)} Hz at \u03bc = ${modeOf(name).friction})`;
   if (!isKept) return;
   const mode = modeOf(name);
   byId("shape-title").textContent = `Mode shape at ${mode.frequency.toFixed(1)} Hz, \u03bc = ${mode.friction}`;
@@ -144,14 +157,24 @@ function startTurning(viewer, motion) {
     } else turnBy(0.008 * event.movementX, 0.008 * event.movementY);
   });
   // The page scrolls over the picture unless the reader has turned to it.
-  canvas.addEventListener("wheel", (event) => {
-    if (document.activeElement !== canvas && !event.ctrlKey) return;
-    event.preventDefault();
-    zoomBy(Math.exp(-0.0015 * event.deltaY));
-  }, { passive: false });
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      if (document.activeElement !== canvas && !event.ctrlKey) return;
+      event.preventDefault();
+      zoomBy(Math.exp(-0.0015 * event.deltaY));
+    },
+    { passive: false },
+  );
   const keys = {
-    ArrowLeft: () => turnBy(-0.1, 0), ArrowRight: () => turnBy(0.1, 0), ArrowUp: () => turnBy(0, -0.1), ArrowDown: () => turnBy(0, 0.1),
-    "+": () => zoomBy(1.15), "=": () => zoomBy(1.15), "-": () => zoomBy(1 / 1.15), " ": () => motion.play(!motion.isPlaying),
+    ArrowLeft: () => turnBy(-0.1, 0),
+    ArrowRight: () => turnBy(0.1, 0),
+    ArrowUp: () => turnBy(0, -0.1),
+    ArrowDown: () => turnBy(0, 0.1),
+    "+": () => zoomBy(1.15),
+    "=": () => zoomBy(1.15),
+    "-": () => zoomBy(1 / 1.15),
+    " ": () => motion.play(!motion.isPlaying),
   };
   canvas.addEventListener("keydown", (event) => {
     if (!keys[event.key]) return;

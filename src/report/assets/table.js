@@ -14,24 +14,6 @@ const SHOWN = 1000;
 
 const modeTable = { sort: 2, isDown: false, filters: COLUMNS.map(() => null), rows: [] };
 
-/** A test of numbers from "5", "> 5", "<= 5" or "5 - 7"; null where nothing is asked, undefined where it cannot be read. */
-function parsedFilter(text) {
-  const plain = text.replaceAll("\u2212", "-").trim();
-  if (!plain) return null;
-  const number = "([-+]?(?:\\d+\\.?\\d*|\\.\\d+)(?:e[-+]?\\d+)?)";
-  const bound = plain.match(new RegExp(`^(<=|>=|<|>)\\s*${number}$`, "i"));
-  if (bound) {
-    const limit = Number(bound[2]);
-    return { "<": (x) => x < limit, ">": (x) => x > limit, "<=": (x) => x <= limit, ">=": (x) => x >= limit }[bound[1]];
-  }
-  const range = plain.match(new RegExp(`^${number}\\s*(?:-|\u2013|to|\\.\\.)\\s*${number}$`, "i"));
-  if (range) return (x) => x >= Number(range[1]) && x <= Number(range[2]);
-  if (!new RegExp(`^${number}$`, "i").test(plain)) return undefined;
-  const wanted = Number(plain);
-  const digits = (plain.split(/e/i)[0].split(".")[1] ?? "").length;
-  return (x) => Math.abs(x - wanted) <= 0.5 * 10 ** -digits * (plain.match(/e/i) ? 10 ** Number(plain.split(/e/i)[1]) : 1);
-}
-
 function startTable() {
   const heads = make("tr");
   const filters = make("tr");
@@ -70,7 +52,9 @@ function filterInput(column, i) {
 }
 
 function clearFilters() {
-  document.querySelectorAll("#mode-table th input").forEach((input) => { input.value = ""; });
+  document.querySelectorAll("#mode-table th input").forEach((input) => {
+    input.value = "";
+  });
   modeTable.filters.fill(null);
   byId("mode-friction").value = "";
   byId("mode-unstable").checked = false;
@@ -97,9 +81,15 @@ function fillTable() {
   });
   const cells = (mode) => COLUMNS.map((column) => make("td", {}, column.text(column.of(mode))));
   const rows = modes.slice(0, SHOWN).map((mode) => {
-    const row = make("tr", { "data-name": mode.name, tabindex: "0", class: mode.unstable ? "unstable" : "" }, ...cells(mode));
+    const row = make(
+      "tr",
+      { "data-name": mode.name, tabindex: "0", class: mode.unstable ? "unstable" : "" },
+      ...cells(mode),
+    );
     row.addEventListener("click", () => choice.set(mode.name));
-    row.addEventListener("keydown", (event) => { if (event.key === "Enter") choice.set(mode.name); });
+    row.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") choice.set(mode.name);
+    });
     return row;
   });
   document.querySelector("#mode-table tbody").replaceChildren(...rows);
@@ -109,5 +99,7 @@ function fillTable() {
 }
 
 function pickRow(name) {
-  document.querySelectorAll("#mode-table tbody tr").forEach((row) => row.classList.toggle("picked", row.dataset.name === name));
+  document
+    .querySelectorAll("#mode-table tbody tr")
+    .forEach((row) => row.classList.toggle("picked", row.dataset.name === name));
 }

@@ -75,7 +75,10 @@ class Viewer {
   prepare() {
     const gl = this.gl;
     this.program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+    for (const [kind, text] of [
+      [gl.VERTEX_SHADER, VERTEX],
+      [gl.FRAGMENT_SHADER, FRAGMENT],
+    ]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
@@ -98,7 +101,10 @@ class Viewer {
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
-    gl.uniform3fv(this.uniform("scale"), VIRIDIS.flat().map((c) => c / 255));
+    gl.uniform3fv(
+      this.uniform("scale"),
+      VIRIDIS.flat().map((c) => c / 255),
+    );
     gl.uniform3fv(this.uniform("origin"), this.surface.origin);
     gl.uniform3fv(this.uniform("centre"), this.centre);
     gl.uniform1f(this.uniform("size"), this.surface.size);
@@ -124,7 +130,10 @@ class Viewer {
   setShape(packed) {
     const gl = this.gl;
     const parts = unpacked(packed, Int16Array);
-    const moved = Float32Array.from({ length: parts.length / 6 }, (_, i) => Math.hypot(...parts.subarray(6 * i, 6 * i + 6)) / 32767).sort();
+    const moved = Float32Array.from(
+      { length: parts.length / 6 },
+      (_, i) => Math.hypot(...parts.subarray(6 * i, 6 * i + 6)) / 32767,
+    ).sort();
     this.full = moved[Math.floor(COLOURED * (moved.length - 1))] || 1;
     if (this.shape) gl.deleteBuffer(this.shape);
     this.shape = this.attribute("re", parts, gl.SHORT, 12, 0);
@@ -186,10 +195,25 @@ class Viewer {
     const numbers = { aspect: w / h, zoom: this.zoom, phase: this.phase, amplitude, full: this.full };
     for (const [name, value] of Object.entries(numbers)) gl.uniform1f(this.uniform(name), value);
     gl.uniform1i(this.uniform("bySize"), this.bySize);
-    this.drawParts(this.buffers[0], gl.TRIANGLES, (i) => this.surface.parts[i].slice(1).map((n) => 3 * n), (i) => rgbOf(PARTS[i % PARTS.length]));
-    this.drawParts(this.buffers[1], gl.LINES, (i) => this.edgeRanges[i], () => [0.1, 0.12, 0.15, 0.75]);
+    this.drawParts(
+      this.buffers[0],
+      gl.TRIANGLES,
+      (i) => this.surface.parts[i].slice(1).map((n) => 3 * n),
+      (i) => rgbOf(PARTS[i % PARTS.length]),
+    );
+    this.drawParts(
+      this.buffers[1],
+      gl.LINES,
+      (i) => this.edgeRanges[i],
+      () => [0.1, 0.12, 0.15, 0.75],
+    );
     gl.uniform1f(this.uniform("amplitude"), 0);
-    this.drawParts(this.buffers[1], gl.LINES, (i) => this.edgeRanges[i], () => [0.3, 0.33, 0.38, 0.25]);
+    this.drawParts(
+      this.buffers[1],
+      gl.LINES,
+      (i) => this.edgeRanges[i],
+      () => [0.3, 0.33, 0.38, 0.25],
+    );
   }
 
   drawParts(buffer, kind, range, colour) {

@@ -1,12 +1,11 @@
-//! Results for the tests of this room: a disc with a pad, four pairs of modes of which two couple, as in Hoffmann's model.
+//! Results for tests: a disc with a pad, four pairs of modes of which two couple, as in Hoffmann's model.
 
 use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
+use super::{About, ContactFaces, Kind, ModeData, Pair, Part, Results, Shape, Source, Surface, Value};
 use crate::equilibrium::{Counts, Iteration, PairForces, Step};
-use crate::results::{About, ContactFaces, ModeData, Pair, Part, Results, Shape, Surface, Value};
-use crate::results::{Kind, Source};
 use crate::stability::{Count, Sensitivity, Share};
 use crate::tracking::{Branch, Diagram, Hopf, Partner, Point};
 
