@@ -85,7 +85,7 @@ pub fn answer(findings: &Findings, one: &Instability) -> Answer {
     let mode = findings.mode(one.worst);
     let known = |words: String| if mode.sources.is_empty() { String::new() } else { words };
     let range = format!(
-        "{}; fastest at \u{3bc} = {}, by {} /s (damping ratio {} %)",
+        "{}; largest growth rate at \u{3bc} = {}: {}\u{a0}/s (damping ratio {}\u{a0}%)",
         squeals(findings, one),
         findings.friction(one.worst),
         signed(format!("{:+.0}", mode.growth_rate())),

@@ -35,7 +35,7 @@ function explained(sources, mode) {
     make(
       "h4",
       {},
-      `Energy at \u03bc = ${mode.friction}, shares from 1 % on`,
+      `Shares of energy at \u03bc = ${mode.friction}, from 1\u00a0%`,
       key([
         ["a", "kinetic"],
         ["b", "strain"],

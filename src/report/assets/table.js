@@ -1,7 +1,7 @@
 // The table of modes: sorted by a click on a heading, filtered by what is typed under it.
 
 const COLUMNS = [
-  { name: "friction", of: (mode) => mode.friction, text: (x) => String(x) },
+  { name: "\u03bc", of: (mode) => mode.friction, text: (x) => String(x) },
   { name: "mode", of: (mode) => mode.number, text: (x) => String(x) },
   { name: "frequency, Hz", of: (mode) => mode.frequency, text: (x) => x.toFixed(2) },
   { name: "growth rate, 1/s", of: (mode) => mode.growth, text: (x) => signed(x, 2) },
@@ -26,7 +26,7 @@ function startTable() {
     });
     heads.append(make("th", { scope: "col" }, button));
     const cell = make("th");
-    if (!["friction", "unstable"].includes(column.name)) cell.append(filterInput(column, i));
+    if (!["\u03bc", "unstable"].includes(column.name)) cell.append(filterInput(column, i));
     filters.append(cell);
   });
   document.querySelector("#mode-table thead").append(heads, filters);
