@@ -101,17 +101,9 @@ pub(super) fn run(
     let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
     let folder = comm.agree(output.filter(|_| comm.is_root()).map_or(Ok(None), open))?;
     let about = about(comm, structure, job, output)?;
-    let identity = identity(job, output, &about);
-    let opened = output.map(|output| Checkpoint::open(comm, folder.as_ref(), &output.folder, &identity, output.force));
-    let (checkpoint, earlier) =
-        opened.transpose()?.map_or((None, VecDeque::new()), |(file, earlier)| (Some(file), earlier));
+    let (checkpoint, earlier) = resume(comm, job, output, folder.as_ref(), &about)?;
     let n_earlier = earlier.len();
-    about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
-    observer.event(Event::Planned(job.values.len()));
-    if let Some(output) = output.filter(|_| n_earlier > 0) {
-        observer.event(Event::Resumed { place: &output.folder.display().to_string(), n_values: n_earlier });
-    }
-    observer.event(Event::Stage("assembling"));
+    announce(job, output, &about, n_earlier, observer);
     let system = structure.assemble(comm)?;
     let motion = structure.surface_motion(&system)?;
     let results = Results {
@@ -131,18 +123,48 @@ pub(super) fn run(
     if n_earlier > 0 {
         results.costs += &format!("without {n_earlier} values that an earlier run has found\n");
     }
-    match outcome {
-        Err(error) if error.kind() == ErrorKind::NotConverged => {
-            results.failure.get_or_insert_default().reason = error.to_string();
-        }
-        outcome => outcome?,
-    }
+    keep_failure(outcome, &mut results)?;
     let place = output.map_or_else(String::new, |output| output.folder.display().to_string());
     comm.agree(folder.map_or(Ok(()), |folder| {
         results_folder::write(&folder, &results, &(job.summary)(&results, &place))?;
         folder.finish()
     }))?;
     Ok(results)
+}
+
+/// The files from which the analysis can go on, and the values that an earlier run has finished. Collective.
+fn resume(
+    comm: &Comm,
+    job: &Job,
+    output: Option<&Output>,
+    folder: Option<&Folder>,
+    about: &About,
+) -> Result<(Option<Checkpoint>, VecDeque<EarlierValue>)> {
+    let Some(output) = output else { return Ok((None, VecDeque::new())) };
+    let identity = identity(job, output, about);
+    let (checkpoint, earlier) = Checkpoint::open(comm, folder, &output.folder, &identity, output.force)?;
+    Ok((Some(checkpoint), earlier))
+}
+
+/// Reports what is known before anything is computed.
+fn announce(job: &Job, output: Option<&Output>, about: &About, n_earlier: usize, observer: &mut dyn Observer) {
+    about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
+    observer.event(Event::Planned(job.values.len()));
+    if let Some(output) = output.filter(|_| n_earlier > 0) {
+        observer.event(Event::Resumed { place: &output.folder.display().to_string(), n_values: n_earlier });
+    }
+    observer.event(Event::Stage("assembling"));
+}
+
+/// A value that did not converge ends the analysis with what was found; any other error ends it with nothing.
+fn keep_failure(outcome: Result<()>, results: &mut Results) -> Result<()> {
+    match outcome {
+        Err(error) if error.kind() == ErrorKind::NotConverged => {
+            results.failure.get_or_insert_default().reason = error.to_string();
+            Ok(())
+        }
+        outcome => outcome,
+    }
 }
 
 /// What is analysed, and by what. Collective.
@@ -159,7 +181,7 @@ fn about(comm: &Comm, structure: &Structure, job: &Job, output: Option<&Output>)
 }
 
 /// All that the numbers depend on, by name.
-fn identity(job: &Job, output: Option<&Output>, about: &About) -> Vec<(&'static str, String)> {
+fn identity(job: &Job, output: &Output, about: &About) -> Vec<(&'static str, String)> {
     let mut identity = vec![
         ("program", about.program.clone()),
         ("analysis", format!("{}{}", job.name, job.options)),
@@ -169,7 +191,7 @@ fn identity(job: &Job, output: Option<&Output>, about: &About) -> Vec<(&'static 
         ("SHA-256 of the mesh", about.mesh_digest.clone()),
         ("number of ranks", about.n_ranks.to_string()),
     ];
-    identity.extend(output.into_iter().flat_map(|output| output.identity.iter().cloned()));
+    identity.extend(output.identity.iter().cloned());
     identity
 }
 
@@ -326,4 +348,48 @@ fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn job(options: &str, values: &[f64]) -> Job {
+        Job {
+            name: "stability",
+            options: options.into(),
+            values: values.to_vec(),
+            band: [0.0, 6000.0],
+            summary: |_, _| String::new(),
+        }
+    }
+
+    #[test]
+    fn an_analysis_goes_on_only_where_all_that_its_numbers_depend_on_is_the_same() {
+        let (about, output) = (About { n_ranks: 1, ..About::default() }, Output::default());
+        let first = identity(&job("", &[0.1, 0.2]), &output, &about);
+        assert_eq!(first, identity(&job("", &[0.1, 0.2]), &output, &about));
+        let petsc = Output { identity: vec![("options for PETSc", "-x".into())], ..Output::default() };
+        for other in [
+            identity(&job(" --no-branches", &[0.1, 0.2]), &output, &about),
+            identity(&job("", &[0.1, 0.3]), &output, &about),
+            identity(&Job { band: [0.0, 5000.0], ..job("", &[0.1, 0.2]) }, &output, &about),
+            identity(&job("", &[0.1, 0.2]), &output, &About { n_ranks: 2, ..about.clone() }),
+            identity(&job("", &[0.1, 0.2]), &output, &About { mesh_digest: "0".into(), ..about.clone() }),
+            identity(&job("", &[0.1, 0.2]), &output, &About { model_digest: "0".into(), ..about.clone() }),
+            identity(&job("", &[0.1, 0.2]), &petsc, &about),
+        ] {
+            assert_ne!(first, other);
+        }
+    }
+
+    #[test]
+    fn results_survive_a_value_that_does_not_converge_and_no_other_error() {
+        let mut results = Results::default();
+        keep_failure(Ok(()), &mut results).unwrap();
+        assert_eq!(results.failure, None);
+        keep_failure(Err(Error::not_converged("stagnates at 0.3")), &mut results).unwrap();
+        assert_eq!(results.failure.as_ref().map(|failure| failure.reason.as_str()), Some("stagnates at 0.3"));
+        assert!(keep_failure(Err(Error::input("no band")), &mut results).is_err());
+    }
 }

@@ -73,14 +73,21 @@ impl StabilityOptions {
     }
 
     fn job(&self, structure: &Structure) -> Result<Job> {
-        let mut values = structure.friction_values(self.friction_values.as_deref())?;
-        if self.follows(values.len()) && !values.is_sorted_by(|a, b| a > b) {
-            values.sort_by(f64::total_cmp);
-        }
+        let values = structure.friction_values(self.friction_values.as_deref())?;
+        let follows = self.follows(values.len());
+        let values = order(values, follows);
         let given = [(self.reduce_each, " --reduce-each"), (!self.branches, " --no-branches")];
         let options = given.iter().filter(|(given, _)| *given).map(|(_, name)| *name).collect();
         Ok(Job { name: "stability", options, values, band: structure.band(self.band)?, summary: summary::stability })
     }
+}
+
+/// Values along which modes are followed rise or fall; others are taken as they come.
+fn order(mut values: Vec<f64>, follows: bool) -> Vec<f64> {
+    if follows && !values.is_sorted_by(|a, b| a > b) {
+        values.sort_by(f64::total_cmp);
+    }
+    values
 }
 
 /// Only the values asked for, one by one.
@@ -163,4 +170,25 @@ fn write_and_explain(
 ) -> Result<Vec<Source>> {
     fields.mode(equilibrium.friction, unstable.number, unstable.mode, unstable.shape)?;
     explain(fields.structure, sweep, equilibrium, unstable.mode, Some(Complex { re: &re, im: &im }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modes_are_followed_over_several_values_of_one_problem() {
+        let options = StabilityOptions::default();
+        assert!(options.follows(2) && !options.follows(1));
+        assert!(!StabilityOptions { branches: false, ..options.clone() }.follows(2));
+        assert!(!StabilityOptions { reduce_each: true, ..options }.follows(2));
+    }
+
+    #[test]
+    fn values_to_be_followed_rise_or_fall() {
+        let ordered = |values: &[f64], follows| order(values.to_vec(), follows);
+        assert_eq!(ordered(&[0.5, 0.1, 0.3], true), [0.1, 0.3, 0.5]);
+        assert_eq!(ordered(&[0.5, 0.3, 0.1], true), [0.5, 0.3, 0.1], "a falling list stays");
+        assert_eq!(ordered(&[0.5, 0.1, 0.3], false), [0.5, 0.1, 0.3]);
+    }
 }
