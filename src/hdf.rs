@@ -122,7 +122,7 @@ pub fn is_of(path: &Path, format: &Format) -> bool {
     is_hdf5(path) && name().is_ok_and(|name| name.as_str() == format.name)
 }
 
-/// What is told of a file that HDF5 cannot read to its end, or that does not fit together.
+/// The error for a file that HDF5 cannot read to its end, or that does not fit together.
 pub fn damaged(path: &Path, format: &Format, reason: impl std::fmt::Display) -> Error {
     Error::input(format!("{} is incomplete or damaged: {reason}. {}", path.display(), format.advice))
 }

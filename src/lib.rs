@@ -81,7 +81,7 @@
 //! tetrahedra that touch them, and everything that has a name ([`mesh::Piece`]). So each rank owns a range of rows,
 //! computes the elements that touch them without any communication, and writes its own piece of the results. Surfaces
 //! are on every rank, and so are the contact points and their state, which grow with the power 2/3 of the volume; ranks
-//! divide the search for them and tell each other what they found.
+//! divide the search for them and exchange what they found.
 //!
 //! Nodes have *local* numbers, those of the piece: a mesh, a gap operator, loads and supports all use them.
 //! [`mesh::Numbering`] knows the global ones; local numbers rise with them, so that what is ordered by nodes is ordered

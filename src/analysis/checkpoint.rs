@@ -3,14 +3,14 @@
 //! ```text
 //! .NAME.unfinished/.resume/
 //!   study.txt                 what the numbers depend on, a line each: a run that differs does not go on
-//!   value-0003.h5             a finished friction, whole: the group of the results file, and the eigenvalues that tracking knows
-//!   path-0003.RANK.h5         the last equilibria of a path of frictions that ends there
+//!   value-0003.h5             a finished value: its group of the results file, and the eigenvalues for tracking
+//!   path-0003.RANK.h5         the last equilibria of the path that ends there
 //!   vectors-0003.RANK.h5      right and left vectors of a snapshot that tracking still needs, single precision, and its equilibrium
 //!   products-0003-0005.h5     products of two snapshots' vectors
 //! ```
 //!
 //! Every file appears when it is complete, a value after all that it needs. So the values in the folder are what is done, and tracking that
-//! starts anew is given their eigenvalues and products until it asks for what no file has: there it goes on with a solve. Vectors
+//! begins again is given their eigenvalues and products until it needs what no file has: there it continues with a solve. Vectors
 //! that tracking has dropped have gone with the next value, as all their products are known.
 
 use std::collections::VecDeque;
@@ -35,7 +35,7 @@ const FORMAT: Format = Format { name: "squeal checkpoint", version: 1, advice: "
 /// What the numbers of a study depend on.
 const STUDY: &str = "study.txt";
 
-/// A finished friction as an earlier run has left it.
+/// A finished value as an earlier run has left it.
 pub struct EarlierValue {
     pub value: Value,
     /// Where modes are followed.
@@ -73,7 +73,7 @@ impl Checkpoint {
         Ok((Checkpoint { comm: comm.clone(), folder: place, n_earlier, n_done: 0, kept: Vec::new() }, earlier))
     }
 
-    /// Takes note that a friction of an earlier run is done once more, and gives its snapshot.
+    /// Counts a value of an earlier run as done, and gives its snapshot.
     pub fn replay(&mut self, earlier: &mut EarlierValue) -> Option<Snapshot> {
         let number = self.n_done;
         self.n_done += 1;
@@ -82,7 +82,7 @@ impl Checkpoint {
         Some(snapshot)
     }
 
-    /// Keeps a finished friction with the sweep's path to it and the snapshot where modes are followed, which gets its number, and removes
+    /// Keeps a finished value with the sweep's path to it and the snapshot where modes are followed, which gets its number, and removes
     /// what is needed no more. Collective.
     ///
     /// # Errors
@@ -130,7 +130,7 @@ impl Checkpoint {
         }
     }
 
-    /// The last equilibria of the path to the last friction that is done, each with its friction. `like` has the system's layout.
+    /// The last equilibria of the path to the last finished value, each with its friction coefficient. `like` has the system's layout.
     /// Collective.
     ///
     /// # Errors
@@ -217,7 +217,7 @@ fn products_name([left, right]: [usize; 2]) -> String {
     format!("products-{left:04}-{right:04}.h5")
 }
 
-/// How many frictions are done in an unfinished folder, which is emptied where they are of no use.
+/// Number of finished values in an unfinished folder, which is emptied where they cannot be used.
 fn prepare(folder: &Folder, place: &Path, target: &Path, identity: &[(&str, String)], force: bool) -> Result<usize> {
     let n = (0..).find(|&i| !place.join(value_name(i)).exists()).expect("numbers do not end");
     if n > 0 {

@@ -123,7 +123,7 @@ impl<'a> ExternalSweep<'a> {
         Ok(best)
     }
 
-    /// Modes at all values, strung on branches, with their Hopf points; `each` is given those of every value that is solved. Collective.
+    /// Modes at all values, followed as branches, with their Hopf points; `each` is given those of every value that is solved. Collective.
     ///
     /// # Errors
     /// See [`ExternalSweep::modes`] and [`track`]. What was found before an error is in the diagram.

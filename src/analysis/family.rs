@@ -1,4 +1,4 @@
-//! The family of pencils along friction, as tracking sees it.
+//! The family of eigenproblems over the friction coefficient, as tracking sees it.
 
 use std::cell::OnceCell;
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ use crate::native::{Block, Matrix, Vector};
 use crate::stability::{Band, growth_threshold};
 use crate::tracking::{Family, Options};
 
-/// The modes at one friction with right and left vectors, and what their products need.
+/// The modes at one value with right and left vectors, and what their products need.
 pub struct Snapshot {
     /// Its number among those of a study, from 0.
     pub number: usize,
@@ -43,7 +43,7 @@ pub struct Vectors {
     pub m: Option<Matrix>,
 }
 
-/// Problems along the friction of the swept pairs.
+/// Eigenproblems over the friction coefficient of the swept pairs.
 pub struct FrictionFamily<'f> {
     /// Finds equilibrium and modes.
     pub solutions: &'f mut dyn Solutions,
@@ -53,9 +53,9 @@ pub struct FrictionFamily<'f> {
     pub c: &'f Matrix,
 }
 
-/// Where the modes at a friction come from: a solve, and what an earlier run has kept. All are collective.
+/// Where the modes at a value come from: a solve, and what an earlier run has kept. All are collective.
 pub trait Solutions {
-    /// Equilibrium, modes and their snapshot at a friction.
+    /// Equilibrium, modes and their snapshot at a value of the friction coefficient.
     ///
     /// # Errors
     /// Those of the solution, with which tracking ends.
@@ -97,9 +97,9 @@ impl<F: FnMut(f64) -> Result<Snapshot>> Solutions for F {
 const BEYOND: f64 = 0.05;
 /// Accuracy of left vectors that explain a mode: sensitivities are as exact.
 const EXPLAINS: f64 = 1e-7;
-/// Accuracy of left vectors that only recognise a mode at the next friction.
+/// Accuracy of left vectors that only recognise a mode at the next value.
 const RECOGNISES: f64 = 1e-4;
-/// Hopf points are bracketed to this, in friction.
+/// Hopf points are bracketed to this, in the friction coefficient.
 const TOLERANCE: f64 = 1e-3;
 
 /// The band (Hz) to be solved for where modes of `band` are to be followed.
@@ -108,7 +108,7 @@ pub fn widened(band: [f64; 2]) -> [f64; 2] {
     [if band[0] > reach { band[0] - reach } else { 0.0 }, band[1] + reach]
 }
 
-/// How modes of a band (Hz) are followed over friction.
+/// How modes of a band (Hz) are followed over the friction coefficient.
 pub fn tracking_options(band: [f64; 2]) -> Options {
     Options { band: band.map(|f| TAU * f), tolerance: TOLERANCE, threshold: growth_threshold }
 }

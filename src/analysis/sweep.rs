@@ -1,4 +1,4 @@
-//! Equilibria and modes along friction.
+//! Equilibria and modes at one friction coefficient after the other.
 //!
 //! [`Sweep`] owns what all values share: the system, its contact evaluation, the factors' analysis, the last equilibrium. Each
 //! call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
@@ -15,7 +15,7 @@ use crate::stability::{
     self, Band, BandSolver, Count, EigenOptions, EigenProgress, Linearised, Mode, QuadraticProblem,
 };
 
-/// A structure under analysis at one friction after the other.
+/// A structure under analysis at one friction coefficient after the other.
 pub struct Sweep<'a> {
     pub(super) system: &'a System,
     pub(super) path: Path<'a>,
@@ -60,7 +60,7 @@ impl<'a> Sweep<'a> {
         })
     }
 
-    /// The equilibrium at a friction of the swept pairs, from the last one. Collective.
+    /// The equilibrium at a friction coefficient of the swept pairs, from the last one. Collective.
     ///
     /// # Errors
     /// See [`Path::advance`].

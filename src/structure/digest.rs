@@ -1,4 +1,4 @@
-//! Files told apart by their bytes.
+//! Files identified by their bytes.
 
 use std::fs::File;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! What holds each body: rigid motions that no support, connector or contact resists.
+//! Unconstrained bodies: rigid-body motions that no support, connector or contact resists.
 //!
 //! Every body of parts that share nodes has six rigid motions `q` about its centroid, rotations scaled by its size. Each
 //! support, connector and closed contact point is a linear functional of them, `s = R q`; motions with `R q = 0` are free.
@@ -17,7 +17,7 @@ use crate::native::Comm;
 /// A motion that nothing resists.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeMotion {
-    /// Parts of the body that the motion is told by.
+    /// Parts of the body by which the motion is described.
     pub parts: Vec<String>,
     /// Translation of its centroid, relative to its largest motion.
     pub translation: [f64; 3],
@@ -32,7 +32,7 @@ pub struct FreeMotion {
 /// supports give 1e-2 and more.
 const FREE: f64 = 1e-5;
 
-/// A component of a motion that people are told of, relative to the largest.
+/// A component of a motion that messages name, relative to the largest.
 const NOTICEABLE: f64 = 0.1;
 
 /// Bodies: parts that share nodes move together.
@@ -96,7 +96,7 @@ fn join(root: &mut [usize], a: usize, b: usize) {
 /// A part of each node, and for each two parts a number above zero where they share nodes. Collective.
 fn parts_of_nodes(comm: &Comm, mesh: &Mesh) -> (Vec<usize>, Vec<u8>) {
     let n_parts = mesh.parts.len();
-    // 0 where no tetrahedron of this rank's tells: nodes that have a name are on ranks without their tetrahedra.
+    // 0 where no tetrahedron of this rank has the node: nodes that have a name are on ranks without their tetrahedra.
     let (mut part_of, mut meet) = (vec![0_usize; mesh.nodes.len()], vec![0_u8; n_parts * n_parts]);
     for (tet, &part) in mesh.tets.iter().zip(&mesh.tet_part) {
         for &n in tet {
@@ -116,7 +116,7 @@ fn parts_of_nodes(comm: &Comm, mesh: &Mesh) -> (Vec<usize>, Vec<u8>) {
     (part_of.into_iter().map(|part| part - 1).collect(), meet)
 }
 
-/// Centroid and radius of gyration of the nodes of n bodies; each rank tells of the nodes that it owns. Collective.
+/// Centroid and radius of gyration of the nodes of n bodies; each rank adds the nodes that it owns. Collective.
 fn extents(comm: &Comm, own: impl Iterator<Item = ([f64; 3], usize)> + Clone, n: usize) -> (Vec<[f64; 3]>, Vec<f64>) {
     let mut sums = vec![[0.0; 4]; n];
     for (x, body) in own.clone() {

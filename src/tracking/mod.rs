@@ -7,7 +7,7 @@
 //! w_i^H z_j = y_i^H [(lambda_i + lambda_j) M + C] x_j
 //! ```
 //!
-//! is zero for two different modes of one value (biorthogonality). Between two values a and b it tells how the modes of b are made
+//! is zero for two different modes of one value (biorthogonality). Between two values a and b it gives how the modes of b are made
 //! of those of a: with `G_ab` for left states of a and right states of b,
 //!
 //! ```text
@@ -17,13 +17,13 @@
 //! (`transfer`). So both problems are known in one basis, as `A_a = diag(lambda_a)` and `A_b = T diag(lambda_b) T^-1`, and the
 //! straight line `A(s) = (1 - s) A_a + s A_b` between them is a small model of everything that lies in between; it is exact
 //! where the problem depends on p linearly. The eigenvalues of A(s) are followed in steps small enough that every vector is
-//! recognised (`homotopy`, `matching`): so crossings are told from veerings, and couplings are seen that both ends know nothing of,
-//! without a solve. Doublets are followed as subspaces. What the model leaves open is solved anew ([`track`]): the step is
+//! recognised (`homotopy`, `matching`): so crossings are distinguished from veerings, and couplings between both ends are found
+//! without a solve. Doublets are followed as subspaces. What the model leaves open is solved again ([`track`]): the step is
 //! halved where modes of b are not made of those of a, and growth rates that pass zero are bracketed by solves to
 //! [`Options::tolerance`].
 //!
 //! At the edges of the band modes come and go. Solutions should therefore reach a little beyond the band: what comes and goes there is
-//! nobody's loss. The lower edge 0 is no different: conjugates of low modes are what is beyond it, and two of them that meet
+//! not missed. The lower edge 0 is no different: conjugates of low modes are what is beyond it, and two of them that meet
 //! become two real eigenvalues.
 
 mod diagram;

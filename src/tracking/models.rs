@@ -1,4 +1,4 @@
-//! Families with known branches, solved densely: what the tests of this room run on.
+//! Families with known branches, solved densely: what the tests of this module run on.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;

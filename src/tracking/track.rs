@@ -1,4 +1,4 @@
-//! The sweep itself: which values are solved, and how their modes are strung on branches.
+//! The sweep itself: which values are solved, and how their modes are joined to branches.
 
 use std::rc::Rc;
 
@@ -149,7 +149,7 @@ impl<F: Family> Tracker<'_, F> {
         (sharing > NEAR * 1.5_f64.powi(hunt.depth as i32)).then_some((between(s.clamp(0.3, 0.7)), None))
     }
 
-    /// A growth rate that passes zero, or does so twice: (whether once, where). Modes outside the band are nobody's concern.
+    /// A growth rate that passes zero, or does so twice: (whether once, where). Modes outside the band do not count.
     fn event(&self, path: &Path, mode: usize) -> Option<(bool, f64)> {
         let (first, last) = (path.samples[0].1[mode], path.end[mode]);
         if !self.options.in_band(first) && !self.options.in_band(last) {
