@@ -20,7 +20,7 @@ use squeal_sys as sys;
 use crate::Result;
 use crate::native::lapack;
 use crate::native::petsc::error::check;
-use crate::native::petsc::{DEFAULT, DETERMINE};
+use crate::native::petsc::{DEFAULT, DETERMINE, Int};
 use crate::native::{Comm, Factor, Matrix, Vector};
 
 /// Columns distributed over the ranks by rows, column-major on each.
@@ -48,7 +48,7 @@ impl View {
     /// Of some columns of a block with these values.
     fn new(block: &Block, columns: Range<usize>, values: *mut f64) -> Result<View> {
         let mut raw = ptr::null_mut();
-        let (rows, n_columns) = (block.n_local as i32, columns.len() as i32);
+        let (rows, n_columns) = (block.n_local as Int, columns.len() as Int);
         // SAFETY: `values` has `n_local x n_columns` entries from the first column on and outlives the view.
         unsafe {
             check(sys::MatCreateDense(
@@ -204,7 +204,7 @@ impl Block {
         // SAFETY: the multiplication reads `view` only and creates `product`, which is read and destroyed here.
         unsafe {
             let reuse = sys::MatReuse::MAT_INITIAL_MATRIX;
-            check(sys::MatTransposeMatMult(a.raw(), view.raw, reuse, f64::from(DEFAULT), &mut product))?;
+            check(sys::MatTransposeMatMult(a.raw(), view.raw, reuse, DEFAULT as f64, &mut product))?;
             let product = View { raw: product };
             let mut pointer = ptr::null_mut();
             check(sys::MatDenseGetArray(product.raw, &mut pointer))?;

@@ -8,7 +8,7 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Matrix, PETSC_ERR_LIB, Vector};
+use super::{Int, Matrix, PETSC_ERR_LIB, Vector};
 use crate::native::Comm;
 use crate::{Error, Result};
 
@@ -140,8 +140,8 @@ fn is_of_reordering(error: &Error) -> bool {
 }
 
 unsafe fn configure(pep: sys::PEP, shift: f64, options: &Options) -> Result<()> {
-    let or_default = |n: usize| if n == 0 { super::DETERMINE } else { n as i32 };
-    let (wanted, basis) = (options.n_wanted as i32, or_default(options.n_basis));
+    let or_default = |n: usize| if n == 0 { super::DETERMINE } else { n as Int };
+    let (wanted, basis) = (options.n_wanted as Int, or_default(options.n_basis));
     let (decide, none) = (super::DETERMINE, ptr::null_mut());
     // SAFETY: the solver is alive; the strings are static.
     unsafe {
@@ -150,15 +150,15 @@ unsafe fn configure(pep: sys::PEP, shift: f64, options: &Options) -> Result<()> 
         check(sys::PEPSetTarget(pep, shift))?;
         check(sys::PEPSetWhichEigenpairs(pep, sys::PEPWhich::PEP_TARGET_MAGNITUDE))?;
         check(sys::PEPSetDimensions(pep, wanted, basis, decide))?;
-        check(sys::PEPSetTolerances(pep, options.tolerance, options.max_restarts as i32))?;
+        check(sys::PEPSetTolerances(pep, options.tolerance, options.max_restarts as Int))?;
         check(sys::PEPSetScale(
             pep,
             sys::PEPScale::PEP_SCALE_SCALAR,
-            if options.scale == 0.0 { f64::from(decide) } else { options.scale },
+            if options.scale == 0.0 { decide as f64 } else { options.scale },
             none,
             none,
             decide,
-            f64::from(decide),
+            decide as f64,
         ))
     }
 }

@@ -5,17 +5,17 @@ use std::ptr;
 
 use squeal_sys as sys;
 
-use super::Matrix;
 use super::error::check;
+use super::{Int, Matrix};
 use crate::Result;
 
 /// Some columns of this rank's rows, compressed by rows.
 #[derive(Clone, Copy)]
 pub(in crate::native) struct Part<'a> {
     /// Where each row starts, and the end of the last.
-    pub offsets: &'a [i32],
+    pub offsets: &'a [Int],
     /// Columns, counted within the part.
-    pub columns: &'a [i32],
+    pub columns: &'a [Int],
     /// The entries.
     pub values: &'a [f64],
 }
@@ -128,9 +128,9 @@ impl Matrix {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn visit_rows(&self, mut visit: impl FnMut(usize, &[i32], &[f64])) -> Result<()> {
-        let (first, raw) = (self.first_row()? as i32, self.raw());
-        for row in first..first + self.n_local() as i32 {
+    pub fn visit_rows(&self, mut visit: impl FnMut(usize, &[Int], &[f64])) -> Result<()> {
+        let (first, raw) = (self.first_row()? as Int, self.raw());
+        for row in first..first + self.n_local() as Int {
             let (mut n, mut columns, mut values) = (0, ptr::null(), ptr::null());
             // SAFETY: the arrays have n entries between Get and Restore; they may be null where n is 0.
             unsafe {

@@ -7,7 +7,7 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Matrix, Vector};
+use super::{Int, Matrix, Vector};
 use crate::Result;
 use crate::native::Comm;
 
@@ -47,7 +47,7 @@ pub fn gmres(
     let mut context = Context { inverse: neighbour, comm: comm.clone(), trap: Trap::default() };
     let pointer = ptr::from_mut(&mut context).cast::<c_void>();
     let mut ksp = Ksp(ptr::null_mut());
-    let (most, keep) = (max_iterations as i32, f64::from(super::DEFAULT));
+    let (most, keep) = (max_iterations as Int, super::DEFAULT as f64);
     let (mut reason, mut iterations) = (sys::KSPConvergedReason(0), 0);
     // SAFETY: `context` outlives the solver, and is reached through `pointer` only while KSPSolve runs.
     unsafe {

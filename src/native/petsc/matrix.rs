@@ -6,7 +6,7 @@ use std::ptr;
 use squeal_sys as sys;
 
 use super::error::check;
-use super::{Gather, Rows, Vector};
+use super::{Gather, Int, Rows, Vector};
 use crate::Result;
 use crate::native::Comm;
 
@@ -35,7 +35,7 @@ impl Matrix {
     pub fn zeros(comm: &Comm, mut rows: Rows) -> Result<Matrix> {
         let n_rows = comm.sum(rows.n_rows());
         comm.agree(rows.check(n_rows))?;
-        let n = rows.n_rows() as i32;
+        let n = rows.n_rows() as Int;
         // Never read: PETSc wants values even where it is to copy the pattern alone.
         let mut unused = [vec![0.0; rows.own.columns.len()], vec![0.0; rows.other.columns.len()]];
         let [v, other_v] = unused.each_mut().map(|values| values.as_mut_ptr());
@@ -87,7 +87,7 @@ impl Matrix {
 
     /// The matrix of the columns that this rank owns, that of others' columns, and the global numbers of the latter's;
     /// the last two are null on one rank.
-    pub(super) fn sequential(&self) -> Result<(sys::Mat, sys::Mat, *const i32)> {
+    pub(super) fn sequential(&self) -> Result<(sys::Mat, sys::Mat, *const Int)> {
         let (mut own, mut other, mut numbers) = (self.raw, ptr::null_mut(), ptr::null());
         if self.comm.size() > 1 {
             // SAFETY: the matrix is of the parallel type; it keeps its two parts and the numbers.
@@ -109,7 +109,7 @@ impl Matrix {
     }
 
     /// Global numbers of the columns that this rank's rows have and other ranks own. Not collective.
-    pub(super) fn other_columns(&self) -> Result<&[i32]> {
+    pub(super) fn other_columns(&self) -> Result<&[Int]> {
         let (_, other, numbers) = self.sequential()?;
         if other.is_null() {
             return Ok(&[]);
@@ -266,7 +266,8 @@ impl Matrix {
     /// PETSc's, where an entry is outside the pattern.
     pub fn add_block(&mut self, indices: &[i32], block: &[f64]) -> Result<()> {
         debug_assert_eq!(block.len(), indices.len() * indices.len());
-        let n = indices.len() as i32;
+        let indices: Vec<Int> = indices.iter().map(|&i| i as Int).collect();
+        let n = indices.len() as Int;
         let (i, add) = (indices.as_ptr(), sys::InsertMode::ADD_VALUES);
         // SAFETY: the arrays have n and n * n entries.
         check(unsafe { sys::MatSetValues(self.raw, n, i, n, i, block.as_ptr(), add) })

@@ -19,9 +19,12 @@ pub(in crate::native) use pattern::int;
 pub use pattern::{Csr, Rows};
 pub use vector::{Gather, Vector};
 
+/// PETSc's integers: 32 bits, or 64 where it was configured so.
+pub type Int = squeal_sys::PetscInt;
+
 /// PETSc's code of an error in a library that it calls: a macro in its headers.
 pub(in crate::native) const PETSC_ERR_LIB: i32 = 76;
 /// PETSc's "work it out": a macro in its headers.
-pub(in crate::native) const DETERMINE: i32 = -1;
+pub(in crate::native) const DETERMINE: Int = -1;
 /// PETSc's "choose for me".
-pub(in crate::native) const DEFAULT: i32 = -2;
+pub(in crate::native) const DEFAULT: Int = -2;

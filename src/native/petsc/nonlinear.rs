@@ -7,7 +7,7 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Matrix, Vector};
+use super::{Int, Matrix, Vector};
 use crate::Result;
 use crate::native::Comm;
 
@@ -101,7 +101,7 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -
         check(sys::SNESSetFunction(snes.0, residual.raw(), Some(evaluate), pointer))?;
         check(sys::SNESSetJacobian(snes.0, jacobian, jacobian, Some(linearise), pointer))?;
         check(sys::SNESSetConvergenceTest(snes.0, Some(judge), pointer, None))?;
-        check(sys::SNESSetTolerances(snes.0, 0.0, 0.0, 0.0, max_iterations as i32, i32::MAX))?;
+        check(sys::SNESSetTolerances(snes.0, 0.0, 0.0, 0.0, max_iterations as Int, Int::MAX))?;
         use_corrections(snes.0, pointer)?;
         use_critical_points(snes.0)?;
         check(sys::SNESSetFromOptions(snes.0))?;

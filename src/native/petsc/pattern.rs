@@ -1,5 +1,6 @@
 //! Which entries a distributed matrix stores.
 
+use super::Int;
 use crate::{Error, Result};
 
 /// The pattern of some rows, compressed by rows. Offsets wrap beyond 2^31 entries; [`Rows::check`] looks at the
@@ -7,9 +8,9 @@ use crate::{Error, Result};
 #[derive(Debug, Clone)]
 pub struct Csr {
     /// Where each row starts, and the end of the last.
-    pub offsets: Vec<i32>,
+    pub offsets: Vec<Int>,
     /// Columns, rising within each row.
-    pub columns: Vec<i32>,
+    pub columns: Vec<Int>,
 }
 
 impl Default for Csr {
@@ -20,8 +21,8 @@ impl Default for Csr {
 
 impl Csr {
     fn push(&mut self, columns: &[i32]) {
-        self.columns.extend_from_slice(columns);
-        self.offsets.push(self.columns.len() as i32);
+        self.columns.extend(columns.iter().map(|&column| column as Int));
+        self.offsets.push(self.columns.len() as Int);
     }
 }
 
@@ -50,12 +51,17 @@ impl Rows {
     /// of all ranks.
     pub(super) fn check(&self, n_rows: usize) -> Result<()> {
         int("a matrix's rows", n_rows)?;
-        int("a matrix's entries on one rank", self.own.columns.len().max(self.other.columns.len()))?;
-        Ok(())
+        countable("a matrix's entries on one rank", self.own.columns.len().max(self.other.columns.len()))
     }
 }
 
-/// A number as PETSc, MUMPS and METIS count.
+/// Refuses more than PETSc's integers count.
+fn countable(what: &str, n: usize) -> Result<()> {
+    let refused = |_| Error::input(format!("{what}: {n} are more than PETSc's integers count. Use more ranks"));
+    Int::try_from(n).map(|_| ()).map_err(refused)
+}
+
+/// A number as MUMPS and METIS count, and this crate its rows, whatever PETSc's integers.
 ///
 /// # Errors
 /// [`Error::Input`] where it is beyond 32 bits.

@@ -7,7 +7,7 @@ use std::ptr;
 use squeal_sys as sys;
 
 use super::error::check;
-use super::int;
+use super::{Int, int};
 use crate::Result;
 use crate::native::Comm;
 
@@ -61,7 +61,7 @@ impl Vector {
     /// PETSc's.
     pub fn zeros(comm: &Comm, n_local: usize) -> Result<Vector> {
         let mut raw = ptr::null_mut();
-        let n = int("a vector's rows on this rank", n_local)?;
+        let n = int("a vector's rows on this rank", n_local)? as Int;
         // SAFETY: sizes are consistent over the ranks by contract; PETSc sums them.
         check(unsafe { sys::VecCreateMPI(comm.raw(), n, super::DETERMINE, &mut raw) })?;
         Ok(Vector { raw, comm: comm.clone(), n_local })
@@ -221,7 +221,8 @@ impl Gather {
     /// PETSc's.
     pub fn new(from: &Vector, indices: &[i32]) -> Result<Gather> {
         let (mut target, mut set, mut scatter) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
-        let n = int("gathered entries", indices.len())?;
+        let n = int("gathered entries", indices.len())? as Int;
+        let indices: Vec<Int> = indices.iter().map(|&i| i as Int).collect();
         // SAFETY: PETSc copies the indices; the index set is destroyed once the scatter holds what it needs.
         unsafe {
             let own = sys::squeal_comm_self();
