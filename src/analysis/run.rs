@@ -272,7 +272,7 @@ impl Run<'_> {
 
     /// Ends the work where a signal has asked any rank for it. Collective.
     fn stop_if_asked(&mut self, friction: f64) -> Result<()> {
-        let signal = self.system.k.comm().max(f64::from(self.observer.stop_signal().unwrap_or(0))) as i32;
+        let signal = self.system.k.comm().max(self.observer.stop_signal().unwrap_or(0));
         if signal == 0 {
             return Ok(());
         }

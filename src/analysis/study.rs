@@ -159,7 +159,7 @@ impl<'a> Plan<'a> {
     fn make(&self, comm: &Comm, part: &Part, record: &mut Record, observer: &mut dyn Observer) -> Result<()> {
         let identity = format!("{}, {}", self.identity, part.options);
         let is_made = comm.is_root() && record.has(part, &identity, &self.options.folder);
-        let is_made = comm.max(f64::from(u8::from(is_made))) > 0.0;
+        let is_made = comm.broadcast_value(0, is_made);
         observer.event(Event::Part { name: &part.name, is_made });
         if is_made {
             return Ok(());

@@ -238,7 +238,7 @@ impl FullModel {
             mass: self.part_properties(comm, i).mass,
         };
         let parts = self.mesh.parts.iter().enumerate().map(part).collect();
-        let n_tets = comm.sum(self.own_tets().count() as f64) as usize;
+        let n_tets = comm.sum(self.own_tets().count());
         let [model_digest, mesh_digest] = [&self.model.file, &self.model.mesh_file]
             .map(|file| comm.agree(if comm.is_root() { digest(file) } else { Ok(String::new()) }));
         let file = &self.model.file;

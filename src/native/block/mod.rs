@@ -8,6 +8,8 @@
 
 mod noise;
 mod product;
+#[cfg(test)]
+mod tests;
 
 pub use noise::Noise;
 
