@@ -30,7 +30,7 @@ pub fn verdict(results: &Results) -> String {
         (Status::Unstable, doubts) => (instability(results), doubts),
         (Status::Unknown, [gravest, doubts @ ..]) => (format!("unknown: {gravest}"), doubts),
         (Status::Unknown | Status::Stable, _) => {
-            ("stable: no mode of the band grows at these frictions".into(), &[][..])
+            ("stable: no mode of the band is unstable at these friction values".into(), &[][..])
         }
     };
     let doubts: String = doubts.iter().map(|doubt| format!("doubt: {doubt}\n")).collect();
