@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use nalgebra::DMatrix;
+use num_complex::Complex64;
 
 use crate::Result;
 use crate::assembly::System;
+use crate::comparison::{groups_of_near, mac_with_span};
 use crate::equilibrium::LabelledFactor;
 use crate::native::{Comm, MaxLoc, Mck, Precision};
 use crate::output::fields::write_free_mode;
@@ -23,6 +25,8 @@ use super::observer::{Event, Observer, warn};
 const SHIFT_RATIO: f64 = 0.31;
 /// A mode with more of its kinetic energy in rigid motion than this is one.
 const RIGID_SHARE: f64 = 0.5;
+/// Frequencies closer than this, relative, are one.
+const ONE_FREQUENCY: f64 = 1e-4;
 
 /// What [`free_modes`] is asked for.
 #[derive(Debug, Clone, Default)]
@@ -117,16 +121,18 @@ fn compare(
         }
     }
     comm.sum_all(&mut values);
-    let values = DMatrix::from_vec(n_points, n_modes, values);
-    let groups = measured::groups(&computed.iter().map(Mode::frequency).collect::<Vec<_>>());
-    let of = |i: usize, columns: std::ops::Range<usize>| {
-        measured::mac(&measured.modes[i].1, &values.columns(columns.start, columns.len()).into_owned())
-    };
+    let complex = |values: &[f64]| values.iter().map(|&u| Complex64::from(u)).collect::<Vec<_>>();
+    let shapes: Vec<Vec<Complex64>> = values.chunks_exact(n_points).map(complex).collect();
+    let lambdas: Vec<Complex64> = computed.iter().map(|mode| Complex64::new(0.0, mode.frequency())).collect();
+    let groups = groups_of_near(&lambdas, ONE_FREQUENCY);
+    // Modes of one frequency, as the doublets of a disc, span a plane in which their directions are arbitrary.
+    let of =
+        |i: usize, modes: &[usize]| mac_with_span(&complex(&measured.modes[i].1), modes.iter().map(|&j| &shapes[j]));
     let n = measured.modes.len();
     Ok(MeasuredComparison {
         frequencies: measured.modes.iter().map(|(frequency, _)| *frequency).collect(),
-        single: DMatrix::from_fn(n, n_modes, |i, j| of(i, j..j + 1)),
-        grouped: DMatrix::from_fn(n, groups.len(), |i, g| of(i, groups[g].clone())),
+        single: DMatrix::from_fn(n, n_modes, |i, j| of(i, &[j])),
+        grouped: DMatrix::from_fn(n, groups.len(), |i, g| of(i, &groups[g])),
         groups,
         distance: points.distance / part.model.mesh_unit,
     })

@@ -1,15 +1,6 @@
-//! Measured shapes against computed ones.
-//!
-//! ```text
-//! MAC = |sum_k m_k f_k|^2 / (sum_k m_k^2 sum_k f_k^2)        m measured at point k along its direction, f computed there
-//! ```
-//!
-//! Modes of one frequency, as the doublets of a disc, span a plane in which their directions are arbitrary: the measured shape is then compared
-//! with its best fit from that plane, `MAC = |P m|^2 / |m|^2`.
+//! Measured shapes from a table.
 
 use std::path::Path;
-
-use nalgebra::{DMatrix, DVector};
 
 use crate::{Error, Result};
 
@@ -82,62 +73,14 @@ fn direction(text: &str) -> Option<[f64; 3]> {
     (length.is_normal()).then(|| vector.map(|x| x / length))
 }
 
-/// Frequencies closer than this, relative, are one.
-const ONE_FREQUENCY: f64 = 1e-4;
-
-/// Modes of one frequency together: first and last.
-pub fn groups(frequencies: &[f64]) -> Vec<std::ops::Range<usize>> {
-    let mut first = 0;
-    let chunks = frequencies.chunk_by(|a, b| b - a <= ONE_FREQUENCY * b);
-    chunks
-        .map(|chunk| {
-            first += chunk.len();
-            first - chunk.len()..first
-        })
-        .collect()
-}
-
-/// The MAC of a measured shape with the span of some computed ones, given by columns at the measured points.
-pub fn mac(measured: &[f64], computed: &DMatrix<f64>) -> f64 {
-    let m = DVector::from_column_slice(measured);
-    // Singular vectors of the columns, each of length 1: those that count span the plane.
-    let mut columns = computed.clone();
-    columns.column_iter_mut().for_each(|mut column| {
-        let norm = column.norm();
-        column /= norm.max(f64::MIN_POSITIVE);
-    });
-    let svd = columns.svd(true, false);
-    let u = svd.u.expect("asked for");
-    let significant = (0..svd.singular_values.len()).filter(|&i| svd.singular_values[i] > 1e-6);
-    significant.map(|i| u.column(i).dot(&m).powi(2)).sum::<f64>() / m.norm_squared().max(f64::MIN_POSITIVE)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_shape_is_like_itself_and_like_its_plane() {
-        let shapes = DMatrix::from_columns(&[
-            DVector::from_vec(vec![1.0, 0.0, -1.0, 0.0]),
-            DVector::from_vec(vec![0.0, 2.0, 0.0, -2.0]),
-        ]);
-        let alone = |i: usize| DMatrix::from_columns(&[shapes.column(i)]);
-        let m = [3.0, 3.0, -3.0, -3.0];
-        assert!((mac(&m, &alone(0)) - 0.5).abs() < 1e-15 && (mac(&m, &shapes) - 1.0).abs() < 1e-15);
-        assert!((mac(&[-5.0, 0.0, 5.0, 0.0], &alone(0)) - 1.0).abs() < 1e-15);
-        assert!(mac(&[1.0, 1.0, 1.0, 1.0], &shapes) < 1e-15);
-    }
 
     #[test]
     fn directions_are_axes_or_vectors() {
         assert_eq!(direction("-Y"), Some([0.0, -1.0, 0.0]));
         assert_eq!(direction("0 3 4"), Some([0.0, 0.6, 0.8]));
         assert_eq!((direction("up"), direction("0 0 0"), direction("1 2")), (None, None, None));
-    }
-
-    #[test]
-    fn doublets_are_one_group() {
-        assert_eq!(groups(&[100.0, 100.001, 200.0]), [0..2, 2..3]);
     }
 }

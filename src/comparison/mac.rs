@@ -31,14 +31,14 @@ impl MacTable {
     pub fn new([lambdas_a, lambdas_b]: [&[Complex64]; 2], [a, b]: [&[Vec<Complex64>]; 2]) -> MacTable {
         assert_eq!((lambdas_a.len(), lambdas_b.len()), (a.len(), b.len()));
         let mut table = DMatrix::zeros(a.len(), b.len());
-        for group in groups(lambdas_a) {
+        for group in groups_of_near(lambdas_a, ONE_EIGENVALUE) {
             let basis = orthonormal(group.iter().map(|&i| &a[i]));
             for (j, y) in b.iter().enumerate() {
                 let share = share(&basis, y);
                 group.iter().for_each(|&i| table[(i, j)] = share);
             }
         }
-        for group in groups(lambdas_b) {
+        for group in groups_of_near(lambdas_b, ONE_EIGENVALUE) {
             let basis = orthonormal(group.iter().map(|&j| &b[j]));
             for (i, x) in a.iter().enumerate() {
                 let share = share(&basis, x);
@@ -59,11 +59,11 @@ pub fn distance(a: Complex64, b: Complex64) -> f64 {
     (a - b).norm() / a.norm().max(b.norm()).max(f64::MIN_POSITIVE)
 }
 
-/// The modes of nearly one eigenvalue; each mode is in one group. Neighbours are linked.
-fn groups(lambdas: &[Complex64]) -> Vec<Vec<usize>> {
+/// The modes of nearly one eigenvalue, relative to the larger one; each mode is in one group. Neighbours are linked.
+pub fn groups_of_near(lambdas: &[Complex64], tolerance: f64) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for i in 0..lambdas.len() {
-        let is_linked = |group: &Vec<usize>| group.iter().any(|&k| distance(lambdas[i], lambdas[k]) <= ONE_EIGENVALUE);
+        let is_linked = |group: &Vec<usize>| group.iter().any(|&k| distance(lambdas[i], lambdas[k]) <= tolerance);
         let (linked, mut others): (Vec<_>, Vec<_>) = groups.into_iter().partition(is_linked);
         others.push(linked.into_iter().flatten().chain([i]).collect());
         groups = others;
@@ -98,6 +98,12 @@ fn orthonormal<'a>(vectors: impl Iterator<Item = &'a Vec<Complex64>>) -> Vec<Vec
         }
     }
     basis
+}
+
+/// The modal assurance criterion of a shape with the span of others, `|P y|^2 / |y|^2`, P the orthogonal projection on
+/// it.
+pub fn mac_with_span<'a>(y: &[Complex64], span: impl Iterator<Item = &'a Vec<Complex64>>) -> f64 {
+    share(&orthonormal(span), y)
 }
 
 /// `|P y|^2 / |y|^2` with P the projection on an orthonormal basis.
@@ -167,7 +173,22 @@ mod tests {
     #[test]
     fn a_growing_and_a_decaying_mode_of_one_frequency_are_two() {
         let lambdas = [c(-0.1, 5.0), c(0.1, 5.0), c(0.0, 5.4)];
-        assert_eq!(groups(&lambdas), [[0], [1], [2]]);
-        assert_eq!(groups(&[c(0.0, 1.0), c(0.0, 2.0), c(0.0, 1.0005), c(0.0, 1.001)]), [vec![1], vec![0, 2, 3]]);
+        assert_eq!(groups_of_near(&lambdas, ONE_EIGENVALUE), [[0], [1], [2]]);
+        assert_eq!(
+            groups_of_near(&[c(0.0, 1.0), c(0.0, 2.0), c(0.0, 1.0005), c(0.0, 1.001)], ONE_EIGENVALUE),
+            [vec![1], vec![0, 2, 3]]
+        );
+    }
+
+    #[test]
+    fn a_shape_is_like_itself_and_like_its_plane() {
+        let shapes = [[1.0, 0.0, -1.0, 0.0], [0.0, 2.0, 0.0, -2.0]].map(|shape| shape.map(|u| c(u, 0.0)).to_vec());
+        let mac = |y: [f64; 4], span: &[Vec<Complex64>]| mac_with_span(&y.map(|u| c(u, 0.0)), span.iter());
+        let both = [3.0, 3.0, -3.0, -3.0];
+        assert!((mac(both, &shapes[..1]) - 0.5).abs() < 1e-15 && (mac(both, &shapes) - 1.0).abs() < 1e-15);
+        assert!((mac([-5.0, 0.0, 5.0, 0.0], &shapes[..1]) - 1.0).abs() < 1e-15);
+        assert!(mac([1.0; 4], &shapes) < 1e-15);
+        let twice = [shapes[0].clone(), shapes[0].clone()];
+        assert!((mac(both, &twice) - 0.5).abs() < 1e-15, "a direction counts once");
     }
 }

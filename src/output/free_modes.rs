@@ -39,7 +39,7 @@ fn measured_text(measured: &MeasuredComparison, computed: &[f64]) -> String {
     for (i, measured) in frequencies.iter().enumerate() {
         let best = (0..groups.len()).max_by(|&a, &b| grouped[(i, a)].total_cmp(&grouped[(i, b)]));
         let Some(best) = best else { continue };
-        let hertz = computed[groups[best].start];
+        let hertz = computed[groups[best][0]];
         let together = if groups[best].len() > 1 { "  modes of one frequency together" } else { "" };
         let (off, mac) = (100.0 * (hertz / measured - 1.0), grouped[(i, best)]);
         text += &format!("  {measured:>11.2}   {hertz:>11.2}  {off:>+12.2}  {mac:>5.3}{together}\n");
@@ -99,7 +99,7 @@ fn mode_rows(found: &FreeModes) -> impl Iterator<Item = FreeModeRow> {
 fn mac_rows(measured: &MeasuredComparison, computed: &[f64]) -> Vec<MacRow> {
     let mut rows = Vec::new();
     for (i, &measured_hz) in measured.frequencies.iter().enumerate() {
-        for (g, j) in measured.groups.iter().enumerate().flat_map(|(g, group)| group.clone().map(move |j| (g, j))) {
+        for (g, j) in measured.groups.iter().enumerate().flat_map(|(g, group)| group.iter().map(move |&j| (g, j))) {
             rows.push(MacRow {
                 measured_hz,
                 mode: j + 1,

@@ -11,6 +11,8 @@
 
 use std::collections::HashMap;
 
+use pathfinding::undirected::connected_components::separate_components;
+
 use crate::contact::interface::ContactPair;
 use crate::contact::search::{Landing, land};
 use crate::contact::{ContactPoint, Interface, PointLaw, Statistics, sliding};
@@ -145,27 +147,12 @@ fn outward(cell: &[&ContactPoint]) -> [f64; 3] {
 
 /// The connected piece of the slave surface on which each point lies, numbered in the order of the points.
 fn pieces(surface: &Surface, points: &[ContactPoint]) -> Vec<usize> {
-    let mut root: HashMap<u32, u32> = HashMap::new();
-    fn find(root: &mut HashMap<u32, u32>, node: u32) -> u32 {
-        let above = *root.entry(node).or_insert(node);
-        if above == node {
-            return node;
-        }
-        let top = find(root, above);
-        root.insert(node, top);
-        top
-    }
-    for facet in &surface.facets {
-        let first = find(&mut root, facet[0]);
-        for &node in &facet[1..] {
-            let other = find(&mut root, node);
-            root.insert(other, first);
-        }
-    }
-    let mut number: HashMap<u32, usize> = HashMap::new();
+    let facets: Vec<Vec<u32>> = surface.facets.iter().map(|facet| facet.to_vec()).collect();
+    let (component_of, _) = separate_components(&facets);
+    let mut number: HashMap<usize, usize> = HashMap::new();
     let of = |point: &ContactPoint| {
         let next = number.len();
-        *number.entry(find(&mut root, point.nodes[0])).or_insert(next)
+        *number.entry(component_of[&point.nodes[0]]).or_insert(next)
     };
     points.iter().map(of).collect()
 }

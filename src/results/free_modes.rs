@@ -1,7 +1,5 @@
 //! Free modes of one part, as plain data.
 
-use std::ops::Range;
-
 use nalgebra::DMatrix;
 
 use crate::stability::Count;
@@ -50,7 +48,7 @@ pub struct MeasuredComparison {
     /// MAC of each measured mode (row) with each computed one.
     pub single: DMatrix<f64>,
     /// Computed modes of one frequency together.
-    pub groups: Vec<Range<usize>>,
+    pub groups: Vec<Vec<usize>>,
     /// MAC of each measured mode (row) with the span of each group.
     pub grouped: DMatrix<f64>,
     /// The largest distance of a measured point from its node, in the mesh's unit.

@@ -6,6 +6,7 @@
 //! has the same say whatever its number of points and the model's unit of length.
 
 use nalgebra::{DMatrix, SymmetricEigen};
+use pathfinding::undirected::connected_components::separate_components;
 
 use crate::algebra::cross;
 use crate::assembly::ConnectorElement;
@@ -50,20 +51,12 @@ impl Bodies {
     fn new(comm: &Comm, mesh: &Mesh, nodes: &Numbering) -> Bodies {
         let (part_of, meet) = parts_of_nodes(comm, mesh);
         let n_parts = mesh.parts.len();
-        let mut root: Vec<usize> = (0..n_parts).collect();
-        for pair in (0..meet.len()).filter(|&pair| meet[pair] > 0) {
-            join(&mut root, pair / n_parts, pair % n_parts);
-        }
-        let roots: Vec<usize> = (0..n_parts).map(|p| find(&root, p)).collect();
-        let mut distinct = roots.clone();
-        distinct.sort_unstable();
-        distinct.dedup();
-        let body = |part: usize| distinct.binary_search(&roots[part]).expect("every root is listed");
-        let of_node: Vec<usize> = part_of.iter().map(|&p| body(p)).collect();
-        let mut parts = vec![Vec::new(); distinct.len()];
-        (0..n_parts).for_each(|p| parts[body(p)].push(mesh.parts[p].clone()));
+        let body = bodies_of_parts(n_parts, |a, b| meet[n_parts * a + b] > 0);
+        let of_node: Vec<usize> = part_of.iter().map(|&p| body[p]).collect();
+        let mut parts = vec![Vec::new(); body.iter().max().map_or(0, |last| last + 1)];
+        body.iter().zip(&mesh.parts).for_each(|(&body, name)| parts[body].push(name.clone()));
         let own = nodes.owned().map(|n| (mesh.nodes[n as usize], of_node[n as usize]));
-        let (centroid, size) = extents(comm, own, distinct.len());
+        let (centroid, size) = extents(comm, own, parts.len());
         Bodies { of_node, parts, centroid, size }
     }
 
@@ -81,16 +74,20 @@ impl Bodies {
     }
 }
 
-fn find(root: &[usize], mut part: usize) -> usize {
-    while root[part] != part {
-        part = root[part];
-    }
-    part
-}
-
-fn join(root: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (find(root, a), find(root, b));
-    root[a.max(b)] = a.min(b);
+/// The body of each part, where parts that meet are one; bodies are numbered by their first parts.
+fn bodies_of_parts(n_parts: usize, meet: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    let together = |a: usize| (0..n_parts).filter(|&b| a == b || meet(a, b)).collect();
+    let groups: Vec<Vec<usize>> = (0..n_parts).map(together).collect();
+    let (component_of, _) = separate_components(&groups);
+    let mut bodies = Vec::new();
+    let body = |part: usize| {
+        let component = component_of[&part];
+        bodies.iter().position(|known| *known == component).unwrap_or_else(|| {
+            bodies.push(component);
+            bodies.len() - 1
+        })
+    };
+    (0..n_parts).map(body).collect()
 }
 
 /// A part of each node, and for each two parts a number above zero where they share nodes. Collective.
@@ -281,5 +278,17 @@ impl std::fmt::Display for FreeMotion {
                 self.others.iter().map(|parts| parts.join(" + ")).collect::<Vec<_>>().join(", ")
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_that_meet_are_one_body() {
+        let met = [(3, 1), (4, 3), (2, 2)];
+        assert_eq!(bodies_of_parts(5, |a, b| met.contains(&(a, b))), [0, 1, 2, 1, 1]);
+        assert_eq!(bodies_of_parts(3, |_, _| false), [0, 1, 2]);
     }
 }
