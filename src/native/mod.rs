@@ -23,7 +23,7 @@ mod mck;
 pub mod mpi;
 pub mod petsc;
 
-pub use block::{Block, Noise};
+pub use block::{Block, Noise, Orthonormal};
 pub use direct::{Factor, FactorKind, FactorStats, Precision, partition};
 pub use mck::Mck;
 pub use mpi::{Comm, MaxLoc, Session, libraries};

@@ -36,7 +36,7 @@ use nalgebra::DMatrix;
 use crate::assembly::System;
 use crate::contact::{GapOperator, Interface};
 use crate::equilibrium::Equilibrium;
-use crate::native::{Block, Factor, FactorKind, FactorStats, Matrix, Noise, Vector, lapack};
+use crate::native::{Block, Factor, FactorKind, FactorStats, Matrix, Mck, Noise, Vector, lapack};
 use crate::{Error, Result};
 
 use super::functionals::{Functionals, retained};
@@ -100,12 +100,8 @@ pub struct Reduced {
     pub frequencies: Vec<f64>,
     /// The basis `[Psi Phi E]`.
     pub basis: Block,
-    /// `T^T M T`.
-    pub mass: DMatrix<f64>,
-    /// `T^T C T`.
-    pub damping: DMatrix<f64>,
-    /// `T^T K T`, without the sliding contacts.
-    pub stiffness: DMatrix<f64>,
+    /// `T^T M T`, `T^T C T` and `T^T K T`, K without the sliding contacts.
+    pub matrices: Mck<DMatrix<f64>>,
     /// `T^T F_ext`, N.
     pub load: Vec<f64>,
     /// `T^T (F - F_ext)`: what the other contacts' forces are beside their linear part, N.
@@ -154,7 +150,8 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
     let load = shadow(&basis, &system.load)?;
     let preload = shadow(&basis, &linear.preload)?;
     let frequencies = modes.frequencies;
-    Ok(Reduced { retained, contacts, frequencies, basis, mass, damping, stiffness, load, preload, costs })
+    let matrices = Mck { m: mass, c: damping, k: stiffness };
+    Ok(Reduced { retained, contacts, frequencies, basis, matrices, load, preload, costs })
 }
 
 /// The static problem with all retained points held.

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::DMatrix;
 
-use crate::native::{Block, Matrix, lapack};
+use crate::native::{Block, Matrix, Orthonormal, lapack};
 use crate::{Error, Result};
 
 /// Vectors of a block.
@@ -20,13 +20,13 @@ pub(super) const WIDTH: usize = 16;
 /// Residual of a Ritz pair relative to theta; that of theta is its square.
 const TOLERANCE: f64 = 1e-9;
 /// The first mode above the limit need not be known better than this.
-const BEYOND: f64 = 1e-3;
+const FIRST_BEYOND_TOLERANCE: f64 = 1e-3;
 /// New directions shorter than this, relative to what they were before orthogonalisation, are rounding.
-const NEGLIGIBLE: f64 = 1e-11;
+const NEGLIGIBLE_DIRECTION: f64 = 1e-11;
 /// Convergence is looked at after every so many blocks.
-const CHECK: usize = 2;
+const BLOCKS_BETWEEN_CHECKS: usize = 2;
 /// Basis vectors at most.
-const LARGEST_BASIS: usize = 6000;
+const MAX_BASIS: usize = 6000;
 
 /// Modes with unit modal mass.
 pub struct Modes {
@@ -54,13 +54,13 @@ pub fn below(
     let mut basis = Basis::new(start);
     let mut next = invert(&start.multiplied_by(mass)?)?;
     let mut n_solves = start.n_columns();
-    while basis.vectors.n_columns() <= LARGEST_BASIS {
+    while basis.vectors.n_columns() <= MAX_BASIS {
         // T is known for the vectors that were inverted: all but those that come now.
         let n = basis.vectors.n_columns();
         let coupling = basis.extend(&mut next, mass, n_dimensions - n)?;
         progress(basis.vectors.n_columns());
         let is_whole = basis.vectors.n_columns() == n;
-        if n > 0 && (is_whole || (n / WIDTH).is_multiple_of(CHECK)) {
+        if n > 0 && (is_whole || (n / WIDTH).is_multiple_of(BLOCKS_BETWEEN_CHECKS)) {
             let (values, vectors) = basis.ritz(n)?;
             let known = Known { values: &values, vectors: &vectors, coupling: &coupling };
             if is_whole || known.reaches(limit) {
@@ -72,7 +72,7 @@ pub fn below(
         n_solves += last.n_columns();
     }
     Err(Error::not_converged(format!(
-        "the fixed-interface modes below {limit} Hz did not converge with {LARGEST_BASIS} vectors. Give the reduction a lower band"
+        "the fixed-interface modes below {limit} Hz did not converge with {MAX_BASIS} vectors. Give the reduction a lower band"
     )))
 }
 
@@ -89,7 +89,7 @@ impl Known<'_> {
         let theta = (TAU * limit).powi(-2);
         for i in (0..self.values.len()).rev() {
             let beyond = self.values[i] < theta;
-            if self.residual(i) > self.values[i] * if beyond { BEYOND } else { TOLERANCE } {
+            if self.residual(i) > self.values[i] * if beyond { FIRST_BEYOND_TOLERANCE } else { TOLERANCE } {
                 return false;
             }
             if beyond {
@@ -119,9 +119,9 @@ impl Basis {
         Basis { vectors: like.columns(0..0), projected: DMatrix::zeros(0, 0), last: 0 }
     }
 
-    /// Takes in `next = A M V_last`: its part within the basis is a block column of T, the rest (`room` vectors at most) extends the
+    /// Takes in `next = A M V_last`: its part within the basis is a block column of T, the rest (`max_columns` vectors at most) extends the
     /// basis. Gives R with `next = V (V^T M next) + V_new R`.
-    fn extend(&mut self, next: &mut Block, mass: &Matrix, room: usize) -> Result<DMatrix<f64>> {
+    fn extend(&mut self, next: &mut Block, mass: &Matrix, max_columns: usize) -> Result<DMatrix<f64>> {
         let n = self.vectors.n_columns();
         let before = squares(next, mass)?.diagonal().max().sqrt();
         let mut within = DMatrix::zeros(n, next.n_columns());
@@ -129,11 +129,11 @@ impl Basis {
             within += remove(&self.vectors, next, mass)?;
         }
         self.adopt(&within);
-        let mut r = normalise(next, mass, before * NEGLIGIBLE, room)?;
+        let mut r = normalise(next, mass, before * NEGLIGIBLE_DIRECTION, max_columns)?;
         if next.n_columns() > 0 {
             // What was short is long now, and so are its errors.
             remove(&self.vectors, next, mass)?;
-            r = normalise(next, mass, 0.5, room)? * r;
+            r = normalise(next, mass, 0.5, max_columns)? * r;
         }
         self.last = next.n_columns();
         self.vectors.append(next);
@@ -185,12 +185,12 @@ fn remove(v: &Block, w: &mut Block, mass: &Matrix) -> Result<DMatrix<f64>> {
     Ok(DMatrix::from_vec(n, w.n_columns(), h))
 }
 
-/// Makes the columns of w M-orthonormal to each other and to those of v, which are M-orthonormal; at most `room` of them stay, and none
+/// Makes the columns of w M-orthonormal to each other and to those of v, which are M-orthonormal; at most `max_columns` of them stay, and none
 /// that adds less than a millionth of itself. Collective.
 ///
 /// # Errors
 /// PETSc's.
-pub fn make_orthonormal(v: &Block, w: &mut Block, mass: &Matrix, room: usize) -> Result<()> {
+pub fn make_orthonormal(v: &Block, w: &mut Block, mass: &Matrix, max_columns: usize) -> Result<()> {
     if w.n_columns() == 0 {
         return Ok(());
     }
@@ -198,7 +198,7 @@ pub fn make_orthonormal(v: &Block, w: &mut Block, mass: &Matrix, room: usize) ->
     *w = w.combined(DMatrix::from_diagonal(&lengths.map(f64::recip)).as_slice(), w.n_columns());
     for shortest in [1e-6, 0.5] {
         remove(v, w, mass)?;
-        normalise(w, mass, shortest, room)?;
+        normalise(w, mass, shortest, max_columns)?;
         if w.n_columns() == 0 {
             return Ok(());
         }
@@ -213,16 +213,10 @@ fn squares(w: &Block, mass: &Matrix) -> Result<DMatrix<f64>> {
     Ok(0.5 * (&g + g.transpose()))
 }
 
-/// Makes w M-orthonormal, leaving out directions shorter than `shortest` and all but the `room` longest; gives R with
+/// Makes w M-orthonormal, leaving out directions shorter than `shortest` and all but the `max_columns` longest; gives R with
 /// `w_before = w R` up to those.
-fn normalise(w: &mut Block, mass: &Matrix, shortest: f64, room: usize) -> Result<DMatrix<f64>> {
-    let n = w.n_columns();
-    let mut q = squares(w, mass)?;
-    let lengths: Vec<f64> = lapack::symmetric_eigen(n, q.as_mut_slice())?.iter().map(|l| l.max(0.0).sqrt()).collect();
-    let kept: Vec<usize> = (0..n).rev().filter(|&i| lengths[i] > shortest).take(room).collect();
-    // w q has orthogonal columns of these lengths, q is orthogonal: w = (w q / l) (l q^T)
-    let scaled: Vec<f64> =
-        kept.iter().flat_map(|&i| q.column(i).iter().map(|x| x / lengths[i]).collect::<Vec<_>>()).collect();
-    *w = w.combined(&scaled, kept.len());
-    Ok(DMatrix::from_fn(kept.len(), n, |row, j| lengths[kept[row]] * q[(j, kept[row])]))
+fn normalise(w: &mut Block, mass: &Matrix, shortest: f64, max_columns: usize) -> Result<DMatrix<f64>> {
+    let Orthonormal { q, r } = Orthonormal::new(squares(w, mass)?, |_| shortest, max_columns)?;
+    *w = w.combined(q.as_slice(), q.ncols());
+    Ok(r)
 }

@@ -70,7 +70,7 @@ pub fn condition(a: &Matrix, factor: &Factor) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::native::{FactorKind, Session};
+    use crate::native::{FactorKind, Mck, Precision, Session};
 
     /// Hilbert's matrix of six rows has the condition number 2.907e7 in the maximum norm.
     #[test]
@@ -82,5 +82,20 @@ mod tests {
         factor.factorise(&a).unwrap();
         let found = condition(&a, &factor).unwrap();
         assert!((found / 2.907_027_9e7 - 1.0).abs() < 1e-6, "{found}");
+    }
+
+    #[test]
+    fn a_singular_stiffness_is_regular_at_a_shift() {
+        let comm = Session::start(&[]).unwrap();
+        // A free chain of two unit masses.
+        let [m, c, k] = [[1.0, 0.0, 0.0, 1.0], [0.0; 4], [1.0, -1.0, -1.0, 1.0]]
+            .map(|values| Matrix::dense(&comm, 2, &values).unwrap());
+        let problem = QuadraticProblem::symmetric(Mck { m: &m, c: &c, k: &k });
+        let mut factor = LabelledFactor::new(Precision::Double);
+        assert_eq!(condition_at(0.0, &problem, &mut factor).unwrap(), f64::INFINITY);
+        assert_eq!(factor.shift(), None, "nothing is factorised");
+        // [2 -1; -1 2] has the inverse [2 1; 1 2] / 3.
+        assert!((condition_at(1.0, &problem, &mut factor).unwrap() - 3.0).abs() < 1e-12);
+        assert_eq!(factor.shift(), Some(1.0));
     }
 }

@@ -239,11 +239,8 @@ impl<'a> Space<'a> {
                     length > KEPT_LENGTH * taken.iter().map(|x| x * x).sum::<f64>().sqrt()
                 });
             }
-            let (mut basis, mut n) = w.orthonormalising(NEGLIGIBLE_DIRECTION)?;
             // No space has more directions than dofs; what is beyond is rounding.
-            n = n.min(self.n_dofs - self.v.n_columns());
-            basis.truncate(n * w.n_columns());
-            w = w.combined(&basis, n);
+            w = w.orthonormalised(NEGLIGIBLE_DIRECTION, self.n_dofs - self.v.n_columns())?;
         }
         Ok(w)
     }

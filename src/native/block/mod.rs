@@ -7,16 +7,17 @@
 //! docs/engineering-log.md, "Factorisation and orderings" and "Modes of large models".
 
 mod noise;
+mod orthonormal;
 mod product;
 #[cfg(test)]
 mod tests;
 
 pub use noise::Noise;
+pub use orthonormal::Orthonormal;
 
 use std::ops::Range;
 use std::ptr;
 
-use nalgebra::DMatrix;
 use squeal_sys as sys;
 
 use crate::Result;
@@ -283,32 +284,6 @@ impl Block {
     /// Where the coefficients do not fill whole columns.
     pub fn combined(&self, coefficients: &[f64], n_columns: usize) -> Block {
         self.leading_combined(self.n_columns, coefficients, n_columns)
-    }
-
-    /// Coefficients (column-major) and number of the combinations that make an orthonormal basis of the columns' span;
-    /// directions smaller than `negligible` times the largest are dropped, columns taken at length 1. Its accuracy is
-    /// the square of that ratio's: twice is enough. Collective.
-    ///
-    /// # Errors
-    /// [`crate::Error::NotConverged`] where LAPACK's eigensolver fails.
-    pub fn orthonormalising(&self, negligible: f64) -> Result<(Vec<f64>, usize)> {
-        let n = self.n_columns;
-        if n == 0 {
-            return Ok((Vec::new(), 0));
-        }
-        let gram = DMatrix::from_vec(n, n, self.gram(self));
-        // A column whose square underflows is zero.
-        let inverse = |square: f64| if square < f64::MIN_POSITIVE { 0.0 } else { 1.0 / square.sqrt() };
-        let scale: Vec<f64> = (0..n).map(|j| inverse(gram[(j, j)])).collect();
-        let mut vectors = DMatrix::from_fn(n, n, |i, j| scale[i] * gram[(i, j)] * scale[j]);
-        let values = lapack::symmetric_eigen(n, vectors.as_mut_slice())?;
-        let largest = values.last().copied().unwrap_or_default();
-        let kept = (0..n).rev().take_while(|&j| values[j] > negligible.powi(2) * largest);
-        let column = |j: usize| (0..n).map(move |i| (i, j));
-        let entry = |(i, j): (usize, usize)| scale[i] * vectors[(i, j)] / values[j].sqrt();
-        let entries: Vec<f64> = kept.flat_map(column).map(entry).collect();
-        let n_kept = entries.len() / n;
-        Ok((entries, n_kept))
     }
 
     /// Keeps the first `n` columns. Not collective.
