@@ -306,6 +306,18 @@ mod tests {
     }
 
     #[test]
+    fn a_change_that_costs_more_than_a_factorisation_is_not_solved_for() {
+        let comm = Session::start(&[]).unwrap();
+        // Stored sparsely, whose right-hand sides are counted.
+        let (system, interface) = blocks_on_belt(&comm, N, 0, ALONG_X);
+        let mut tangents = Tangents::new(&system, &interface);
+        tangents.solve(&[], 0.2);
+        tangents.solve(&(0..N).collect::<Vec<_>>(), 0.2);
+        let stats = tangents.factor.factor().stats();
+        assert_eq!((stats.n_factorisations, stats.n_right_hand_sides), (2, 2));
+    }
+
+    #[test]
     fn a_spent_account_makes_a_factorisation() {
         let comm = Session::start(&[]).unwrap();
         let (system, interface) = dense(&comm, ALONG_X);

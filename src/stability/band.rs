@@ -556,6 +556,20 @@ mod tests {
     }
 
     #[test]
+    fn left_vectors_take_as_many_rounds_as_their_accuracy_needs() {
+        let comm = Session::start(&[]).unwrap();
+        let blocks = Blocks::new(&comm, 40);
+        let mut solver = BandSolver::new(EigenOptions::default(), blocks.system.dofs.labels());
+        let mut factor = LabelledFactor::new(Precision::Double);
+        blocks.with(0.8, &[], |problem| {
+            let band = solver.solve_band(problem, &mut factor, &[0.0, 4.6].into(), &mut |_| ()).unwrap();
+            assert!((1..5).contains(&band.modes.len()), "few in a large space: {}", band.modes.len());
+            let left = solver.left_vectors(problem, &mut factor, &band.modes, |_| 1e-10).unwrap();
+            require_left(problem, &band.modes, &left, 1e-10);
+        });
+    }
+
+    #[test]
     fn left_vectors_that_do_not_converge_are_an_error_and_those_nobody_needs_cost_nothing() {
         let comm = Session::start(&[]).unwrap();
         let blocks = Blocks::new(&comm, 8);
