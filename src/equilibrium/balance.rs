@@ -79,8 +79,8 @@ pub struct Balance {
     pub applied: Wrench,
     /// All supports.
     pub support: Wrench,
-    /// What contact forces add: the force on the slave and its opposite on the master cancel, but they act on either side of the
-    /// initial gap, so that their moments cancel only where the surfaces touch at the start.
+    /// What contact forces add: the force on the slave and its opposite on the master cancel, but they act on either
+    /// side of the initial gap, so that their moments cancel only where the surfaces touch at the start.
     pub across_gaps: Wrench,
     /// Supports at the nodes that this rank owns.
     pub reactions: Vec<(u32, [f64; 3])>,
@@ -89,7 +89,8 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Adds up an equilibrium. `u` are displacements of the nodes that this rank has, `points` their coordinates. Collective.
+    /// Adds up an equilibrium. `u` are displacements of the nodes that this rank has, `points` their coordinates.
+    /// Collective.
     pub fn new(
         system: &System,
         points: &[[f64; 3]],

@@ -1,8 +1,9 @@
 //! Continuation in the friction coefficient: which steps lead from rest to a value that is wanted.
 //!
-//! At rest there is no pressure, so every bound on sticking is zero and the pads are loose. So the first step *settles* with all points sticking
-//! and touching points closed. From there friction rises to 0.1 and then by 0.2 at most, each step from the extrapolation of the last two
-//! equilibria. A step that fails is halved; where the first one fails, the true laws are solved without friction at the disc before it.
+//! At rest there is no pressure, so every bound on sticking is zero and the pads are loose. So the first step *settles*
+//! with all points sticking and touching points closed. From there friction rises to 0.1 and then by 0.2 at most, each
+//! step from the extrapolation of the last two equilibria. A step that fails is halved; where the first one fails, the
+//! true laws are solved without friction at the disc before it.
 
 use crate::Result;
 
@@ -98,7 +99,8 @@ impl<S> Continuation<S> {
         }
     }
 
-    /// The state from which friction rises: settling, or the true laws without friction from there. Gives whether it converged.
+    /// The state from which friction rises: settling, or the true laws without friction from there. Gives whether it
+    /// converged.
     fn start(&mut self, laws: Laws, solver: &mut impl StepSolver<State = S>) -> Result<bool> {
         let mut state = match &self.last {
             Some((_, settled)) => solver.extrapolate(settled, None)?,

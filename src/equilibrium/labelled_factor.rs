@@ -1,7 +1,8 @@
 //! An LU factor with a label: the matrix that it is of.
 //!
-//! One factor serves the steps to an equilibrium and the modes about it, so that there is one symbolic analysis and one place in memory. Who
-//! needs the factor of a matrix compares labels and factorises where they differ; so nobody has to say who used the factor before.
+//! One factor serves the steps to an equilibrium and the modes about it, so that there is one symbolic analysis and one
+//! place in memory. Who needs the factor of a matrix compares labels and factorises where they differ; so nobody has to
+//! say who used the factor before.
 
 use crate::Result;
 use crate::contact::Response;
@@ -100,7 +101,8 @@ impl LabelledFactor {
         self.made = None;
     }
 
-    /// From now on an analysis keeps the factor out of core unless so much memory is left beside it, MB. Not collective.
+    /// From now on an analysis keeps the factor out of core unless so much memory is left beside it, MB. Not
+    /// collective.
     pub fn leave_mb(&mut self, mb: f64) {
         self.factor.leave_mb(mb);
     }

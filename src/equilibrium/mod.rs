@@ -1,8 +1,9 @@
 //! Static equilibrium under contact and friction: `K u + F_nl(u) = F_ext`.
 //!
-//! [`Contacts`] evaluates the contact points at displacements of the dofs; the code in `newton` is one solve by PETSc's SNES with a line search,
-//! `step_factor` its linear systems; [`Path`] leads from rest to any friction value by the steps of `continuation`. [`LabelledFactor`] is the one
-//! factor that steps and modes share. [`Balance`] checks the result: forces, moments, torque.
+//! [`Contacts`] evaluates the contact points at displacements of the dofs; the code in `newton` is one solve by PETSc's
+//! SNES with a line search, `step_factor` its linear systems; [`Path`] leads from rest to any friction value by the
+//! steps of `continuation`. [`LabelledFactor`] is the one factor that steps and modes share. [`Balance`] checks the
+//! result: forces, moments, torque.
 
 mod balance;
 mod contacts;

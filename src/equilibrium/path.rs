@@ -90,8 +90,8 @@ impl<'a> Path<'a> {
         self.factor.n_iterations()
     }
 
-    /// What the steps solve with, for a linearisation about an equilibrium: the next step assembles a tangent of its own, and starts from
-    /// the factor by its label.
+    /// What the steps solve with, for a linearisation about an equilibrium: the next step assembles a tangent of its
+    /// own, and starts from the factor by its label.
     pub fn linear_system(&mut self) -> LinearSystem<'_, 'a> {
         LinearSystem { contacts: &self.contacts, tangent: &mut self.tangent, factor: self.factor.labelled() }
     }
@@ -106,7 +106,8 @@ impl<'a> Path<'a> {
         self.continuation.states().map(|(friction, u)| (*friction, u)).collect()
     }
 
-    /// Puts the path back to where [`Path::states`] were these: the next equilibrium is sought as it would have been then.
+    /// Puts the path back to where [`Path::states`] were these: the next equilibrium is sought as it would have been
+    /// then.
     pub fn restore(&mut self, states: Vec<(f64, Vector)>) {
         self.continuation.restore(states);
     }
@@ -116,7 +117,8 @@ impl<'a> Path<'a> {
         &self.steps
     }
 
-    /// The equilibrium at a friction value of the swept pairs. `progress` takes (label, iteration, iterate). Collective.
+    /// The equilibrium at a friction value of the swept pairs. `progress` takes (label, iteration, iterate).
+    /// Collective.
     ///
     /// # Errors
     /// PETSc's and MUMPS's; [`Error::NotConverged`] where even the smallest step fails.

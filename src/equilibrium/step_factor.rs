@@ -1,17 +1,18 @@
 //! The tangent's factor, made again only where it pays.
 //!
-//! With `A_0 = L U` the tangent of an earlier iterate, the points F that have opened, closed, stuck or slipped since differ by a low rank:
+//! With `A_0 = L U` the tangent of an earlier iterate, the points F that have opened, closed, stuck or slipped since
+//! differ by a low rank:
 //!
 //! ```text
 //! A' = A_0 + sum_F B_a^T (D_a - D_a0) B_a = A_0 + U V^T
 //! ```
 //!
-//! whose inverse is [`Woodbury`]'s, with W from solves with many right-hand sides at a time. What A' lacks, the smooth change of friction and
-//! of slip directions, is left to GMRES with A' for its preconditioner. All that is paid since the last factorisation is counted in solves; when
-//! it reaches the price of a factorisation, one is made.
+//! whose inverse is [`Woodbury`]'s, with W from solves with many right-hand sides at a time. What A' lacks, the smooth
+//! change of friction and of slip directions, is left to GMRES with A' for its preconditioner. All that is paid since
+//! the last factorisation is counted in solves; when it reaches the price of a factorisation, one is made.
 //!
-//! A factor in single precision takes half the time and memory, and GMRES the few digits that its solutions lack. Where it does not, the
-//! factor is made in double precision from then on.
+//! A factor in single precision takes half the time and memory, and GMRES the few digits that its solutions lack. Where
+//! it does not, the factor is made in double precision from then on.
 
 use nalgebra::DMatrix;
 
@@ -109,7 +110,8 @@ impl StepFactor {
         Ok(iterations.is_some())
     }
 
-    /// Makes the update that of the current states, unless it costs too much or its matrix is singular; gives whether it did.
+    /// Makes the update that of the current states, unless it costs too much or its matrix is singular; gives whether
+    /// it did.
     fn bring_up_to_date(&mut self, like: &Vector, contacts: &Contacts) -> Result<bool> {
         let (points, old) = (self.factor.points(), self.update.take());
         let has_flipped = |a: usize| points[a].status != self.current[a].status;

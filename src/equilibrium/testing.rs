@@ -45,8 +45,9 @@ pub fn system(comm: &Comm, matrices: Mck<DMatrix<f64>>, points: &GapOperator, lo
     system
 }
 
-/// `n` blocks of unit mass. Springs hold block i in x, y and z and couple x with z; the belt moves along x, and closed contact adds
-/// `[[0, mu k], [0, k]]` in x and z, so that friction couples two modes of each block. Neighbours are coupled weakly.
+/// `n` blocks of unit mass. Springs hold block i in x, y and z and couple x with z; the belt moves along x, and closed
+/// contact adds `[[0, mu k], [0, k]]` in x and z, so that friction couples two modes of each block. Neighbours are
+/// coupled weakly.
 pub fn blocks(n: usize) -> Mck<DMatrix<f64>> {
     let mut k = DMatrix::zeros(3 * n, 3 * n);
     for i in 0..n {

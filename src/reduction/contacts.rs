@@ -1,13 +1,15 @@
 //! Reduced contact: reference nodes in place of the contact points of the sliding pairs.
 //!
-//! A reference node follows the cell of contact points that it stands for as their mean rigid motion ([`coupling`]); its partner is the
-//! point of the master on which it projects. With the blocks `U_n` of the cell and the shape functions `N_j` of the master's facet
+//! A reference node follows the cell of contact points that it stands for as their mean rigid motion ([`coupling`]);
+//! its partner is the point of the master on which it projects. With the blocks `U_n` of the cell and the shape
+//! functions `N_j` of the master's facet
 //!
 //! ```text
 //! g = sum_n U_n u_n - sum_j N_j u_j          weight: the area of the cell
 //! ```
 //!
-//! so that reduced contact is another gap operator and nothing else. Source: Fazio, Nacivet, Sinou (ISMA 2014), section 3.
+//! so that reduced contact is another gap operator and nothing else. Source: Fazio, Nacivet, Sinou (ISMA 2014), section
+//! 3.
 
 use std::collections::HashMap;
 
@@ -23,10 +25,12 @@ use crate::{Error, Result};
 
 use super::layout::{self, Points};
 
-/// The interface with `n_contacts` reference pairs, shared by area among the sliding pairs; all other pairs stay as they are.
+/// The interface with `n_contacts` reference pairs, shared by area among the sliding pairs; all other pairs stay as
+/// they are.
 ///
 /// # Errors
-/// [`Error::Input`] with file, line and pair: nothing slides, fewer than three contact points a reference node, or a cell on a line.
+/// [`Error::Input`] with file, line and pair: nothing slides, fewer than three contact points a reference node, or a
+/// cell on a line.
 pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -> Result<Interface> {
     let areas: Vec<f64> = full.pairs.iter().filter(|p| p.is_sliding()).map(|p| p.statistics.weight).collect();
     let refuse = |what: String| Err(Error::input(format!("{}: {what}", model.file.display())));
@@ -188,7 +192,8 @@ mod tests {
         }
     }
 
-    /// A rigid motion of everything moves no reference node against the disc; one of the pads alone moves it as its place in them moves.
+    /// A rigid motion of everything moves no reference node against the disc; one of the pads alone moves it as its
+    /// place in them moves.
     #[test]
     fn rigid_motions_are_exact() {
         let (_, reduced, mesh) = pads(44).unwrap();
@@ -202,7 +207,8 @@ mod tests {
         }
     }
 
-    /// What a cell's nodes get is the force at the reference node, without another moment; the disc gets its opposite at the same point.
+    /// What a cell's nodes get is the force at the reference node, without another moment; the disc gets its opposite
+    /// at the same point.
     #[test]
     fn force_and_moment_are_preserved() {
         let (_, reduced, mesh) = pads(12).unwrap();

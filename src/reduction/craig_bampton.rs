@@ -1,12 +1,14 @@
 //! Craig-Bampton reduction of a structure with sliding contacts.
 //!
-//! Without its sliding contacts, and with all others linearised about an equilibrium (closed points stick), the structure is linear:
+//! Without its sliding contacts, and with all others linearised about an equilibrium (closed points stick), the
+//! structure is linear:
 //!
 //! ```text
 //! K = K_elements + sum_other B_a^T D_a B_a          F = F_ext + sum_other B_a^T (f_a + D_a g_a)
 //! ```
 //!
-//! Retained are the linear functionals `q_b = B u` of [`retained`]. Constraint modes and fixed-interface modes span the displacements,
+//! Retained are the linear functionals `q_b = B u` of [`retained`]. Constraint modes and fixed-interface modes span the
+//! displacements,
 //!
 //! ```text
 //! u = Psi q_b + Phi q_m        B Psi = I,  K Psi = B^T L        K Phi = M Phi omega^2 + B^T N,  B Phi = 0
@@ -18,15 +20,18 @@
 //! Psi = K_s^-1 B^T S^-1,  S = B K_s^-1 B^T          A r = (I - Psi B) K_s^-1 r       solves K u + B^T n = r,  B u = 0
 //! ```
 //!
-//! so that no stiff spring enters, and no second factor. Static forces on the retained coordinates are answered exactly.
+//! so that no stiff spring enters, and no second factor. Static forces on the retained coordinates are answered
+//! exactly.
 //!
-//! What the modes left out would answer to the inertia of the constraint modes is, to first order in `(omega/omega_limit)^2`, what they answer
-//! statically. So the basis gets the static answer to the inertia of those motions `Psi Y` that matter, the modes Y of the reduced brake
-//! up to somewhat above half the limit: the *inertia modes* `E = A M Psi Y`, one for each. They take the error of a frequency at half the limit from
-//! some 1e-3 to some 1e-5.
+//! What the modes left out would answer to the inertia of the constraint modes is, to first order in
+//! `(omega/omega_limit)^2`, what they answer statically. So the basis gets the static answer to the inertia of those
+//! motions `Psi Y` that matter, the modes Y of the reduced brake up to somewhat above half the limit: the *inertia
+//! modes* `E = A M Psi Y`, one for each. They take the error of a frequency at half the limit from some 1e-3 to some
+//! 1e-5.
 //!
-//! Sources: R. R. Craig, M. C. C. Bampton, *Coupling of substructures for dynamic analyses*, AIAA Journal 6 (1968), eq. 5-14; J.-G. Kim,
-//! P.-S. Lee, *An enhanced Craig-Bampton method*, Int. J. Numer. Meth. Engng 103 (2015) (the residual term; here as vectors of the basis).
+//! Sources: R. R. Craig, M. C. C. Bampton, *Coupling of substructures for dynamic analyses*, AIAA Journal 6 (1968), eq.
+//! 5-14; J.-G. Kim, P.-S. Lee, *An enhanced Craig-Bampton method*, Int. J. Numer. Meth. Engng 103 (2015) (the residual
+//! term; here as vectors of the basis).
 
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -46,8 +51,8 @@ use super::modes::{self, Modes};
 /// Right-hand sides in one pass over a factor or matrix.
 const PANEL: usize = 64;
 
-/// Motions up to this part of the limit get inertia modes: half of it, up to which a super-element is meant to be used, and a margin, as
-/// the brake without inertia modes is too stiff.
+/// Motions up to this part of the limit get inertia modes: half of it, up to which a super-element is meant to be used,
+/// and a margin, as the brake without inertia modes is too stiff.
 const REACH: f64 = 0.6;
 
 /// A structure to be reduced.
@@ -90,7 +95,8 @@ pub struct Costs {
     pub projection_seconds: f64,
 }
 
-/// The reduced structure. Coordinates: three for each retained point, then one for each fixed-interface mode and each inertia mode.
+/// The reduced structure. Coordinates: three for each retained point, then one for each fixed-interface mode and each
+/// inertia mode.
 pub struct Reduced {
     /// The retained points, as a gap operator.
     pub retained: GapOperator,
@@ -110,10 +116,12 @@ pub struct Reduced {
     pub costs: Costs,
 }
 
-/// Reduces a structure to its sliding contacts and its fixed-interface modes below `limit` (Hz, may be infinite). Collective.
+/// Reduces a structure to its sliding contacts and its fixed-interface modes below `limit` (Hz, may be infinite).
+/// Collective.
 ///
 /// # Errors
-/// [`Error::Input`] where nothing slides or retained points are not independent; [`Error::NotConverged`]; PETSc's and MUMPS's.
+/// [`Error::Input`] where nothing slides or retained points are not independent; [`Error::NotConverged`]; PETSc's and
+/// MUMPS's.
 pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)) -> Result<Reduced> {
     let system = structure.system;
     let (retained, contacts) = retained(structure.interface, structure.loaded);
@@ -205,8 +213,8 @@ impl Interior<'_> {
         Ok(modes)
     }
 
-    /// What the interior does under the inertia of some motions `Psi Y`, beside the modes: `A M Psi Y`, M-orthonormal. It has
-    /// as many vectors as there is room for.
+    /// What the interior does under the inertia of some motions `Psi Y`, beside the modes: `A M Psi Y`, M-orthonormal.
+    /// It has as many vectors as there is room for.
     fn inertia_modes(&self, psi: &Block, motions: &DMatrix<f64>, modes: &Modes) -> Result<Block> {
         if motions.ncols() == 0 {
             return Ok(psi.columns(0..0));
@@ -243,8 +251,8 @@ fn arbitrary(system: &System, n_columns: usize) -> Block {
     block
 }
 
-/// How the retained points move in the modes below `limit` (Hz) of the brake reduced so far, its contacts closed as at the equilibrium and
-/// without friction: a column of retained coordinates each.
+/// How the retained points move in the modes below `limit` (Hz) of the brake reduced so far, its contacts closed as at
+/// the equilibrium and without friction: a column of retained coordinates each.
 fn motions(
     mass: &DMatrix<f64>,
     stiffness: &DMatrix<f64>,

@@ -32,7 +32,7 @@ use super::recovery::OuterSurface;
 use super::super_element::{NodeContact, Origin, SuperElement};
 
 const FORMAT: Format =
-    Format { name: "squeal super-element", version: 2, advice: "Make the super-element anew with `squeal reduce`" };
+    Format { name: "squeal super-element", version: 2, advice: "Make the super-element again with `squeal reduce`" };
 
 /// What is told in words.
 #[derive(Serialize, Deserialize)]

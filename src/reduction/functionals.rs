@@ -1,4 +1,5 @@
-//! The retained coordinates `q_b = B u` of a super-element: linear functionals of the displacements, three a retained point.
+//! The retained coordinates `q_b = B u` of a super-element: linear functionals of the displacements, three a retained
+//! point.
 
 use crate::assembly::{DofMap, System};
 use crate::contact::{GapOperator, Interface};
@@ -69,8 +70,8 @@ fn point_rows(gap_operator: &GapOperator, a: usize, dofs: &DofMap) -> [Vec<(usiz
     })
 }
 
-/// The retained points: the slave's side of every sliding contact point, then the master's, then the mean motion of each list of
-/// loaded nodes. Also the contact points that the first two belong to.
+/// The retained points: the slave's side of every sliding contact point, then the master's, then the mean motion of
+/// each list of loaded nodes. Also the contact points that the first two belong to.
 pub fn retained(interface: &Interface, loaded: &[Vec<u32>]) -> (GapOperator, Vec<usize>) {
     let sliding = interface.pairs.iter().filter(|pair| pair.is_sliding());
     let contacts: Vec<usize> = sliding.flat_map(|pair| pair.points.clone()).collect();

@@ -1,11 +1,12 @@
 //! Contact layouts: a surface's points divided into cells of equal area.
 //!
-//! Recursive inertial bisection: the points are sorted along the principal axis of their inertia and cut where both sides have
-//! the area of the cells they are to hold; so are the two sides, until one cell is left. Every point belongs to exactly one cell; pieces of
-//! a surface that slots part are divided each on its own. A cell must span a plane, or its reference node could not follow it:
-//! where the best cut leaves three points on a line, the next best is taken.
+//! Recursive inertial bisection: the points are sorted along the principal axis of their inertia and cut where both
+//! sides have the area of the cells they are to hold; so are the two sides, until one cell is left. Every point belongs
+//! to exactly one cell; pieces of a surface that slots part are divided each on its own. A cell must span a plane, or
+//! its reference node could not follow it: where the best cut leaves three points on a line, the next best is taken.
 //!
-//! Source: H. D. Simon, *Partitioning of unstructured problems for parallel processing*, Computing Systems in Engineering 2 (1991).
+//! Source: H. D. Simon, *Partitioning of unstructured problems for parallel processing*, Computing Systems in
+//! Engineering 2 (1991).
 
 use std::cmp::Ordering;
 
@@ -160,7 +161,8 @@ impl Search<'_> {
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
         [order[0], order[1]].map(|i| {
             let axis: Vector3<f64> = eigen.eigenvectors.column(i).into();
-            // An axis and its opposite are the same: the cells' order should not depend on which one LAPACK's like gives.
+            // An axis and its opposite are the same: the cells' order should not depend on which one LAPACK's like
+            // gives.
             axis * axis[axis.iamax()].signum()
         })
     }

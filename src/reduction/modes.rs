@@ -1,12 +1,13 @@
 //! The lowest modes of `K x = omega^2 M x` on a subspace, by block Lanczos on the inverse.
 //!
-//! With `A r` the solution of the constrained static problem under r, the modes satisfy `A M x = theta x`, `theta = 1/omega^2`, where `A M`
-//! is symmetric in the inner product of M. The block Krylov basis V (`V^T M V = I`) is orthogonalised in full, twice; `T = V^T M A M V`
-//! gives the Ritz pairs `(theta, V s)`, whose residual is `|R s_last|` with the block R that leads out of the space. Blocks ask the
-//! factor for many solves at once, and find the doublets of a disc together.
+//! With `A r` the solution of the constrained static problem under r, the modes satisfy `A M x = theta x`, `theta =
+//! 1/omega^2`, where `A M` is symmetric in the inner product of M. The block Krylov basis V (`V^T M V = I`) is
+//! orthogonalised in full, twice; `T = V^T M A M V` gives the Ritz pairs `(theta, V s)`, whose residual is `|R s_last|`
+//! with the block R that leads out of the space. Blocks ask the factor for many solves at once, and find the doublets
+//! of a disc together.
 //!
-//! Source: G. H. Golub, R. Underwood, *The block Lanczos method for computing eigenvalues* (1977); Parlett, *The symmetric eigenvalue
-//! problem*, ch. 13.
+//! Source: G. H. Golub, R. Underwood, *The block Lanczos method for computing eigenvalues* (1977); Parlett, *The
+//! symmetric eigenvalue problem*, ch. 13.
 
 use std::f64::consts::TAU;
 
@@ -38,8 +39,8 @@ pub struct Modes {
     pub n_solves: usize,
 }
 
-/// All modes below `limit` (Hz, may be infinite) of a space of dimension `n_dimensions`. `invert` is A; `start` holds any vectors.
-/// Collective.
+/// All modes below `limit` (Hz, may be infinite) of a space of dimension `n_dimensions`. `invert` is A; `start` holds
+/// any vectors. Collective.
 ///
 /// # Errors
 /// Those of `invert`, PETSc's, and [`Error::NotConverged`].
@@ -119,8 +120,8 @@ impl Basis {
         Basis { vectors: like.columns(0..0), projected: DMatrix::zeros(0, 0), last: 0 }
     }
 
-    /// Takes in `next = A M V_last`: its part within the basis is a block column of T, the rest (`max_columns` vectors at most) extends the
-    /// basis. Gives R with `next = V (V^T M next) + V_new R`.
+    /// Takes in `next = A M V_last`: its part within the basis is a block column of T, the rest (`max_columns` vectors
+    /// at most) extends the basis. Gives R with `next = V (V^T M next) + V_new R`.
     fn extend(&mut self, next: &mut Block, mass: &Matrix, max_columns: usize) -> Result<DMatrix<f64>> {
         let n = self.vectors.n_columns();
         let before = squares(next, mass)?.diagonal().max().sqrt();
@@ -185,8 +186,8 @@ fn remove(v: &Block, w: &mut Block, mass: &Matrix) -> Result<DMatrix<f64>> {
     Ok(DMatrix::from_vec(n, w.n_columns(), h))
 }
 
-/// Makes the columns of w M-orthonormal to each other and to those of v, which are M-orthonormal; at most `max_columns` of them stay, and none
-/// that adds less than a millionth of itself. Collective.
+/// Makes the columns of w M-orthonormal to each other and to those of v, which are M-orthonormal; at most `max_columns`
+/// of them stay, and none that adds less than a millionth of itself. Collective.
 ///
 /// # Errors
 /// PETSc's.
@@ -213,8 +214,8 @@ fn squares(w: &Block, mass: &Matrix) -> Result<DMatrix<f64>> {
     Ok(0.5 * (&g + g.transpose()))
 }
 
-/// Makes w M-orthonormal, leaving out directions shorter than `shortest` and all but the `max_columns` longest; gives R with
-/// `w_before = w R` up to those.
+/// Makes w M-orthonormal, leaving out directions shorter than `shortest` and all but the `max_columns` longest; gives R
+/// with `w_before = w R` up to those.
 fn normalise(w: &mut Block, mass: &Matrix, shortest: f64, max_columns: usize) -> Result<DMatrix<f64>> {
     let Orthonormal { q, r } = Orthonormal::new(squares(w, mass)?, |_| shortest, max_columns)?;
     *w = w.combined(q.as_slice(), q.ncols());

@@ -26,7 +26,8 @@ pub struct OuterSurface {
 }
 
 impl OuterSurface {
-    /// The displacements (m) of the surface's nodes under several sets of generalised coordinates, in one pass over the basis.
+    /// The displacements (m) of the surface's nodes under several sets of generalised coordinates, in one pass over the
+    /// basis.
     ///
     /// # Panics
     /// Where there are fewer coordinates than the basis has.
@@ -50,7 +51,8 @@ impl OuterSurface {
         all
     }
 
-    /// The surface of a mesh with the basis of a reduction there; the root has the basis, other ranks have none. Collective.
+    /// The surface of a mesh with the basis of a reduction there; the root has the basis, other ranks have none.
+    /// Collective.
     ///
     /// # Errors
     /// PETSc's.

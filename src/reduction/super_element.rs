@@ -6,9 +6,10 @@
 //! contact      g_i = q_slave,i - q_master,i                                                   B = [I -I 0 0]
 //! ```
 //!
-//! It enters the assembly as an element among elements and its contacts are an [`Interface`], so everything above
-//! is the full model's. Where the law of the contacts is another one than the full model's, the penetration of each gets a correction xi so that
-//! at the full model's equilibrium it gives the full model's force: `p(d + xi) = p_full` (Fazio, Nacivet, Sinou, eq. 11 and 12).
+//! It enters the assembly as an element among elements and its contacts are an [`Interface`], so everything above is
+//! the full model's. Where the law of the contacts is another one than the full model's, the penetration of each gets a
+//! correction xi so that at the full model's equilibrium it gives the full model's force: `p(d + xi) = p_full` (Fazio,
+//! Nacivet, Sinou, eq. 11 and 12).
 
 use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
 use crate::contact::interface::ContactPair;
@@ -131,7 +132,8 @@ impl SuperElement {
         self.n_coordinates() - 3 * self.points.len() - self.frequencies.len()
     }
 
-    /// The contacts, under the full model's law or another one (of node-to-node elements: N/m and N/m3), corrected to the full model's forces.
+    /// The contacts, under the full model's law or another one (of node-to-node elements: N/m and N/m3), corrected to
+    /// the full model's forces.
     pub fn interface(&self, law: Option<NormalLaw>) -> Interface {
         let n = self.contacts.len() as u32;
         let mut gap_operator = GapOperator::new();

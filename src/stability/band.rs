@@ -72,7 +72,8 @@ pub struct BandSolver {
 }
 
 impl BandSolver {
-    /// Nothing is left from an earlier problem. `labels` has a number for each of this rank's dofs that does not depend on the ranks.
+    /// Nothing is left from an earlier problem. `labels` has a number for each of this rank's dofs that does not depend
+    /// on the ranks.
     pub fn new(options: EigenOptions, labels: Vec<u64>) -> BandSolver {
         BandSolver {
             options,
@@ -84,8 +85,8 @@ impl BandSolver {
         }
     }
 
-    /// Finds all modes of a band, sorted by frequency, vectors scaled to a largest entry of 1. Where the solver needs a factor, `factor` becomes
-    /// that of the problem at the shift of the report. Collective.
+    /// Finds all modes of a band, sorted by frequency, vectors scaled to a largest entry of 1. Where the solver needs a
+    /// factor, `factor` becomes that of the problem at the shift of the report. Collective.
     ///
     /// # Errors
     /// PETSc's and MUMPS's; [`Error::NotConverged`] where the band could not be completed.
@@ -123,7 +124,8 @@ impl BandSolver {
         Ok(Band { modes: modes_of(search, band)?, count, report })
     }
 
-    /// About how many modes there are; the factor that counts and the one that solves give way to one another where memory is short.
+    /// About how many modes there are; the factor that counts and the one that solves give way to one another where
+    /// memory is short.
     fn prepare(&mut self, problem: &QuadraticProblem, factor: &mut LabelledFactor, end: f64) -> Result<Expected> {
         self.release_search_space();
         if !self.counter.sturm.is_made() {
@@ -177,9 +179,9 @@ impl BandSolver {
         Ok(kinds)
     }
 
-    /// Left vectors of modes that the last [`BandSolver::solve_band`] has found for the problem: columns `2i` and `2i + 1` are the real and
-    /// imaginary part of mode i, `y^H M y = 1`, with the relative `accuracy` that each is to have; where it is infinite, the columns need be no
-    /// left vector. Collective.
+    /// Left vectors of modes that the last [`BandSolver::solve_band`] has found for the problem: columns `2i` and `2i +
+    /// 1` are the real and imaginary part of mode i, `y^H M y = 1`, with the relative `accuracy` that each is to have;
+    /// where it is infinite, the columns need be no left vector. Collective.
     ///
     /// # Errors
     /// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy.
@@ -246,8 +248,8 @@ fn modes_of(search: SearchResult, band: [f64; 2]) -> Result<Vec<Mode>> {
     Ok(modes)
 }
 
-/// Sorts by frequency; modes of one frequency, such as the growing and the decaying one of a pair, by growth. What counts as one
-/// frequency stands above rounding, so that modes have the same numbers on any number of ranks.
+/// Sorts by frequency; modes of one frequency, such as the growing and the decaying one of a pair, by growth. What
+/// counts as one frequency stands above rounding, so that modes have the same numbers on any number of ranks.
 fn sort(modes: &mut [Mode]) {
     const FREQUENCY_ROUNDING: f64 = 1e-9;
     modes.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im));
@@ -256,8 +258,8 @@ fn sort(modes: &mut [Mode]) {
     }
 }
 
-/// Refuses a band with so many modes that they mean nothing: the upper modes of a mesh are those of its elements. Small models may have all of
-/// theirs in the band.
+/// Refuses a band with so many modes that they mean nothing: the upper modes of a mesh are those of its elements. Small
+/// models may have all of theirs in the band.
 fn require_resolved(n_modes: usize, n_dofs: usize, end: f64) -> Result<()> {
     if n_dofs < N_DOFS_SMALL || n_modes as f64 <= MAX_MODES_PER_DOF * n_dofs as f64 {
         return Ok(());

@@ -2,20 +2,24 @@
 //!
 //! With `P(lambda) = lambda^2 M + lambda C + K` and a factor of K:
 //!
-//! 1. *Krylov blocks.* `V = [V_1 V_2 ...]`, `V_{j+1} = orth(K^-1 M V_j)` from a few random columns, until V has about twice as
-//!    many columns as modes are expected: it nearly holds the shapes of the undamped problem, friction included. Where a nearby problem was
-//!    solved before, V begins with its modes instead, those of some way beyond the radius included, and needs no solve for them.
+//! 1. *Krylov blocks.* `V = [V_1 V_2 ...]`, `V_{j+1} = orth(K^-1 M V_j)` from a few random columns, until V has about
+//!    twice as many columns as modes are expected: it nearly holds the shapes of the undamped problem, friction
+//!    included. Where a nearby problem was solved before, V begins with its modes instead, those of some way beyond the
+//!    radius included, and needs no solve for them.
 //! 2. *Rayleigh-Ritz.* `V^T P(lambda) V y = 0` is solved by TOAR like a full problem; `x = V y`.
-//! 3. *Correction.* The residuals `R = [P(lambda_i) x_i]` of all wanted modes are what damping and a truncated Krylov space leave. The
-//!    directions `K^-1 R` that V lacks have few that count (singular values fall by three decades in twenty), which random
-//!    combinations find: `K^-1 (R Omega)` joins V. Steps 2 and 3 repeat until every eigenvalue is converged and every backward error small.
+//! 3. *Correction.* The residuals `R = [P(lambda_i) x_i]` of all wanted modes are what damping and a truncated Krylov
+//!    space leave. The directions `K^-1 R` that V lacks have few that count (singular values fall by three decades in
+//!    twenty), which random combinations find: `K^-1 (R Omega)` joins V. Steps 2 and 3 repeat until every eigenvalue is
+//!    converged and every backward error small.
 //!
-//! Why it is written by hand: SLEPc's solvers of quadratic problems take one right-hand side at a time. A pass over the factor is memory traffic
-//! for one right-hand side and arithmetic for 16, a quarter of the time each on two ranks, and so are the products with C and M. On the full brake
-//! it took 75 s where TOAR took 165 s when it came, and a third of the solves less since it starts from the modes of another friction value.
+//! Why it is written by hand: SLEPc's solvers of quadratic problems take one right-hand side at a time. A pass over the
+//! factor is memory traffic for one right-hand side and arithmetic for 16, a quarter of the time each on two ranks, and
+//! so are the products with C and M. On the full brake it took 75 s where TOAR took 165 s when it came, and a third of
+//! the solves less since it starts from the modes of another friction value.
 //!
-//! Sources: generalised Davidson with `K^-1` for its preconditioner (Sleijpen, Booten, Fokkema and van der Vorst, BIT 36, 1996, section 4),
-//! its corrections compressed by a randomised range finder (Halko, Martinsson and Tropp, SIAM Review 53, 2011, algorithm 4.1).
+//! Sources: generalised Davidson with `K^-1` for its preconditioner (Sleijpen, Booten, Fokkema and van der Vorst, BIT
+//! 36, 1996, section 4), its corrections compressed by a randomised range finder (Halko, Martinsson and Tropp, SIAM
+//! Review 53, 2011, algorithm 4.1).
 
 use std::f64::consts::TAU;
 use std::rc::Rc;
@@ -34,7 +38,8 @@ use crate::{ErrorKind, Result};
 
 /// Pairs whose vectors are looked at together.
 const PAIRS_AT_ONCE: usize = 16;
-/// How many eigenpairs the projected problem is solved for beyond those expected within the radius, one after the other.
+/// How many eigenpairs the projected problem is solved for beyond those expected within the radius, one after the
+/// other.
 const PROJECTED_MARGINS: [usize; 4] = [8, 24, 72, 216];
 /// Rounds that most searches take.
 const N_ROUNDS_EXPECTED: usize = 10;
@@ -85,14 +90,15 @@ impl Blocked {
         self.basis.take()
     }
 
-    /// How far a search would go, Hz; none where it is not for such a problem, or not for such an attempt any more. Collective.
+    /// How far a search would go, Hz; none where it is not for such a problem, or not for such an attempt any more.
+    /// Collective.
     pub fn reach(&self, problem: &QuadraticProblem, request: &SearchRequest) -> Option<f64> {
         let suits = problem.symmetric_mc && request.shift == 0.0 && problem.n_dofs() >= self.options.blocked_from;
         self.options.band_margins.get(request.attempt).filter(|_| suits).map(|margin| margin * request.end)
     }
 
-    /// Memory (MB) of a search for `n_modes` among `n_dofs`: the basis, its rounds, the vectors found, those that the next search starts
-    /// from, a round's right-hand sides, solutions and products, and what left vectors then add.
+    /// Memory (MB) of a search for `n_modes` among `n_dofs`: the basis, its rounds, the vectors found, those that the
+    /// next search starts from, a round's right-hand sides, solutions and products, and what left vectors then add.
     pub fn needs_mb(&self, n_modes: usize, n_dofs: usize) -> f64 {
         let right = self.n_krylov(n_modes) + (N_ROUNDS_EXPECTED + 5) * SKETCH + 2 * n_modes + self.n_start(n_modes);
         let left = N_LEFT_ROUNDS_EXPECTED * SKETCH + 6 * n_modes;
@@ -122,7 +128,8 @@ impl Blocked {
         Ok(space)
     }
 
-    /// Rounds of Rayleigh-Ritz and corrections in a space; none where they do not converge. Keeps the space and the next start.
+    /// Rounds of Rayleigh-Ritz and corrections in a space; none where they do not converge. Keeps the space and the
+    /// next start.
     fn correct(
         &mut self,
         mut space: Space,

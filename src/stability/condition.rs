@@ -8,7 +8,8 @@ use crate::{ErrorKind, Result};
 /// Rounds at most: the estimate rarely grows after the third.
 const MAX_ROUNDS: usize = 5;
 
-/// Estimates the condition number of `P(shift)`, which `factor` becomes the factor of: infinite where the matrix is singular. Collective.
+/// Estimates the condition number of `P(shift)`, which `factor` becomes the factor of: infinite where the matrix is
+/// singular. Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's.
@@ -25,10 +26,11 @@ pub fn condition_at(shift: f64, problem: &QuadraticProblem, factor: &mut Labelle
     }
 }
 
-/// Estimates the condition number `|A| |A^-1|` in the maximum norm, from below and rarely by more than a factor of three. Collective.
+/// Estimates the condition number `|A| |A^-1|` in the maximum norm, from below and rarely by more than a factor of
+/// three. Collective.
 ///
-/// `|A^-1| = |A^-T|_1` by Hager's ascent over the unit ball: `x <- e_j` where the gradient `A^-1 sign(A^-T x)` is largest. Source: Higham,
-/// Accuracy and Stability of Numerical Algorithms, 2nd ed., SIAM 2002, algorithm 15.1.
+/// `|A^-1| = |A^-T|_1` by Hager's ascent over the unit ball: `x <- e_j` where the gradient `A^-1 sign(A^-T x)` is
+/// largest. Source: Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., SIAM 2002, algorithm 15.1.
 ///
 /// # Errors
 /// PETSc's and MUMPS's.

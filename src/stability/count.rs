@@ -1,8 +1,9 @@
 //! Whether a search has missed a mode.
 //!
-//! With [`Evidence::SturmCount`] the number of modes below a frequency is known from the symmetric problem. Friction may carry a mode across
-//! that frequency, where the two problems then differ by one: the count is then taken again in the widest gap between modes beyond the band's end,
-//! and the next value's count begins there. With [`Evidence::Repetition`] two searches have to agree.
+//! With [`Evidence::SturmCount`] the number of modes below a frequency is known from the symmetric problem. Friction
+//! may carry a mode across that frequency, where the two problems then differ by one: the count is then taken again in
+//! the widest gap between modes beyond the band's end, and the next value's count begins there. With
+//! [`Evidence::Repetition`] two searches have to agree.
 
 use std::f64::consts::TAU;
 
@@ -56,7 +57,8 @@ impl ModeCounter {
         self.gap = Some(count.below);
     }
 
-    /// About how many modes there are below the end of a band (Hz) or the gap beyond it where the last count was taken. Collective.
+    /// About how many modes there are below the end of a band (Hz) or the gap beyond it where the last count was taken.
+    /// Collective.
     pub fn expect(&mut self, problem: &QuadraticProblem, options: &EigenOptions, end: f64) -> Result<Expected> {
         let near = end..options.band_margins[0] * end;
         let below = self.gap.filter(|gap| near.contains(gap)).unwrap_or(end);
@@ -68,8 +70,8 @@ impl ModeCounter {
         Ok(Expected { end, below, n })
     }
 
-    /// How many modes were found below the frequency of the expectation or in a gap beyond it, and how many there should be; none where the
-    /// search did not get there. `before` is the count of the search before. Collective.
+    /// How many modes were found below the frequency of the expectation or in a gap beyond it, and how many there
+    /// should be; none where the search did not get there. `before` is the count of the search before. Collective.
     pub fn count(
         &mut self,
         problem: &QuadraticProblem,

@@ -60,7 +60,8 @@ pub struct SearchResult {
 }
 
 impl SearchResult {
-    /// How many modes lie below a frequency, Hz: a pair of the upper half plane stands for one, a real eigenvalue for half of one.
+    /// How many modes lie below a frequency, Hz: a pair of the upper half plane stands for one, a real eigenvalue for
+    /// half of one.
     pub fn n_below(&self, frequency: f64) -> usize {
         let below = self.pairs.iter().filter(|pair| pair.lambda.norm() <= TAU * frequency);
         below.map(|pair| if pair.lambda.im > 0.0 { 1.0 } else { 0.5 }).sum::<f64>().round() as usize

@@ -78,8 +78,8 @@ fn summed(system: &System, mut sums: Vec<Forms>) -> Vec<Forms> {
     sums
 }
 
-/// The forms of the contact pairs, linearised about an equilibrium with a friction for each pair: `g_y^H D g_x`, and friction
-/// damping in C where that is in the problem. Collective.
+/// The forms of the contact pairs, linearised about an equilibrium with a friction for each pair: `g_y^H D g_x`, and
+/// friction damping in C where that is in the problem. Collective.
 ///
 /// # Errors
 /// PETSc's.

@@ -1,10 +1,10 @@
 //! Left vectors of the modes: `y^H P(lambda) = 0`.
 //!
-//! With `v = conj(y)` that is `P(lambda)^T v = 0`, the transposed problem at an eigenvalue that is known. Friction alone makes
-//! K differ from its transpose, so the right vectors span a start V; better still, the space in which they were found, whose projections serve
-//! transposed. A round computes each vector again in V, by inverse iteration with
-//! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as the search for the right
-//! vectors does ([`super::blocked`]). A vector is found when a round hardly moves it.
+//! With `v = conj(y)` that is `P(lambda)^T v = 0`, the transposed problem at an eigenvalue that is known. Friction
+//! alone makes K differ from its transpose, so the right vectors span a start V; better still, the space in which they
+//! were found, whose projections serve transposed. A round computes each vector again in V, by inverse iteration with
+//! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as the
+//! search for the right vectors does ([`super::blocked`]). A vector is found when a round hardly moves it.
 //!
 //! Why it is written by hand: SLEPc's PEP has no left vectors.
 
@@ -19,9 +19,9 @@ use crate::{Error, Result};
 /// Relative steps away from an eigenvalue at which the problem is not singular.
 const LAMBDA_STEPS: [f64; 3] = [0.0, 1e-14, 1e-12];
 
-/// Left vectors of `modes`, found in the space whose `basis` is given: columns `2i` and `2i + 1` are the real and imaginary part of mode i,
-/// `y^H M y = 1`, with the accuracy that each is to have: relative, by the last round's change; where it is infinite, the columns are no
-/// left vector. Collective.
+/// Left vectors of `modes`, found in the space whose `basis` is given: columns `2i` and `2i + 1` are the real and
+/// imaginary part of mode i, `y^H M y = 1`, with the accuracy that each is to have: relative, by the last round's
+/// change; where it is infinite, the columns are no left vector. Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's; [`Error::NotConverged`] where a vector does not come to its accuracy in `max_rounds`.
@@ -72,8 +72,8 @@ fn start_from(space: &Space, modes: &[Mode], vectors: &Block) -> Vec<Ritz> {
     modes.iter().enumerate().map(ritz).collect()
 }
 
-/// One inverse iteration with the projected `P(lambda)^T`, from where the vector was, so that two vectors of one eigenvalue stay two. Gives by how
-/// much it moved, relative and but for its phase.
+/// One inverse iteration with the projected `P(lambda)^T`, from where the vector was, so that two vectors of one
+/// eigenvalue stay two. Gives by how much it moved, relative and but for its phase.
 fn improve(space: &Space, vector: &mut Ritz) -> f64 {
     let entry = |row: usize| match (vector.re.get(row), vector.im.get(row)) {
         (Some(&re), Some(&im)) => Complex64::new(re, im),

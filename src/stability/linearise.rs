@@ -21,7 +21,8 @@ pub struct Linearised {
 
 impl Linearised {
     /// Linearises about `equilibrium`, and writes `k = K + B^T D B`: open points give nothing, closed sliding points
-    /// `(dp/dd)(n n^T + mu t n^T)`, all other closed points stick. With `friction_damping`, C is [`with_friction_damping`]. Collective.
+    /// `(dp/dd)(n n^T + mu t n^T)`, all other closed points stick. With `friction_damping`, C is
+    /// [`with_friction_damping`]. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -65,8 +66,8 @@ impl Linearised {
     }
 }
 
-/// `C + B^T [mu p / |v| (I - n n^T - t t^T)] B` with the responses of all points: friction turns with the velocity of sliding points.
-/// Collective.
+/// `C + B^T [mu p / |v| (I - n n^T - t t^T)] B` with the responses of all points: friction turns with the velocity of
+/// sliding points. Collective.
 ///
 /// # Errors
 /// PETSc's.

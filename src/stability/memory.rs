@@ -6,8 +6,8 @@ use super::sturm::SturmCount;
 use crate::equilibrium::LabelledFactor;
 use crate::native::{Comm, machine};
 
-/// Memory of a symmetric factor over that of an LU on the same pattern, in double and in single precision: 3.0 GB over 5.3 GB on the full demo
-/// brake, or over 2.8 GB.
+/// Memory of a symmetric factor over that of an LU on the same pattern, in double and in single precision: 3.0 GB over
+/// 5.3 GB on the full demo brake, or over 2.8 GB.
 const SYMMETRIC_OVER_LU: [f64; 2] = [0.6, 1.1];
 
 /// Decides by the memory that is left.
@@ -23,7 +23,8 @@ impl Default for MemoryBudget {
 }
 
 impl MemoryBudget {
-    /// Before the symmetric factor is made: where it does not fit, the start of the next search goes, then the LU. Collective.
+    /// Before the symmetric factor is made: where it does not fit, the start of the next search goes, then the LU.
+    /// Collective.
     pub fn before_count(&self, problem: &QuadraticProblem, factor: &mut LabelledFactor, blocked: &mut Blocked) {
         let needed_mb = symmetric_over_lu(factor) * factor.factor().stats().used_mb;
         let has_mb = || (self.has_mb)(problem.comm(), needed_mb);
@@ -35,8 +36,8 @@ impl MemoryBudget {
         }
     }
 
-    /// Before the LU is analysed: where it does not fit beside the symmetric factor and a search that needs so many MB, that factor goes; and
-    /// the LU is kept out of core unless it leaves so much. Collective.
+    /// Before the LU is analysed: where it does not fit beside the symmetric factor and a search that needs so many MB,
+    /// that factor goes; and the LU is kept out of core unless it leaves so much. Collective.
     pub fn before_factor(
         &self,
         problem: &QuadraticProblem,
@@ -51,7 +52,8 @@ impl MemoryBudget {
         factor.leave_mb(search_mb);
     }
 
-    /// Before a blocked search that needs so many MB: its start goes, then the symmetric factor; gives whether it fits now. Collective.
+    /// Before a blocked search that needs so many MB: its start goes, then the symmetric factor; gives whether it fits
+    /// now. Collective.
     pub fn before_search(
         &self,
         problem: &QuadraticProblem,

@@ -1,7 +1,7 @@
 //! Complex modes about an equilibrium: `(lambda^2 M + lambda C + K) x = 0`, all of a frequency band.
 //!
-//! [`QuadraticProblem`] is the linearised problem, with friction's unsymmetric part in K. [`BandSolver::solve_band`] chooses an eigensolver, searches,
-//! counts, and widens the search until no mode is missing:
+//! [`QuadraticProblem`] is the linearised problem, with friction's unsymmetric part in K. [`BandSolver::solve_band`]
+//! chooses an eigensolver, searches, counts, and widens the search until no mode is missing:
 //!
 //! | eigensolver | method | used for |
 //! |---|---|---|
@@ -9,8 +9,9 @@
 //! | [`modal`] | TOAR in the modal coordinates of a reference | super-elements |
 //! | [`toar`] | SLEPc's TOAR, inverted about a real shift, so that one real factor serves the whole band | all others, and the last resort |
 //!
-//! Each mode has its backward error; their number is compared with the Sturm count of the symmetric problem ([`count`]).
-//! [`BandSolver::left_vectors`] finds their left vectors. Tolerances and thresholds are in [`EigenOptions`].
+//! Each mode has its backward error; their number is compared with the Sturm count of the symmetric problem
+//! ([`count`]). [`BandSolver::left_vectors`] finds their left vectors. Tolerances and thresholds are in
+//! [`EigenOptions`].
 
 mod band;
 mod blocked;

@@ -1,18 +1,19 @@
 //! TOAR in the modal coordinates of a reference, for densely stored problems.
 //!
-//! `K_0 = S + sum B_a^T D_0a B_a` is the symmetric stiffness, without friction's coupling, of the first problem seen. With its modes, of energy 1,
-//! other problems of the structure are
+//! `K_0 = S + sum B_a^T D_0a B_a` is the symmetric stiffness, without friction's coupling, of the first problem seen.
+//! With its modes, of energy 1, other problems of the structure are
 //!
 //! ```text
 //! Phi^T K_0 Phi = I      Phi^T M Phi = diag(1 / omega^2)      Phi^T K Phi = I + sum Phi^T B_a^T (D_a - D_0a) B_a Phi = I + U V^T
 //! ```
 //!
-//! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s. A step of a Krylov method then goes through C, U and V,
-//! where it went through M, C and a factor of K, and no coordinate is left out. That K_0 becomes the identity, and not M, keeps the low modes'
-//! digits: rounding is relative to each mode's energy, and not to the highest mode's.
+//! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s. A step of a Krylov method then
+//! goes through C, U and V, where it went through M, C and a factor of K, and no coordinate is left out. That K_0
+//! becomes the identity, and not M, keeps the low modes' digits: rounding is relative to each mode's energy, and not to
+//! the highest mode's.
 //!
-//! Why it is written by hand: the modes of 81 friction values of the full brake's super-element (782 coordinates) take 18 s where TOAR with the
-//! factor of K took 30 s.
+//! Why it is written by hand: the modes of 81 friction values of the full brake's super-element (782 coordinates) take
+//! 18 s where TOAR with the factor of K took 30 s.
 
 use nalgebra::DMatrix;
 
@@ -84,8 +85,9 @@ impl Modal {
         Options { n_basis, scale: std::f64::consts::TAU * request.end, ..options }
     }
 
-    /// `v` with `P(lambda)^T v = 0` for modes of the last problem solved: columns `2i` and `2i + 1` are the real and imaginary part for mode i. From a
-    /// search of its own with K transposed; none where that does not find each eigenvalue again, apart from all others.
+    /// `v` with `P(lambda)^T v = 0` for modes of the last problem solved: columns `2i` and `2i + 1` are the real and
+    /// imaginary part for mode i. From a search of its own with K transposed; none where that does not find each
+    /// eigenvalue again, apart from all others.
     ///
     /// # Errors
     /// PETSc's.
@@ -131,7 +133,8 @@ impl Eigensolver for Modal {
 }
 
 impl Coordinates {
-    /// Those that a problem's symmetric part gives; none where it is not stored densely, or its stiffness not positive definite.
+    /// Those that a problem's symmetric part gives; none where it is not stored densely, or its stiffness not positive
+    /// definite.
     fn new(problem: &QuadraticProblem) -> Result<Option<Coordinates>> {
         let Some(points) = problem.points else { return Ok(None) };
         let k_0 = problem.symmetric_stiffness()?;

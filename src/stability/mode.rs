@@ -24,8 +24,8 @@ pub struct Mode {
     pub im: Vector,
 }
 
-/// The growth rate (1/s) beyond which an eigenvalue is unstable: [`UNSTABLE_RATIO`] of its angular frequency. A rigid motion's
-/// double zero may come out as a real pair of some 1e-2/s: divergence, a real eigenvalue, counts from 1/s on.
+/// The growth rate (1/s) beyond which an eigenvalue is unstable: [`UNSTABLE_RATIO`] of its angular frequency. A rigid
+/// motion's double zero may come out as a real pair of some 1e-2/s: divergence, a real eigenvalue, counts from 1/s on.
 pub fn growth_threshold(lambda: Complex64) -> f64 {
     if lambda.im == 0.0 { DIVERGENCE_RATE } else { UNSTABLE_RATIO * lambda.im.abs() }
 }
@@ -82,8 +82,8 @@ fn largest(re: &Vector, im: &Vector) -> Result<(Complex64, f64)> {
 /// Columns of a block of products.
 const BLOCK: usize = 32;
 
-/// Backward errors `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)` of eigenpairs, maximum norms and moduli of complex
-/// entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i. Collective.
+/// Backward errors `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)` of eigenpairs, maximum norms and
+/// moduli of complex entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i. Collective.
 ///
 /// # Errors
 /// PETSc's.

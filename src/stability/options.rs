@@ -6,9 +6,9 @@ pub enum Evidence {
     /// The Sturm count of the symmetric problem: what brakes have.
     #[default]
     SturmCount,
-    /// For matrices of any structure, where a Sturm count proves nothing. A search finds all eigenvalues that there are; or as many modes as
-    /// the search before, which was for fewer; or, where M is symmetric and so a Sturm count gives about how many there are (`estimated`), just
-    /// as many.
+    /// For matrices of any structure, where a Sturm count proves nothing. A search finds all eigenvalues that there
+    /// are; or as many modes as the search before, which was for fewer; or, where M is symmetric and so a Sturm count
+    /// gives about how many there are (`estimated`), just as many.
     Repetition {
         /// Whether a Sturm count gives an estimate.
         estimated: bool,
@@ -29,24 +29,28 @@ pub struct EigenOptions {
     pub n_attempts: usize,
     /// Modes that the first search is for with [`Evidence::Repetition`] where nothing gives their number. Default: 10.
     pub n_guessed: usize,
-    /// By this factor a shift that is not zero moves where TOAR gave up: about another shift it does not meet the same blocks. Default: 1.3.
+    /// By this factor a shift that is not zero moves where TOAR gave up: about another shift it does not meet the same
+    /// blocks. Default: 1.3.
     pub shift_growth: f64,
-    /// The blocked search goes so far, relative to the band's end, so that the count finds a gap; farther in the second attempt, for friction that
-    /// has carried a mode across that gap; then it is TOAR's turn. Default: 1.03, 1.12.
+    /// The blocked search goes so far, relative to the band's end, so that the count finds a gap; farther in the second
+    /// attempt, for friction that has carried a mode across that gap; then it is TOAR's turn. Default: 1.03, 1.12.
     pub band_margins: [f64; 2],
     /// Dofs from which the blocked search is used: below, a single solve costs too little. Default: 50 000.
     pub blocked_from: usize,
     /// Of the blocked search.
     pub blocked: BlockedOptions,
-    /// Residual tolerance of TOAR: near double roots a residual of e is an error of sqrt(e) in the eigenvalue. Default: 1e-12.
+    /// Residual tolerance of TOAR: near double roots a residual of e is an error of sqrt(e) in the eigenvalue. Default:
+    /// 1e-12.
     pub toar_tolerance: f64,
-    /// The same in modal coordinates, with the band's end for the unit of frequency. Default: 1e-11, which leaves backward errors of 2e-14 and
-    /// eigenvalues to 2e-12 (782 coordinates).
+    /// The same in modal coordinates, with the band's end for the unit of frequency. Default: 1e-11, which leaves
+    /// backward errors of 2e-14 and eigenvalues to 2e-12 (782 coordinates).
     pub modal_tolerance: f64,
-    /// Basis of TOAR over the eigenvalues wanted in modal coordinates: next to products its own upkeep counts there, and half of SLEPc's basis
-    /// takes half the time (782 coordinates). It restarts more often, which costs digits. Default: 1.3.
+    /// Basis of TOAR over the eigenvalues wanted in modal coordinates: next to products its own upkeep counts there,
+    /// and half of SLEPc's basis takes half the time (782 coordinates). It restarts more often, which costs digits.
+    /// Default: 1.3.
     pub modal_basis_ratio: f64,
-    /// Up to so many left vectors in modal coordinates are sought one by one, more by a search of their own. Default: 6.
+    /// Up to so many left vectors in modal coordinates are sought one by one, more by a search of their own. Default:
+    /// 6.
     pub n_left_one_by_one: usize,
     /// Rounds of corrections to left vectors at most; a round wins a factor of about five. Default: 40.
     pub max_left_rounds: usize,
@@ -61,12 +65,12 @@ pub struct BlockedOptions {
     pub krylov_block: usize,
     /// Columns of the Krylov space for each mode expected. Default: 1.4.
     pub krylov_per_mode: f64,
-    /// An earlier search's modes are of use up to this multiple of the radius: those beyond the band are what corrections by `K^-1` win slowly.
-    /// Default: 1.3 (medium demo brake, mu = 0.6 and 0.7: 430 and 434 solves without a start, 292 and 312 with 1, 262 and 290 with 1.3, 266
-    /// and 280 with 1.6).
+    /// An earlier search's modes are of use up to this multiple of the radius: those beyond the band are what
+    /// corrections by `K^-1` win slowly. Default: 1.3 (medium demo brake, mu = 0.6 and 0.7: 430 and 434 solves without
+    /// a start, 292 and 312 with 1, 262 and 290 with 1.3, 266 and 280 with 1.6).
     pub start_radius: f64,
-    /// Relative change of an eigenvalue from round to round at which it is converged. A round wins a factor of three to five, so that
-    /// the error left is below half the change. Default: 1e-9.
+    /// Relative change of an eigenvalue from round to round at which it is converged. A round wins a factor of three to
+    /// five, so that the error left is below half the change. Default: 1e-9.
     pub eigenvalue_change: f64,
     /// Rounds of correction before the search is given up. Default: 40.
     pub max_rounds: usize,

@@ -25,7 +25,8 @@ pub struct QuadraticProblem<'a> {
 pub struct FrozenPoints<'a> {
     /// Their places among the dofs.
     pub contacts: &'a Contacts<'a>,
-    /// What each point does: its tangent D (N/m) has friction's coupling, which is all that makes the stiffness unsymmetric.
+    /// What each point does: its tangent D (N/m) has friction's coupling, which is all that makes the stiffness
+    /// unsymmetric.
     pub responses: &'a [Response],
     /// Tangent without friction's coupling of each point, N/m.
     pub symmetric: &'a [Tangent],
@@ -115,7 +116,8 @@ impl FrozenPoints<'_> {
         self.responses.iter().map(|response| response.tangent)
     }
 
-    /// How the points' part of the stiffness has changed since they had other tangents, times X: `B^T (D - D_before) B X`. Collective.
+    /// How the points' part of the stiffness has changed since they had other tangents, times X: `B^T (D - D_before) B
+    /// X`. Collective.
     ///
     /// # Errors
     /// PETSc's.

@@ -42,7 +42,8 @@ pub(super) struct Basis {
     projected: Mck<DMatrix<f64>>,
 }
 
-/// What a search leaves for the next: orthonormal columns V with the projections of the problem that they were found with.
+/// What a search leaves for the next: orthonormal columns V with the projections of the problem that they were found
+/// with.
 pub(super) struct Start {
     basis: Basis,
     /// What combined the space's columns to V, which are orthonormal, too.
@@ -112,8 +113,8 @@ impl<'a> Space<'a> {
         Ok(space)
     }
 
-    /// Begins with what another search for right vectors has left, with memory for some columns more. Where the problem differs from that
-    /// search's in contact alone, so do the projections. Collective.
+    /// Begins with what another search for right vectors has left, with memory for some columns more. Where the problem
+    /// differs from that search's in contact alone, so do the projections. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -176,7 +177,8 @@ impl<'a> Space<'a> {
         })
     }
 
-    /// Appends what V lacks of some columns W, orthonormal, and their projections. Gives `M W`, transposed for left vectors.
+    /// Appends what V lacks of some columns W, orthonormal, and their projections. Gives `M W`, transposed for left
+    /// vectors.
     ///
     /// # Errors
     /// PETSc's.
@@ -184,7 +186,8 @@ impl<'a> Space<'a> {
         self.append(self.what_is_new(w)?)
     }
 
-    /// Appends columns W that are orthonormal, to V as among themselves, and their projections. Gives `M W`, transposed for left vectors.
+    /// Appends columns W that are orthonormal, to V as among themselves, and their projections. Gives `M W`, transposed
+    /// for left vectors.
     ///
     /// # Errors
     /// PETSc's.
@@ -226,8 +229,9 @@ impl<'a> Space<'a> {
         Ok(images)
     }
 
-    /// An orthonormal basis of what V lacks of some columns. Projection on V and W needs independent columns and not orthogonal ones: V is
-    /// left a second time only where that took most digits the first time, so that of V itself a part of 1e-5 may stay.
+    /// An orthonormal basis of what V lacks of some columns. Projection on V and W needs independent columns and not
+    /// orthogonal ones: V is left a second time only where that took most digits the first time, so that of V itself a
+    /// part of 1e-5 may stay.
     fn what_is_new(&self, mut w: Block) -> Result<Block> {
         let mut is_clear = false;
         for _ in 0..2 {
@@ -245,8 +249,8 @@ impl<'a> Space<'a> {
         Ok(w)
     }
 
-    /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than V columns, the others
-    /// are zero.
+    /// Vectors `x = V y`: columns 2i and 2i + 1 are real and imaginary part. Where a vector has fewer coefficients than
+    /// V columns, the others are zero.
     pub fn vectors(&self, ritz: &[Ritz]) -> Block {
         self.v.combined(self.coefficients(ritz).as_slice(), 2 * ritz.len())
     }
@@ -265,8 +269,8 @@ impl<'a> Space<'a> {
         DMatrix::from_fn(self.v.n_columns(), 2 * ritz.len(), entry)
     }
 
-    /// Real and imaginary parts of the residuals where they are few, else random combinations of them,
-    /// `sum_i Re(z_ij^* P(lambda_i) V y_i)`, `z_ij` normal with the deviation `|lambda_i|^-2`, which makes residuals count as they
+    /// Real and imaginary parts of the residuals where they are few, else random combinations of them, `sum_i Re(z_ij^*
+    /// P(lambda_i) V y_i)`, `z_ij` normal with the deviation `|lambda_i|^-2`, which makes residuals count as they
     /// change eigenvalues, relatively. Column j is `K V a_j + C V b_j + M V c_j`.
     ///
     /// # Errors

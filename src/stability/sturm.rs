@@ -1,15 +1,16 @@
 //! The Sturm count: how many modes the symmetric problem has below a frequency.
 //!
-//! By Sylvester's law of inertia that is the number of negative pivots of `A = S - omega^2 M`, S the stiffness with the contact tangent
-//! without friction's coupling. From one friction value to the next only the points that opened or closed change S, by a low rank:
-//! `A' = A + V D V^T`. The bordered matrix `[A V; V^T -D^-1]` has two Schur complements (Haynsworth, Linear Algebra and its
-//! Applications 1, 1968), so that
+//! By Sylvester's law of inertia that is the number of negative pivots of `A = S - omega^2 M`, S the stiffness with the
+//! contact tangent without friction's coupling. From one friction value to the next only the points that opened or
+//! closed change S, by a low rank: `A' = A + V D V^T`. The bordered matrix `[A V; V^T -D^-1]` has two Schur complements
+//! (Haynsworth, Linear Algebra and its Applications 1, 1968), so that
 //!
 //! ```text
 //! n(A') = n(A) + n(-D^-1 - V^T A^-1 V) - n(-D^-1)       n: number of negative eigenvalues
 //! ```
 //!
-//! and a factor of A serves for A' with one solve for each column of V that was not in the last one. The count is exact either way.
+//! and a factor of A serves for A' with one solve for each column of V that was not in the last one. The count is exact
+//! either way.
 
 use std::f64::consts::TAU;
 
@@ -144,7 +145,8 @@ impl Flexibility {
     }
 }
 
-/// `n(A) + n(-D^-1 - V^T A^-1 V) - n(-D^-1)`, with `V^T A^-1 V` by columns; none where an eigenvalue is too small for its sign.
+/// `n(A) + n(-D^-1 - V^T A^-1 V) - n(-D^-1)`, with `V^T A^-1 V` by columns; none where an eigenvalue is too small for
+/// its sign.
 fn n_negative_after(before: usize, change: &TangentChange, flexibility: &[f64]) -> Option<usize> {
     let n = change.rank();
     let stiffness = |i: usize| change.dyads[i].stiffness();

@@ -87,7 +87,8 @@ pub fn entries(a: &Matrix) -> DMatrix<f64> {
     values
 }
 
-/// All eigenvalues of the closed upper half plane with a modulus up to a frequency (Hz), by the companion matrix: by frequency, then by growth.
+/// All eigenvalues of the closed upper half plane with a modulus up to a frequency (Hz), by the companion matrix: by
+/// frequency, then by growth.
 pub fn eigenvalues(problem: &QuadraticProblem, end: f64) -> Vec<Complex64> {
     let Mck { m, c, k } = problem.matrices.map(entries);
     let (n, inverse) = (m.nrows(), m.try_inverse().unwrap());

@@ -54,7 +54,8 @@ pub(super) fn with_wanted(n_wanted: usize, progress: &mut OnProgress) -> impl Fn
     move |n_converged, n_solves| progress(EigenProgress { n_converged, n_wanted, n_solves })
 }
 
-/// What PEP has found, with its backward errors. Complete up to the furthest eigenvalue, or everywhere where there are no more.
+/// What PEP has found, with its backward errors. Complete up to the furthest eigenvalue, or everywhere where there are
+/// no more.
 pub(super) fn complete(
     problem: &QuadraticProblem,
     solver: SolverKind,

@@ -15,9 +15,9 @@ pub struct Orthonormal {
 }
 
 impl Orthonormal {
-    /// From the Gram matrix `G = W^T A W` in the inner product of A, with `G = V L V^T`: `Q = V L^-1/2`, `R = L^1/2 V^T`, of the directions
-    /// that are longer than `shortest(longest)`, at most `max_columns`, the longest first. Its accuracy is that of G, the square of the ratio
-    /// of lengths: twice is enough. Not collective.
+    /// From the Gram matrix `G = W^T A W` in the inner product of A, with `G = V L V^T`: `Q = V L^-1/2`, `R = L^1/2
+    /// V^T`, of the directions that are longer than `shortest(longest)`, at most `max_columns`, the longest first. Its
+    /// accuracy is that of G, the square of the ratio of lengths: twice is enough. Not collective.
     ///
     /// # Errors
     /// Those of LAPACK's eigensolver.
@@ -34,8 +34,8 @@ impl Orthonormal {
 }
 
 impl Block {
-    /// An orthonormal basis of the columns' span, of at most `max_columns`: directions smaller than `negligible` times the largest are left out,
-    /// columns taken at length 1. Collective.
+    /// An orthonormal basis of the columns' span, of at most `max_columns`: directions smaller than `negligible` times
+    /// the largest are left out, columns taken at length 1. Collective.
     ///
     /// # Errors
     /// See [`Orthonormal::new`].
