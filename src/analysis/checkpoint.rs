@@ -9,9 +9,10 @@
 //!   products-0003-0005.h5     products of two snapshots' vectors
 //! ```
 //!
-//! Every file appears when it is complete, a value after all that it needs. So the values in the folder are what is done, and tracking that
-//! begins again is given their eigenvalues and products until it needs what no file has: there it continues with a solve. Vectors
-//! that tracking has dropped have gone with the next value, as all their products are known.
+//! Every file appears when it is complete, a value after all that it needs. So the values in the folder are what is
+//! done, and tracking that begins again is given their eigenvalues and products until it needs what no file has: there
+//! it continues with a solve. Vectors that tracking has dropped have gone with the next value, as all their products
+//! are known.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -54,8 +55,9 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Opens the checkpoint of an unfinished folder, which the root has, and gives what is done. A folder that was begun with another
-    /// `identity` (name and value of all that the numbers depend on) is emptied with `force`. Collective.
+    /// Opens the checkpoint of an unfinished folder, which the root has, and gives what is done. A folder that was
+    /// begun with another `identity` (name and value of all that the numbers depend on) is emptied with `force`.
+    /// Collective.
     ///
     /// # Errors
     /// [`Error::Input`] where another study was begun, or files are damaged; the system's.
@@ -82,8 +84,8 @@ impl Checkpoint {
         Some(snapshot)
     }
 
-    /// Keeps a finished value with the sweep's path to it and the snapshot where modes are followed, which gets its number, and removes
-    /// what is needed no more. Collective.
+    /// Keeps a finished value with the sweep's path to it and the snapshot where modes are followed, which gets its
+    /// number, and removes what is needed no more. Collective.
     ///
     /// # Errors
     /// The system's and HDF5's, with the path.
@@ -130,8 +132,8 @@ impl Checkpoint {
         }
     }
 
-    /// The last equilibria of the path to the last finished value, each with its friction coefficient. `like` has the system's layout.
-    /// Collective.
+    /// The last equilibria of the path to the last finished value, each with its friction coefficient. `like` has the
+    /// system's layout. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] where the file is damaged.

@@ -10,9 +10,9 @@ use crate::structure::{FullModel, Structure};
 use super::sweep::Sweep;
 
 impl Sweep<'_> {
-    /// Explains a mode about an equilibrium by families of elements, the source of each member among `named`, and by the contact pairs. With
-    /// its left vector sensitivities come along. Shares add up to 1, what is fed in and taken out to the growth rate. Sensitivities are at
-    /// the equilibrium's contact status. Collective.
+    /// Explains a mode about an equilibrium by families of elements, the source of each member among `named`, and by
+    /// the contact pairs. With its left vector sensitivities come along. Shares add up to 1, what is fed in and taken
+    /// out to the growth rate. Sensitivities are at the equilibrium's contact status. Collective.
     ///
     /// # Errors
     /// PETSc's.

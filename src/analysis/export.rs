@@ -22,7 +22,8 @@ pub enum MatrixFormat {
 /// What [`export`] is asked for.
 #[derive(Debug, Clone)]
 pub struct ExportOptions {
-    /// The friction coefficient of the equilibrium. The structure's own, where it has one value, if there is none given.
+    /// The friction coefficient of the equilibrium. The structure's own, where it has one value, if there is none
+    /// given.
     pub friction: Option<Vec<f64>>,
     /// Whether the matrices are those about an equilibrium; else M, C and K of the structure itself, without contact.
     pub with_contact: bool,
@@ -64,10 +65,12 @@ const CONTACT: MatrixFile = MatrixFile {
     head: "tangent of contact and friction, N/m: a part of stiffness",
 };
 
-/// Writes matrices into a folder, which the root has, with node, axis and place of each row in `equations.csv`. Collective.
+/// Writes matrices into a folder, which the root has, with node, axis and place of each row in `equations.csv`.
+/// Collective.
 ///
 /// # Errors
-/// [`Error::Input`] where there is more than one value of the friction coefficient; [`Error::NotConverged`]; PETSc's, the system's.
+/// [`Error::Input`] where there is more than one value of the friction coefficient; [`Error::NotConverged`]; PETSc's,
+/// the system's.
 pub fn export(
     comm: &Comm,
     structure: &Structure,

@@ -28,12 +28,13 @@ pub struct ExternalOptions {
     pub shapes: bool,
 }
 
-/// Finds all modes of a band of `(lambda^2 M + lambda C + K) x = 0` at each value of the matrices' parameter, and follows them over it where
-/// M is symmetric and positive definite. Where a value does not converge, the analysis ends there with a note. Shapes and names of rows
-/// are on the root alone. Collective.
+/// Finds all modes of a band of `(lambda^2 M + lambda C + K) x = 0` at each value of the matrices' parameter, and
+/// follows them over it where M is symmetric and positive definite. Where a value does not converge, the analysis ends
+/// there with a note. Shapes and names of rows are on the root alone. Collective.
 ///
 /// # Errors
-/// [`Error::Input`] for matrices that cannot be read, do not fit together or are singular for every shift; PETSc's and MUMPS's.
+/// [`Error::Input`] for matrices that cannot be read, do not fit together or are singular for every shift; PETSc's and
+/// MUMPS's.
 pub fn external_modes(
     comm: &Comm,
     family: &MatrixFamily,
@@ -161,8 +162,8 @@ fn largest(matrices: &ExternalMatrices, [re, im]: &[Vec<f64>; 2]) -> (f64, usize
     (largest.value, comm.broadcast_value(largest.rank(), matrices.owned.start + here))
 }
 
-/// Growth rates above this are no noise, 1/s: a millionth of the frequency; of a real eigenvalue, as which the double zero of a free motion
-/// may come out, a hundred-thousandth of the band's end.
+/// Growth rates above this are no noise, 1/s: a millionth of the frequency; of a real eigenvalue, as which the double
+/// zero of a free motion may come out, a hundred-thousandth of the band's end.
 fn growth_threshold(lambda: Complex64, band: [f64; 2]) -> f64 {
     if lambda.im == 0.0 { 1e-5 * TAU * band[1] } else { 1e-6 * lambda.im.abs() }
 }

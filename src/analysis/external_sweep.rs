@@ -41,7 +41,8 @@ const NEARLY_SINGULAR: f64 = 1e13;
 const GOOD: f64 = 1e4;
 /// From here on nothing is left of sixteen digits.
 const SINGULAR: f64 = 1e15;
-/// Shifts that are tried, in units of the band's end. Without a common null vector of M, C and K few numbers are eigenvalues.
+/// Shifts that are tried, in units of the band's end. Without a common null vector of M, C and K few numbers are
+/// eigenvalues.
 const SHIFTS: [f64; 3] = [0.0, 0.31, 0.77];
 /// Accuracy of left vectors.
 const ACCURACY: f64 = 1e-7;
@@ -123,7 +124,8 @@ impl<'a> ExternalSweep<'a> {
         Ok(best)
     }
 
-    /// Modes at all values, followed as branches, with their Hopf points; `each` is given those of every value that is solved. Collective.
+    /// Modes at all values, followed as branches, with their Hopf points; `each` is given those of every value that is
+    /// solved. Collective.
     ///
     /// # Errors
     /// See [`ExternalSweep::modes`] and [`track`]. What was found before an error is in the diagram.
@@ -151,8 +153,8 @@ impl<'a> ExternalSweep<'a> {
         Ok(track(&mut family, values, &options))
     }
 
-    /// Why modes cannot be followed from a value on; none where they can: left and right vectors are compared in the norm of M, which has to be
-    /// symmetric and positive. Collective.
+    /// Why modes cannot be followed from a value on; none where they can: left and right vectors are compared in the
+    /// norm of M, which has to be symmetric and positive. Collective.
     ///
     /// # Errors
     /// PETSc's and MUMPS's.

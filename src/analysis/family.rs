@@ -92,8 +92,8 @@ impl<F: FnMut(f64) -> Result<Snapshot>> Solutions for F {
     }
 }
 
-/// Modes are solved for up to this fraction beyond the band's end, and conjugates kept down to as far below zero: there modes come and
-/// go unnoticed.
+/// Modes are solved for up to this fraction beyond the band's end, and conjugates kept down to as far below zero: there
+/// modes come and go unnoticed.
 const BEYOND: f64 = 0.05;
 /// Accuracy of left vectors that explain a mode: sensitivities are as exact.
 const EXPLAINS: f64 = 1e-7;
@@ -114,8 +114,8 @@ pub fn tracking_options(band: [f64; 2]) -> Options {
 }
 
 impl Snapshot {
-    /// Left vectors of the modes that a sweep has just found, those of unstable modes to seven digits, and right vectors in the same form.
-    /// Collective.
+    /// Left vectors of the modes that a sweep has just found, those of unstable modes to seven digits, and right
+    /// vectors in the same form. Collective.
     ///
     /// # Errors
     /// See [`crate::stability::BandSolver::left_vectors`].
@@ -123,7 +123,8 @@ impl Snapshot {
         Snapshot::with(sweep, band, end, RECOGNISES)
     }
 
-    /// As [`Snapshot::new`], where only unstable modes need left vectors: those of the others are not computed. Collective.
+    /// As [`Snapshot::new`], where only unstable modes need left vectors: those of the others are not computed.
+    /// Collective.
     ///
     /// # Errors
     /// See [`crate::stability::BandSolver::left_vectors`].

@@ -37,8 +37,8 @@ pub struct FreeModesOptions {
     pub measured: Option<PathBuf>,
 }
 
-/// Finds the free, undamped modes of a part that [`FullModel::read_part`] has read, and compares them with measured ones. Shapes are written
-/// into the folder, which the root has. Collective.
+/// Finds the free, undamped modes of a part that [`FullModel::read_part`] has read, and compares them with measured
+/// ones. Shapes are written into the folder, which the root has. Collective.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for measured modes that cannot be read; PETSc's and MUMPS's; [`crate::Error::NotConverged`].

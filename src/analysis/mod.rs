@@ -2,6 +2,7 @@
 //!
 //! | call | from | to |
 //! |---|---|---|
+//! | [`model_summary`] | a full model | masses, contact pairs, mesh quality, loads, warnings |
 //! | [`statics`] | a structure | equilibria over the friction coefficient |
 //! | [`stability`] | a structure | complex modes of a band over the friction coefficient, branches and Hopf points |
 //! | [`reduce`] | a full model | a super-element and its file |
@@ -10,9 +11,11 @@
 //! | [`external_modes`] | matrices M, C, K of any program | modes of a band, along a parameter of them |
 //! | [`free_modes`] | one part of a model | free modes, compared with measured ones |
 //!
-//! Each takes the communicator, what is analysed, options whose defaults are the files', and an [`Observer`], and gives plain
-//! [`crate::results::Results`]. With [`Output`] the same call writes a results folder and can go on where an earlier run has ended.
+//! Each takes the communicator, what is analysed, options whose defaults are the files', and an [`Observer`], and gives
+//! plain [`crate::results::Results`]. With [`Output`] the same call writes a results folder and can go on where an
+//! earlier run has ended.
 
+mod check;
 mod checkpoint;
 mod explain;
 mod export;
@@ -30,6 +33,7 @@ mod statics;
 mod study;
 mod sweep;
 
+pub use check::{matrix_summary, model_summary};
 pub use explain::{explain, explain_full};
 pub use export::{ExportOptions, Exported, MatrixFormat, export};
 pub use external::{ExternalOptions, external_modes};

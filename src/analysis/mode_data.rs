@@ -19,8 +19,8 @@ pub(super) struct UnstableMode<'a> {
     pub shape: &'a Shape,
 }
 
-/// The modes within a band (Hz). Where the value was asked for, unstable ones get a shape on the whole surface and the sources that `explain`
-/// finds. Collective.
+/// The modes within a band (Hz). Where the value was asked for, unstable ones get a shape on the whole surface and the
+/// sources that `explain` finds. Collective.
 pub(super) fn mode_data(
     motion: &mut SurfaceMotion,
     found: &Band,

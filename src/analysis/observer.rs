@@ -62,8 +62,8 @@ pub trait Observer {
     /// Is called with everything that happens, on every rank.
     fn event(&mut self, event: Event);
 
-    /// The number of a signal that asks this rank to stop; the analysis ends after the value at hand, on all ranks, with
-    /// [`crate::Error::Interrupted`].
+    /// The number of a signal that asks this rank to stop; the analysis ends after the value at hand, on all ranks,
+    /// with [`crate::Error::Interrupted`].
     fn stop_signal(&mut self) -> Option<i32> {
         None
     }

@@ -20,7 +20,8 @@ const SUPER_ELEMENT: FileKind = FileKind { name: "a super-element of squeal", is
 /// What [`reduce`] is asked for.
 #[derive(Debug, Clone)]
 pub struct ReduceOptions {
-    /// Friction coefficient of the equilibrium about which the other contacts are linearised; the swept pairs' own where there is none.
+    /// Friction coefficient of the equilibrium about which the other contacts are linearised; the swept pairs' own
+    /// where there is none.
     pub friction: Option<f64>,
     /// Fixed-interface modes are kept below this, Hz; the model's own limit where there is none.
     pub limit: Option<f64>,
@@ -42,11 +43,12 @@ pub struct Reduction {
     pub seconds: f64,
 }
 
-/// Reduces a model with reference contacts ([`FullModel::reduce_contacts`]) about its equilibrium, and writes the super-element's file.
-/// Collective.
+/// Reduces a model with reference contacts ([`FullModel::reduce_contacts`]) about its equilibrium, and writes the
+/// super-element's file. Collective.
 ///
 /// # Errors
-/// [`Error::Input`] where the file may not be replaced or a part can move freely; [`Error::NotConverged`]; PETSc's, MUMPS's, the system's.
+/// [`Error::Input`] where the file may not be replaced or a part can move freely; [`Error::NotConverged`]; PETSc's,
+/// MUMPS's, the system's.
 pub fn reduce(
     comm: &Comm,
     model: &FullModel,

@@ -29,7 +29,8 @@ pub struct Output {
     pub force: bool,
     /// How the analysis was started, for the results.
     pub command: String,
-    /// What the numbers depend on beside structure and options, by name: an unfinished analysis with others does not go on.
+    /// What the numbers depend on beside structure and options, by name: an unfinished analysis with others does not go
+    /// on.
     pub identity: Vec<(&'static str, String)>,
 }
 
@@ -85,7 +86,8 @@ pub(super) struct ValueResult {
     pub snapshot: Option<Snapshot>,
 }
 
-/// Runs a job: opens the folder, assembles, does the work, writes. Where the work does not converge, what was found is kept. Collective.
+/// Runs a job: opens the folder, assembles, does the work, writes. Where the work does not converge, what was found is
+/// kept. Collective.
 ///
 /// # Errors
 /// Those of the work but [`Error::NotConverged`]; the system's.
@@ -201,8 +203,8 @@ impl Run<'_> {
         self.results.about.frictions.clone()
     }
 
-    /// Finds the equilibrium at a value; `each` makes of it what the analysis is for. Fields are written at values asked for. Gives the
-    /// snapshot that was made. Collective.
+    /// Finds the equilibrium at a value; `each` makes of it what the analysis is for. Fields are written at values
+    /// asked for. Gives the snapshot that was made. Collective.
     pub fn visit(
         &mut self,
         friction: f64,
@@ -298,7 +300,8 @@ impl Run<'_> {
         self.checkpoint.as_ref()
     }
 
-    /// Keeps the steps towards an equilibrium that was not reached, writes the state in which they ended, and says where that is.
+    /// Keeps the steps towards an equilibrium that was not reached, writes the state in which they ended, and says
+    /// where that is.
     fn give_up(&mut self, friction: f64, error: Error) -> Result<Error> {
         let steps = self.sweep.path().steps().to_vec();
         self.results.failure = Some(Failure { friction: Some(friction), steps, ..Failure::default() });

@@ -27,7 +27,8 @@ pub struct StabilityOptions {
     pub friction_values: Option<Vec<f64>>,
     /// Frequency band, Hz; the structure's own where there is none.
     pub band: Option<[f64; 2]>,
-    /// Whether modes are followed over the friction coefficient, which solves at more values to find where they become unstable.
+    /// Whether modes are followed over the friction coefficient, which solves at more values to find where they become
+    /// unstable.
     pub branches: bool,
     /// Whether a full model is reduced to a super-element at each value, whose modes are found.
     pub reduce_each: bool,
@@ -42,12 +43,13 @@ impl Default for StabilityOptions {
     }
 }
 
-/// Finds the complex modes of a band about the equilibrium at each value of the friction coefficient, `(lambda^2 M + lambda C + K) x = 0`,
-/// follows them over the values, and explains those that are unstable. Where a value does not converge, the analysis ends there, and
-/// [`Results::failure`] says why. The root's results are complete. Collective.
+/// Finds the complex modes of a band about the equilibrium at each value of the friction coefficient, `(lambda^2 M +
+/// lambda C + K) x = 0`, follows them over the values, and explains those that are unstable. Where a value does not
+/// converge, the analysis ends there, and [`Results::failure`] says why. The root's results are complete. Collective.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for values, a band or an output folder that cannot be used; [`crate::Error::Interrupted`]; PETSc's, MUMPS's and the system's.
+/// [`crate::Error::Input`] for values, a band or an output folder that cannot be used; [`crate::Error::Interrupted`];
+/// PETSc's, MUMPS's and the system's.
 pub fn stability(
     comm: &Comm,
     structure: &Structure,
@@ -67,7 +69,8 @@ pub fn stability(
 }
 
 impl StabilityOptions {
-    /// Super-elements that are made at each value have coordinates of their own, so that their modes cannot be compared.
+    /// Super-elements that are made at each value have coordinates of their own, so that their modes cannot be
+    /// compared.
     fn follows(&self, n_values: usize) -> bool {
         self.branches && !self.reduce_each && n_values > 1
     }

@@ -18,11 +18,13 @@ pub struct StaticOptions {
     pub output: Option<Output>,
 }
 
-/// Finds the equilibrium at each value of the friction coefficient of the swept pairs, each from the one before. Where a value does not
-/// converge, the analysis ends there, and [`Results::failure`] says why. The root's results are complete. Collective.
+/// Finds the equilibrium at each value of the friction coefficient of the swept pairs, each from the one before. Where
+/// a value does not converge, the analysis ends there, and [`Results::failure`] says why. The root's results are
+/// complete. Collective.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for values or an output folder that cannot be used; [`crate::Error::Interrupted`]; PETSc's, MUMPS's and the system's.
+/// [`crate::Error::Input`] for values or an output folder that cannot be used; [`crate::Error::Interrupted`]; PETSc's,
+/// MUMPS's and the system's.
 pub fn statics(
     comm: &Comm,
     structure: &Structure,

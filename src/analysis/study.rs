@@ -1,7 +1,7 @@
 //! A brake with full contact, with fewer contacts, and as super-elements, compared with each other.
 //!
-//! Every model is a part of the study with a results folder of its own. `parts.toml` keeps for each finished part what it depends on, so that a
-//! study that is run again makes only what is missing or out of date.
+//! Every model is a part of the study with a results folder of its own. `parts.toml` keeps for each finished part what
+//! it depends on, so that a study that is run again makes only what is missing or out of date.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,8 @@ pub struct StudyOptions {
     pub layouts: Vec<usize>,
     /// Reference pairs of the super-elements.
     pub super_element: usize,
-    /// Friction coefficient at which the super-element for all values is made; the swept pairs' own where there is none.
+    /// Friction coefficient at which the super-element for all values is made; the swept pairs' own where there is
+    /// none.
     pub reduced_at: Option<f64>,
     /// Folder of the study.
     pub folder: PathBuf,
@@ -42,8 +43,8 @@ pub struct StudyOptions {
     pub identity: String,
 }
 
-/// Makes the parts of a study that are missing or out of date, and compares all of them with full contact. Only the root gets the
-/// comparison. Collective.
+/// Makes the parts of a study that are missing or out of date, and compares all of them with full contact. Only the
+/// root gets the comparison. Collective.
 ///
 /// # Errors
 /// [`Error::Input`] for a model, layouts or a folder that cannot be used; those of [`stability`] and [`reduce`].

@@ -1,7 +1,7 @@
 //! Equilibria and modes at one friction coefficient after the other.
 //!
-//! [`Sweep`] owns what all values share: the system, its contact evaluation, the factors' analysis, the last equilibrium. Each
-//! call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
+//! [`Sweep`] owns what all values share: the system, its contact evaluation, the factors' analysis, the last
+//! equilibrium. Each call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
 
 use std::time::Instant;
 
@@ -45,7 +45,8 @@ pub struct Costs {
 }
 
 impl<'a> Sweep<'a> {
-    /// A sweep that starts from rest; with `friction_damping` the friction that turns with the velocity damps the modes. Collective.
+    /// A sweep that starts from rest; with `friction_damping` the friction that turns with the velocity damps the
+    /// modes. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -106,8 +107,8 @@ impl<'a> Sweep<'a> {
         look(&self.linearised.problem(self.system, contacts, tangent))
     }
 
-    /// Goes about it as for a large structure, whatever the size: with blocks of right-hand sides ([`EigenOptions::always_blocked`]) and factors in single
-    /// precision. Collective.
+    /// Goes about it as for a large structure, whatever the size: with blocks of right-hand sides
+    /// ([`EigenOptions::always_blocked`]) and factors in single precision. Collective.
     pub fn solve_as_large(&mut self) {
         self.solver = BandSolver::new(EigenOptions::always_blocked(), self.system.dofs.labels());
         self.path.set_precision(Precision::Single);
@@ -142,7 +143,8 @@ impl<'a> Sweep<'a> {
         self.linearised.c.as_ref().map(Matrix::duplicate).transpose()
     }
 
-    /// The damping about an equilibrium that is known by its displacements, where friction has its part in it. Collective.
+    /// The damping about an equilibrium that is known by its displacements, where friction has its part in it.
+    /// Collective.
     ///
     /// # Errors
     /// PETSc's.

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+
 use crate::comparison;
 use crate::output::comparison as tables;
 use crate::output::folder::Folder;
@@ -12,13 +14,30 @@ use crate::{Error, Result};
 use super::Shell;
 use crate::output::results_folder::RESULTS;
 
-/// Compares the results in two folders; the first rank does it all.
-pub fn run(shell: &Shell, places: [&Path; 2], output: Option<&Path>, force: bool) -> Result<()> {
-    shell.comm.agree(if shell.comm.is_root() { compare(shell, places, output, force) } else { Ok(()) })
+/// What `compare` takes.
+#[derive(Args)]
+#[group(skip)]
+pub struct Compare {
+    /// The folder of the results that are the reference
+    a: PathBuf,
+    /// The folder of those to be compared with it
+    b: PathBuf,
+    /// Folder for the comparison as text, table (CSV) and figure (SVG); without it, it is only printed
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Replace an earlier comparison
+    #[arg(long)]
+    force: bool,
 }
 
-fn compare(shell: &Shell, places: [&Path; 2], output: Option<&Path>, force: bool) -> Result<()> {
-    let folder = output.map(|output| Folder::open(output, force)).transpose()?;
+/// Compares the results in two folders, on the first rank.
+pub fn run(shell: &Shell, arguments: &Compare) -> Result<()> {
+    shell.comm.agree(if shell.comm.is_root() { compare(shell, arguments) } else { Ok(()) })
+}
+
+fn compare(shell: &Shell, Compare { a, b, output, force }: &Compare) -> Result<()> {
+    let places = [a.as_path(), b.as_path()];
+    let folder = output.as_ref().map(|output| Folder::open(output, *force)).transpose()?;
     let [a, b] = [read(places[0])?, read(places[1])?];
     let comparison = comparison::compare(&a, &b).map_err(|error| of_both(places, error))?;
     let names = [name(places[0], &a), name(places[1], &b)];
@@ -29,7 +48,7 @@ fn compare(shell: &Shell, places: [&Path; 2], output: Option<&Path>, force: bool
         folder.write("comparison.svg", |out| out.write_all(comparison_plot::errors(&comparison).as_bytes()))?;
         folder.finish()?;
     }
-    shell.tell(&text, &comparison)
+    shell.print(&text, &comparison)
 }
 
 /// The results in a folder, or of the file itself.

@@ -50,7 +50,7 @@ pub fn run(shell: &Shell, run: &Run, format: Format, part: Option<&str>) -> Resu
     });
     comm.agree(written)?;
     let (friction, n) = (exported.friction, exported.n_dofs);
-    shell.tell(&text, &ExportDocument { folder: place.display().to_string(), friction, equations: n })
+    shell.print(&text, &ExportDocument { folder: place.display().to_string(), friction, equations: n })
 }
 
 fn text(exported: &Exported, place: &Path) -> String {

@@ -37,9 +37,9 @@ use values::FrictionValues;
 ///
 /// Runs alone or under mpirun. Results go to one folder: tables as CSV, shapes as VTU for ParaView.
 ///
-/// A run that is killed, or ended by Ctrl-C, goes on with the same command.
+/// A run that is killed, or stopped by Ctrl-C, continues when the same command is given again.
 ///
-/// Exit codes: 0 done, 2 the input cannot be analysed, 3 no convergence, 130 ended by Ctrl-C, 1 anything else.
+/// Exit codes: 0 done, 2 the input cannot be analysed, 3 no convergence, 130 stopped by Ctrl-C, 1 anything else.
 #[derive(Parser)]
 #[command(name = "squeal", version, max_term_width = 110)]
 struct Arguments {
@@ -48,33 +48,31 @@ struct Arguments {
     /// An option for PETSc, SLEPc or MUMPS, e.g. --petsc "-equilibrium_snes_monitor" (may be repeated)
     #[arg(long, global = true, value_name = "OPTION", allow_hyphen_values = true)]
     petsc: Vec<String>,
-    /// Tell results as one JSON document on standard output, errors as one on standard error
+    /// Print results as one JSON document on standard output, errors as one on standard error
     #[arg(long, global = true)]
     json: bool,
 }
 
-/// What every command is run with.
+/// What every command runs with.
 struct Shell<'a> {
     comm: &'a Comm,
     /// Options for PETSc as typed.
     petsc: &'a [String],
-    /// Whether results are told as JSON.
+    /// Whether results are printed as JSON.
     json: bool,
-    /// Whether nothing is told: where a command is part of another one.
-    silent: bool,
 }
 
 impl Shell<'_> {
-    /// Tells a text, or the document in its place. The root does. That a reader has seen enough (`squeal check model.toml | head`) is no
-    /// error.
+    /// Prints a text, or the document in its place, on the root. That a reader has seen enough (`squeal check
+    /// model.toml | head`) is no error.
     ///
     /// # Errors
     /// The system's.
-    pub fn tell(&self, text: &str, document: &impl Serialize) -> Result<()> {
-        match (self.comm.is_root() && !self.silent, self.json) {
+    pub fn print(&self, text: &str, document: &impl Serialize) -> Result<()> {
+        match (self.comm.is_root(), self.json) {
             (false, _) => Ok(()),
-            (true, true) => tell(&json::text(document)),
-            (true, false) => tell(text),
+            (true, true) => print(&json::text(document)),
+            (true, false) => print(text),
         }
     }
 }
@@ -86,7 +84,7 @@ impl Shell<'_> {
     /// The system's; [`Error::NotConverged`].
     fn print_results(&self, results: &Results, place: &Path, summary: fn(&Results, &str) -> String) -> Result<()> {
         let place = place.display().to_string();
-        self.tell(&summary(results, &place), &json::ResultsDocument::new(results, &place))?;
+        self.print(&summary(results, &place), &json::ResultsDocument::new(results, &place))?;
         self.comm.agree(match &results.failure {
             Some(failure) => Err(Error::not_converged(failure.reason.clone())),
             None => Ok(()),
@@ -95,7 +93,7 @@ impl Shell<'_> {
 
     /// Writes warnings to standard error, a line each: as text, or as JSON like errors.
     pub fn warn(&self, warnings: &[String]) {
-        for warning in warnings.iter().filter(|_| self.comm.is_root() && !self.silent) {
+        for warning in warnings.iter().filter(|_| self.comm.is_root()) {
             let _ = writeln!(io::stderr(), "{}", warning_line(warning, self.json));
         }
     }
@@ -108,10 +106,10 @@ fn warning_line(warning: &str, as_json: bool) -> String {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Tell what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
+    /// Print what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
     Check {
         #[command(flatten)]
-        check: Check,
+        check: check::Check,
     },
     /// Find the static equilibrium under load, contact and friction
     Static {
@@ -121,7 +119,7 @@ enum Command {
     /// Reduce a model to a super-element with a few hundred coordinates, which squeals like the whole
     Reduce {
         #[command(flatten)]
-        reduce: Reduce,
+        reduce: reduce::Reduce,
     },
     /// Write M, C and K about an equilibrium, with what contact has in K and the meaning of each row
     Export {
@@ -130,11 +128,11 @@ enum Command {
         /// What the files are to be
         #[arg(long, value_enum, default_value = "mtx")]
         format: export::Format,
-        /// This part alone, free: held, touched and loaded by nothing
+        /// This part alone: unconstrained, without contact and load
         #[arg(long, value_name = "NAME", conflicts_with_all = ["friction", "contacts", "law"])]
         part: Option<String>,
     },
-    /// Find the modes of given matrices M, C, K, along a parameter of them, or of a free part of a model
+    /// Find the modes of external matrices M, C, K, along a parameter of them, or of a free part of a model
     Modes {
         #[command(flatten)]
         modes: modes::Modes,
@@ -144,105 +142,25 @@ enum Command {
         #[command(flatten)]
         stability: stability::Stability,
     },
-    /// Make a page of a stability run's results: does it squeal, where, why, what would help; figures, moving shapes, tables
+    /// Make a page of a stability run's results: whether, where and why it squeals, sensitivities, figures, moving
+    /// shapes, tables
     Report {
         #[command(flatten)]
         report: report::Report,
     },
-    /// Hold reduced models against full contact: contact layouts and super-elements, their sizes, seconds and errors
+    /// Compare reduced models with full contact: contact layouts and super-elements, their sizes, seconds and errors
     ///
-    /// Each model has a folder of its own, as `squeal stability` makes it. Run again, a study makes only what is missing or out of date.
+    /// Each model has a folder of its own, as `squeal stability` makes it. Run again, a study makes only what is
+    /// missing or out of date.
     Study {
         #[command(flatten)]
-        study: Study,
+        study: study::Study,
     },
     /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
     Compare {
-        /// The folder of the results that are the reference
-        a: PathBuf,
-        /// The folder of those to be judged
-        b: PathBuf,
-        /// Folder for the comparison as text, table (CSV) and figure (SVG); without it, it is only told
-        #[arg(short, long, value_name = "FOLDER")]
-        output: Option<PathBuf>,
-        /// Replace an earlier comparison
-        #[arg(long)]
-        force: bool,
+        #[command(flatten)]
+        compare: compare::Compare,
     },
-}
-
-/// What `check` takes.
-#[derive(Args)]
-#[group(skip)]
-struct Check {
-    /// The model file
-    model: PathBuf,
-    /// Show how so many reference pairs would be spread over the sliding contacts
-    #[arg(long, value_name = "N")]
-    contacts: Option<usize>,
-    /// A VTU file that shows the cells of the reference nodes (with --contacts)
-    #[arg(short, long, value_name = "FILE", requires = "contacts")]
-    output: Option<PathBuf>,
-    /// Replace an earlier VTU file
-    #[arg(long, requires = "output")]
-    force: bool,
-}
-
-/// What `reduce` takes.
-#[derive(Args)]
-#[group(skip)]
-struct Reduce {
-    /// The model file
-    model: PathBuf,
-    /// So many reference pairs over the sliding contacts, e.g. 104 (default: the model file's)
-    #[arg(long, value_name = "N")]
-    contacts: Option<usize>,
-    /// Friction at which the other contacts are linearised (default: the swept contacts' own)
-    #[arg(long, value_name = "MU", value_parser = values::single, allow_hyphen_values = true)]
-    friction: Option<f64>,
-    /// Keep fixed-interface modes up to this frequency in Hz (default: the model file's reduction, else twice its band)
-    #[arg(long, value_name = "HZ", value_parser = values::frequency, allow_hyphen_values = true)]
-    limit: Option<f64>,
-    /// The super-element's file (default: the model file's name with .se.h5)
-    #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// Replace an earlier file
-    #[arg(long)]
-    force: bool,
-}
-
-/// What `study` takes.
-#[derive(Args)]
-#[group(skip)]
-struct Study {
-    /// The model file
-    model: PathBuf,
-    /// Friction of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the model file's)
-    #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
-    friction: Option<FrictionValues>,
-    /// Contact layouts: so many reference pairs over the sliding contacts
-    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "12,44,104,212")]
-    layouts: Vec<usize>,
-    /// Reference pairs of the super-elements
-    #[arg(long, value_name = "N", default_value = "104")]
-    super_element: usize,
-    /// Friction at which the super-element for all frictions is made (default: the swept contacts' own)
-    #[arg(long, value_name = "MU", value_parser = values::single, allow_hyphen_values = true)]
-    reduced_at: Option<f64>,
-    /// Folder of the study (default: the model file's name with -study)
-    #[arg(short, long, value_name = "FOLDER")]
-    output: Option<PathBuf>,
-    /// Tell of each finished friction on a line of standard error, with the time left, and twice a minute of what is being done (a terminal shows a
-    /// bar anyway)
-    #[arg(short, long)]
-    verbose: bool,
-}
-
-impl Study {
-    fn place(&self) -> PathBuf {
-        let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
-        self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-study")))
-    }
 }
 
 /// What all computing commands take.
@@ -251,10 +169,11 @@ impl Study {
 struct Run {
     /// The model file, or the file of a super-element
     model: PathBuf,
-    /// Friction of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the model file's)
+    /// Friction coefficient of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the
+    /// model file's)
     #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
     friction: Option<FrictionValues>,
-    /// So many reference pairs in place of the contact points of the sliding contacts, e.g. 104
+    /// Number of reference pairs in place of the contact points of the sliding contacts, e.g. 104
     #[arg(long, value_name = "N")]
     contacts: Option<usize>,
     /// Of a super-element: the normal law of its contacts, linear:K or cubic:K1,K3 in N/m and N/m3
@@ -269,8 +188,8 @@ struct Run {
     /// Replace the results of an earlier run, and what another command or model has left unfinished
     #[arg(long)]
     force: bool,
-    /// Tell of each finished friction on a line of standard error, with the time left, and twice a minute of what is being done (a terminal shows a
-    /// bar anyway)
+    /// Print a line for each finished value on standard error, with the time left, and one twice a minute for what is
+    /// being done (a terminal shows a bar anyway)
     #[arg(short, long)]
     verbose: bool,
 }
@@ -308,15 +227,15 @@ impl Run {
 pub fn main() -> i32 {
     let (arguments, options) = match arguments() {
         Ok(parsed) => parsed,
-        Err(usage) => return tell_usage(&usage),
+        Err(usage) => return print_usage(&usage),
     };
     match Session::start(&options) {
         Ok(comm) => {
-            let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json, silent: false };
+            let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json };
             guard_as(&comm, shell.json, || run(&arguments.command, &shell))
         }
         Err(error) => {
-            tell_error("error", &error, arguments.json);
+            print_error("error", &error, arguments.json);
             error.exit_code()
         }
     }
@@ -333,14 +252,15 @@ fn arguments() -> std::result::Result<(Arguments, PetscOptions), clap::Error> {
     }
 }
 
-/// Tells what is wrong with the arguments, or the help asked for. Once, also where a launcher has started several processes: which
-/// of them is the first only MPI knows, and ending it keeps a launcher from killing that one before it has spoken.
-fn tell_usage(usage: &clap::Error) -> i32 {
+/// Prints what is wrong with the arguments, or the help asked for. Once, also where a launcher has started several
+/// processes: only MPI gives the first of them, and its end keeps a launcher from killing that one before it has
+/// printed.
+fn print_usage(usage: &clap::Error) -> i32 {
     const LAUNCHED: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"];
     let launched = LAUNCHED.iter().any(|name| std::env::var_os(name).is_some());
     let comm = if launched { Session::start(&[]).ok() } else { None };
     if comm.as_ref().is_none_or(Comm::is_root) {
-        // Nobody is left to be told that nobody reads.
+        // An error here has no place where it could be printed.
         let _ = usage.print();
     }
     usage.exit_code()
@@ -356,12 +276,12 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::Report { report } => report::run(shell, report),
         Command::Stability { stability } => stability::run(shell, stability),
         Command::Study { study } => study::run(shell, study),
-        Command::Compare { a, b, output, force } => compare::run(shell, [a, b], output.as_deref(), *force),
+        Command::Compare { compare } => compare::run(shell, compare),
     }
 }
 
-/// Runs what all ranks do together and gives the exit code. An error is told once; whatever befalls one rank alone, be it a
-/// panic, ends all of them, so that none waits for ever.
+/// Runs what all ranks do together and gives the exit code. An error is printed once; an error or panic of one rank
+/// alone ends all of them, so that none waits for ever.
 pub fn guard(comm: &Comm, work: impl FnOnce() -> Result<()>) -> i32 {
     guard_as(comm, false, work)
 }
@@ -377,16 +297,16 @@ fn guard_as(comm: &Comm, json: bool, work: impl FnOnce() -> Result<()>) -> i32 {
     }
 }
 
-/// Tells the error once and ends all ranks. Input, convergence and signals are judged alike everywhere, so that ranks end in order;
-/// anything else may have happened on this rank alone, so that the others are ended.
+/// Prints the error once and ends all ranks. Input, convergence and signals are judged alike everywhere, so that ranks
+/// end in order; anything else may have happened on this rank alone, so that the others are ended.
 fn end(comm: &Comm, error: &Error, json: bool) -> i32 {
     let together = error.is_of_all_ranks();
     if comm.is_root() {
-        tell_error("error", error, json);
+        print_error("error", error, json);
     } else if !together {
-        // The root may be about to say the same.
+        // The root may be about to print the same.
         std::thread::sleep(Duration::from_millis(500));
-        tell_error(&format!("error on rank {}", comm.rank()), error, json);
+        print_error(&format!("error on rank {}", comm.rank()), error, json);
     }
     if comm.size() > 1 && !together {
         comm.abort(error.exit_code());
@@ -394,19 +314,19 @@ fn end(comm: &Comm, error: &Error, json: bool) -> i32 {
     error.exit_code()
 }
 
-/// Writes to standard error, as far as anyone listens.
-fn tell_error(what: &str, error: &Error, as_json: bool) {
+/// Writes to standard error, as far as it can be written.
+fn print_error(what: &str, error: &Error, as_json: bool) {
     let text = match (as_json, error.kind()) {
         (true, _) => json::line(&Failed { error: error.to_string(), exit_code: error.exit_code() }),
-        // That a run was stopped is no mistake.
+        // That a run was stopped is no error.
         (false, crate::ErrorKind::Interrupted { .. }) => error.to_string(),
         (false, _) => format!("{what}: {error}"),
     };
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Writes to standard output, as far as anyone reads.
-fn tell(text: &str) -> Result<()> {
+/// Writes to standard output, as far as it is read.
+fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::io("standard output".as_ref())(error)),

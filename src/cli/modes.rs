@@ -41,11 +41,11 @@ pub struct Modes {
     /// Values of a family's parameter: one value, a list or a range FROM:TO:STEP
     #[arg(long, value_name = "VALUES", value_parser = values::values, allow_hyphen_values = true)]
     parameter: Option<Values>,
-    /// Of a model the free, undamped modes of this part alone, held by nothing
+    /// Of a model the free, undamped modes of this part alone, unconstrained
     #[arg(long, value_name = "NAME", requires = "subject")]
     part: Option<String>,
-    /// Compare a part's modes with measured ones: CSV with columns x, y, z (in the mesh's unit), direction (x, -y, or "nx ny nz"), and one
-    /// for each mode under its frequency in Hz
+    /// Compare a part's modes with measured ones: CSV with columns x, y, z (in the mesh's unit), direction (x, -y, or
+    /// "nx ny nz"), and one for each mode under its frequency in Hz
     #[arg(long, value_name = "CSV", requires = "part")]
     measured: Option<PathBuf>,
     /// Write the shapes of all modes of external matrices, shapes.csv
@@ -60,7 +60,7 @@ pub struct Modes {
     /// Replace the results of an earlier run
     #[arg(long)]
     force: bool,
-    /// Tell of each finished value on a line of standard error
+    /// Print a line for each finished value on standard error
     #[arg(short, long)]
     verbose: bool,
 }
@@ -86,7 +86,7 @@ fn of_part(shell: &Shell, arguments: &Modes, model: &Path, part: &str) -> Result
     watch.finish();
     let text = output::free_modes::summary(&found, &place.display().to_string());
     comm.agree(folder.map_or(Ok(()), |folder| output::free_modes::write(&found, folder, &text)))?;
-    shell.tell(&text, &FreeModesDocument::from(&found))
+    shell.print(&text, &FreeModesDocument::from(&found))
 }
 
 fn of_matrices(shell: &Shell, arguments: &Modes) -> Result<()> {
@@ -106,7 +106,7 @@ fn of_matrices(shell: &Shell, arguments: &Modes) -> Result<()> {
     let text = output::external::summary(&results, &place.display().to_string());
     let folder = Folder::open_empty(comm, &place, arguments.force)?;
     comm.agree(folder.map_or(Ok(()), |folder| output::external::write(&results, folder, &text)))?;
-    shell.tell(&text, &ExternalDocument::from(&results))
+    shell.print(&text, &ExternalDocument::from(&results))
 }
 
 impl Modes {

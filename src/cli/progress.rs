@@ -1,4 +1,5 @@
-//! What a person sees of long work: a bar where standard error is a terminal, else lines if they were asked for, else nothing.
+//! What a person sees of long work: a bar where standard error is a terminal, else lines if they were asked for, else
+//! nothing.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};

@@ -39,16 +39,16 @@ pub struct Report {
 }
 
 pub fn run(shell: &Shell, report: &Report) -> Result<()> {
-    let mut told = None;
-    let outcome = if shell.comm.is_root() { write(report).map(|what| told = Some(what)) } else { Ok(()) };
+    let mut written = None;
+    let outcome = if shell.comm.is_root() { write(report).map(|what| written = Some(what)) } else { Ok(()) };
     shell.comm.agree(outcome)?;
-    let Some((headline, files)) = told else { return Ok(()) };
+    let Some((headline, files)) = written else { return Ok(()) };
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let list: String = names.iter().map(|name| format!("  {name}\n")).collect();
-    shell.tell(&format!("{headline}\n{list}"), &Reported { headline, files: names })
+    shell.print(&format!("{headline}\n{list}"), &Reported { headline, files: names })
 }
 
-/// Writes all that is asked for, and tells the first sentence and the files that a person opens.
+/// Writes all that is asked for, and gives the first sentence and the files that a person opens.
 fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     let source = if report.results.is_dir() { report.results.join(RESULTS) } else { report.results.clone() };
     let home = source.parent().unwrap_or(Path::new(""));
@@ -58,7 +58,7 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     let results = file::read(&source)?;
     if results.about.band[1] <= 0.0 {
         return Err(Error::input(format!(
-            "{} has no modes: squeal report tells of squeal stability",
+            "{} has no modes: squeal report shows results of squeal stability",
             source.display()
         )));
     }

@@ -23,7 +23,8 @@ pub struct Stability {
     /// Reduce the model to a super-element at each friction coefficient, and find the modes of that
     #[arg(long)]
     reduce_each: bool,
-    /// Do not follow the modes over the friction coefficient, which solves at more values to find where they become unstable
+    /// Do not follow the modes over the friction coefficient, which solves at more values to find where they become
+    /// unstable
     #[arg(long)]
     no_branches: bool,
 }

@@ -141,8 +141,8 @@ pub struct Landing {
     pub gap: f64,
 }
 
-/// Projects points, each with the outward normal of the surface that it lies on (any length), on the closest facets of `master`
-/// that face them; none where no facet does.
+/// Projects points, each with the outward normal of the surface that it lies on (any length), on the closest facets of
+/// `master` that face them; none where no facet does.
 pub fn land(points: &[([f64; 3], [f64; 3])], master: &Surface, nodes: &[[f64; 3]]) -> Vec<Option<Landing>> {
     let target = Target::new(master, nodes);
     let of = |(x, outward): &([f64; 3], [f64; 3])| {

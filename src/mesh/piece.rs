@@ -1,8 +1,8 @@
 //! What a rank has of a mesh.
 //!
-//! Its own nodes, all tetrahedra that touch one of them, those tetrahedra's nodes, and everything that has a name: surfaces and node sets with
-//! their nodes are on every rank, as contact, loads and supports are. They grow with the surface of the bodies, the rest with their
-//! volume.
+//! Its own nodes, all tetrahedra that touch one of them, those tetrahedra's nodes, and everything that has a name:
+//! surfaces and node sets with their nodes are on every rank, as contact, loads and supports are. They grow with the
+//! surface of the bodies, the rest with their volume.
 
 use std::ops::Range;
 

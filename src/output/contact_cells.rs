@@ -1,7 +1,7 @@
 //! The cells of reference nodes, drawn on the slave surfaces.
 //!
-//! A contact point stands for a third of each facet around it: the triangle of the facet's edge and centre. So the triangles of a cell
-//! have exactly its area (on plane facets).
+//! A contact point stands for a third of each facet around it: the triangle of the facet's edge and centre. So the
+//! triangles of a cell have exactly its area (on plane facets).
 
 use std::collections::HashMap;
 

@@ -204,8 +204,8 @@ fn modes_table(out: &mut dyn io::Write, results: &ExternalResults) -> io::Result
     rows::write_csv_over(out, &results.parameter, results.values.iter().flat_map(with_value))
 }
 
-/// Shapes as CSV, a line for each dof: `row`, `node, dof` where rows have names, and `re_1, im_1, re_2, ...` of the modes, the largest
-/// entry of each of modulus 1.
+/// Shapes as CSV, a line for each dof: `row`, `node, dof` where rows have names, and `re_1, im_1, re_2, ...` of the
+/// modes, the largest entry of each of modulus 1.
 fn shapes_table(out: &mut dyn io::Write, results: &ExternalResults, value: &ExternalValue) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let names: &[&str] = if results.names.is_some() { &["node", "dof"] } else { &[] };

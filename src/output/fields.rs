@@ -16,7 +16,8 @@ use super::vtu::{Array, Cells, Grid, Values};
 /// Name, without its ending, of the file of the displacement at which a solve gave up.
 const LAST_STATE: &str = "last_state";
 
-/// Writes fields of one system into a folder, which the root has; without a folder nothing is written. All methods are collective.
+/// Writes fields of one system into a folder, which the root has; without a folder nothing is written. All methods are
+/// collective.
 #[derive(Clone, Copy)]
 pub struct FieldWriter<'a> {
     /// What was analysed.
@@ -28,7 +29,8 @@ pub struct FieldWriter<'a> {
 }
 
 impl FieldWriter<'_> {
-    /// Writes displacements, stresses and contact results of an equilibrium: `equilibrium_muMU.vtu`, `contact_muMU.vtu`.
+    /// Writes displacements, stresses and contact results of an equilibrium: `equilibrium_muMU.vtu`,
+    /// `contact_muMU.vtu`.
     ///
     /// # Errors
     /// The system's, with the file's path; PETSc's.
@@ -40,7 +42,8 @@ impl FieldWriter<'_> {
         }
     }
 
-    /// Writes the real and imaginary part of a mode, given with its number in the band (from 1) and its shape on the outer surface.
+    /// Writes the real and imaginary part of a mode, given with its number in the band (from 1) and its shape on the
+    /// outer surface.
     ///
     /// # Errors
     /// The system's, with the file's path; PETSc's.

@@ -21,8 +21,8 @@ pub fn write_file(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Res
     body(&mut out).and_then(|()| out.flush()).map_err(Error::io(path))
 }
 
-/// Writes a file that appears under its name when it is complete. Where that fails, what was there before is untouched. A symbolic link
-/// stays; the file behind it is replaced.
+/// Writes a file that appears under its name when it is complete. Where that fails, what was there before is untouched.
+/// A symbolic link stays; the file behind it is replaced.
 ///
 /// # Errors
 /// The system's, with the file's path.

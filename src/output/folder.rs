@@ -1,7 +1,7 @@
 //! The folder of a run: it appears as a whole or not at all, and replaces only what an earlier run wrote.
 //!
-//! Until then its files are in a hidden neighbour, `.NAME.unfinished`, which a run that is killed leaves behind and the next run to the
-//! same place finds. What a run needs in order to resume is in that neighbour's folder [`RESUME`].
+//! Until then its files are in a hidden neighbour, `.NAME.unfinished`, which a run that is killed leaves behind and the
+//! next run to the same place finds. What a run needs in order to resume is in that neighbour's folder [`RESUME`].
 
 use std::cell::Cell;
 use std::fs::{self, File, TryLockError};
@@ -105,11 +105,12 @@ impl Folder {
         write_file(&self.draft.join(name), body)
     }
 
-    /// Gives the folder its name, in place of an earlier run's. What has come to that place since the run began is not lost: the
-    /// results stay in the neighbour.
+    /// Gives the folder its name, in place of an earlier run's. What has come to that place since the run began is not
+    /// lost: the results stay in the neighbour.
     ///
     /// # Errors
-    /// [`Error::Input`] where the place is no longer free, with where the results are; the system's, with the folder's path.
+    /// [`Error::Input`] where the place is no longer free, with where the results are; the system's, with the folder's
+    /// path.
     pub fn finish(mut self) -> Result<()> {
         self.list()?;
         self.keep();

@@ -7,8 +7,8 @@ use super::tables;
 use crate::results::{About, ModeData, Part, Results, Status, Value};
 use crate::tracking::Branch;
 
-/// What was analysed, each friction value with its contact pairs and modes, branches and Hopf points where modes were followed, the verdict,
-/// warnings, and the folder of the results.
+/// What was analysed, each friction value with its contact pairs and modes, branches and Hopf points where modes were
+/// followed, the verdict, warnings, and the folder of the results.
 #[derive(Serialize)]
 pub struct ResultsDocument<'a> {
     about: AboutDocument<'a>,

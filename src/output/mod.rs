@@ -1,4 +1,5 @@
-//! Results on disk and on screen: a run's folder, tables as text and CSV, JSON documents, VTU files. Reads results, computes nothing of its own.
+//! Results on disk and on screen: a run's folder, tables as text and CSV, JSON documents, VTU files. Reads results,
+//! computes nothing of its own.
 
 pub mod branches;
 pub mod comparison;

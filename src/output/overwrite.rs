@@ -1,7 +1,8 @@
 //! What may be overwritten: the one place that decides it, for files and for results folders.
 //!
-//! Without `--force` nothing is. With `--force` a file is replaced where it is of the kind that the command writes, and a results folder
-//! where it contains only the files that its mark lists. So a wrong name after `-o` never costs a model, a mesh or a thesis.
+//! Without `--force` nothing is. With `--force` a file is replaced where it is of the kind that the command writes, and
+//! a results folder where it contains only the files that its mark lists. So a wrong name after `-o` never costs a
+//! model, a mesh or a thesis.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -56,7 +57,8 @@ pub fn may_write_file(path: &Path, kind: &FileKind, force: bool) -> Result<()> {
 /// Whether a run may write its results folder to `target`.
 ///
 /// # Errors
-/// [`Error::Input`] where something is there, unless it is a results folder that contains nothing else and `force` is set.
+/// [`Error::Input`] where something is there, unless it is a results folder that contains nothing else and `force` is
+/// set.
 pub fn may_write_folder(target: &Path, force: bool) -> Result<()> {
     let place = target.display();
     let refuse = |reason: &str| Err(Error::input(format!("{place} {reason}")));
@@ -105,7 +107,8 @@ pub fn listed(folder: &Path) -> Vec<String> {
     fs::read_to_string(folder.join(MARK)).unwrap_or_default().lines().map(String::from).collect()
 }
 
-/// All files, links and empty folders below a folder, as paths from there, sorted; without what a run needs in order to resume.
+/// All files, links and empty folders below a folder, as paths from there, sorted; without what a run needs in order to
+/// resume.
 ///
 /// # Errors
 /// The system's, with the path.

@@ -12,8 +12,8 @@ use crate::tracking::Diagram;
 /// Name of the results file.
 pub const RESULTS: &str = "results.h5";
 
-/// Writes the results file, the tables that the results have rows for, and the summary, which ends with what went wrong. Not
-/// collective.
+/// Writes the results file, the tables that the results have rows for, and the summary, which ends with what went
+/// wrong. Not collective.
 ///
 /// # Errors
 /// The system's and HDF5's, with the file's path.

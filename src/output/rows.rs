@@ -1,4 +1,5 @@
-//! Rows of tables. Their fields are the columns of the CSV files and the keys of the JSON documents, with units in their names.
+//! Rows of tables. Their fields are the columns of the CSV files and the keys of the JSON documents, with units in
+//! their names.
 
 use std::f64::consts::TAU;
 use std::io::{Error, Result, Write};
@@ -66,8 +67,9 @@ pub struct IterationRow<'a> {
     changes: usize,
 }
 
-/// A part, connector or contact pair in a mode: its shares of the energies, its energy input and dissipation as contributions to the growth
-/// rate, and how growth rate and frequency (Hz) follow its friction coefficient (by 1) and a factor on its damping, stiffness and mass.
+/// A part, connector or contact pair in a mode: its shares of the energies, its energy input and dissipation as
+/// contributions to the growth rate, and how growth rate and frequency (Hz) follow its friction coefficient (by 1) and
+/// a factor on its damping, stiffness and mass.
 #[derive(Default, Serialize)]
 pub struct SourceRow<'a> {
     kind: &'a str,
@@ -117,8 +119,8 @@ pub struct BranchRow {
     pub point: PointRow,
 }
 
-/// A Hopf point between two solved values. `becomes` is `unstable` or `stable` as the parameter rises; `partner` and its `share` are those of
-/// the branch that couples, where one does.
+/// A Hopf point between two solved values. `becomes` is `unstable` or `stable` as the parameter rises; `partner` and
+/// its `share` are those of the branch that couples, where one does.
 #[derive(Default, Serialize)]
 pub struct HopfRow {
     friction: f64,

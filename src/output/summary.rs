@@ -24,7 +24,8 @@ pub fn statics(results: &Results, place: &str) -> String {
     format!("{}\n{}\nresults in {place}\n", results.about.title, details::text(results))
 }
 
-/// What is in the results folder: pictures of equilibria, of unstable modes, explanations, branches where there are any.
+/// What is in the results folder: pictures of equilibria, of unstable modes, explanations, branches where there are
+/// any.
 fn files(results: &Results, place: &str) -> String {
     const TABLES: [(&str, &str); 6] = [
         ("summary.txt", "this text"),

@@ -99,7 +99,8 @@ impl Grid<'_> {
 }
 
 impl Grid<'_> {
-    /// Writes the file (`.pvtu`) that names the pieces of a grid that several ranks have written, each with arrays like this grid's.
+    /// Writes the file (`.pvtu`) that names the pieces of a grid that several ranks have written, each with arrays like
+    /// this grid's.
     ///
     /// # Errors
     /// The writer's.

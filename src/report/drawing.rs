@@ -1,7 +1,7 @@
 //! What the page draws by itself, as packed numbers: the outer surface, shapes on it, and contact faces laid flat.
 //!
-//! Numbers are little-endian integers in base64: places on a grid of 65 536 steps across the surface, displacements in steps of 1/32 767
-//! of the largest. That is finer than a screen shows, and a quarter of the numbers written out.
+//! Numbers are little-endian integers in base64: places on a grid of 65 536 steps across the surface, displacements in
+//! steps of 1/32 767 of the largest. That is finer than a screen shows, and a quarter of the numbers written out.
 
 use std::collections::BTreeMap;
 
@@ -70,7 +70,8 @@ pub struct Shapes {
     pub omitted: usize,
 }
 
-/// Shapes of the unstable modes: of each instability the strongest in any case, then the others, strong ones first, as far as there is room.
+/// Shapes of the unstable modes: of each instability the strongest in any case, then the others, strong ones first, as
+/// far as there is room.
 pub fn shapes(findings: &Findings) -> Shapes {
     let has_shape = |place: &&Place| findings.mode(**place).shape.is_some();
     let mut others: Vec<Place> =
@@ -155,8 +156,8 @@ fn face(findings: &Findings, pair: usize) -> Option<Face> {
     })
 }
 
-/// Two axes of the plane that a face lies in on the whole, as one sees it who looks at the face: sideways that global axis which lies in
-/// it most. A face of single points is seen along z.
+/// Two axes of the plane that a face lies in on the whole, as one sees it who looks at the face: sideways that global
+/// axis which lies in it most. A face of single points is seen along z.
 fn mean_plane(nodes: &[[f64; 3]], triangles: &[[u32; 3]]) -> ([f64; 3], [f64; 3]) {
     let mut normal = [0.0; 3];
     for triangle in triangles {

@@ -1,7 +1,8 @@
-//! What the results say about squeal: the instabilities, each with where it begins, the modes that it is made of, and its partner.
+//! What the results say about squeal: the instabilities, each with where it begins, the modes that it is made of, and
+//! its partner.
 //!
-//! An instability is a branch with a growing mode. Where modes were not followed over friction, growing modes of neighbouring
-//! frictions belong together when their frequencies lie within 2 % of each other.
+//! An instability is a branch with a growing mode. Where modes were not followed over friction, growing modes of
+//! neighbouring frictions belong together when their frequencies lie within 2 % of each other.
 
 use std::f64::consts::TAU;
 
@@ -55,13 +56,15 @@ pub struct Range {
 pub enum End {
     /// A Hopf point: the growth rate passes zero there.
     Hopf(f64),
-    /// The mode grows here, and does not at the neighbouring value (the second number); what lies in between is unknown.
+    /// The mode grows here, and does not at the neighbouring value (the second number); what lies in between is
+    /// unknown.
     Seen(f64, f64),
     /// The mode grows here, and no value lies beyond.
     Edge(f64),
 }
 
-/// Frequencies of one instability at neighbouring frictions differ by less than this, relative; only where modes were not followed.
+/// Frequencies of one instability at neighbouring frictions differ by less than this, relative; only where modes were
+/// not followed.
 const SAME: f64 = 0.02;
 /// Eigenvalues of the same mode in the diagram and among the values agree to this, relative.
 const ROUNDING: f64 = 1e-9;

@@ -1,5 +1,6 @@
-//! The report as one HTML page: words, figures, and the data as JSON for the scripts of `assets/`. It loads nothing from the network, and the
-//! browser enforces that: a content security policy admits this page's own style and script, by their digests, and nothing else.
+//! The report as one HTML page: words, figures, and the data as JSON for the scripts of `assets/`. It loads nothing
+//! from the network, and the browser enforces that: a content security policy admits this page's own style and script,
+//! by their digests, and nothing else.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -1,7 +1,7 @@
 //! Modes in motion for ParaView: a collection (`.pvd`) of the moments of a cycle for each instability.
 //!
-//! Each moment is the outer surface, moved; its field `displacement` is the shape at that moment, the largest of the surface 1. The time of
-//! a moment is its part of the cycle.
+//! Each moment is the outer surface, moved; its field `displacement` is the shape at that moment, the largest of the
+//! surface 1. The time of a moment is its part of the cycle.
 
 use std::f64::consts::TAU;
 use std::io::Write;

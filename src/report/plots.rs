@@ -163,8 +163,8 @@ fn end_labels(sheet: &mut Sheet, panel: &Panel, findings: &Findings) {
     }
 }
 
-/// Frequency and growth rate of an unstable branch and its partner against friction, with Hopf points: figure 2b of the source. None where
-/// modes were not followed over several frictions.
+/// Frequency and growth rate of an unstable branch and its partner against friction, with Hopf points: figure 2b of the
+/// source. None where modes were not followed over several frictions.
 fn coupling(findings: &Findings, i: usize, instability: &Instability) -> Option<String> {
     let own = instability.branch?;
     let partner = findings.onset(instability).and_then(|hopf| hopf.partner).map(|partner| partner.branch);

@@ -9,7 +9,8 @@ use crate::output::study as tables;
 
 use super::study_plot;
 
-/// Writes the files, and gives the summary. The second figure shows the super-elements of `n` contacts with their layout. Not collective.
+/// Writes the files, and gives the summary. The second figure shows the super-elements of `n` contacts with their
+/// layout. Not collective.
 ///
 /// # Errors
 /// The system's, with the file's path.

@@ -1,9 +1,11 @@
-//! A brake in several models: frequencies and growth rates of its instabilities over friction (figures 7 and 8 of the paper).
+//! A brake in several models: frequencies and growth rates of its instabilities over friction (figures 7 and 8 of the
+//! paper).
 
 use super::svg::{Anchor, INK, Panel, Scale, Sheet, colour};
 use crate::comparison::{CurvePoint, StudiedModel, Study};
 
-/// The reference and some of the models: a column an instability, frequency above growth rate. None where nothing grows.
+/// The reference and some of the models: a column an instability, frequency above growth rate. None where nothing
+/// grows.
 pub fn instabilities(study: &Study, models: &[&StudiedModel], title: &str) -> Option<String> {
     const COLUMN: f64 = 430.0;
     let (n, frictions) = (study.reference.curves.len(), &study.frictions);

@@ -58,7 +58,8 @@ pub struct ExternalValue {
     pub condition: f64,
     /// Its shift, 1/s; 0 where it is K.
     pub shift: f64,
-    /// Real and imaginary parts of all modes on all rows, where they are asked for; the largest entry of each mode has modulus 1.
+    /// Real and imaginary parts of all modes on all rows, where they are asked for; the largest entry of each mode has
+    /// modulus 1.
     pub shapes: Vec<[Vec<f64>; 2]>,
 }
 

@@ -30,8 +30,8 @@
 //!   doubtful            n x 2       intervals over which not all modes could be recognised
 //! ```
 //!
-//! Texts are arrays of bytes, UTF-8. All arrays are checksummed, and none is compressed: of displacements, in single precision, deflate takes off
-//! 15 % at a quarter of the time of a sweep of a super-element.
+//! Texts are arrays of bytes, UTF-8. All arrays are checksummed, and none is compressed: of displacements, in single
+//! precision, deflate takes off 15 % at a quarter of the time of a sweep of a super-element.
 
 use std::path::Path;
 

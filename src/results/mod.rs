@@ -1,5 +1,6 @@
-//! What a study found, as plain data: no PETSc, no ranks, whole on the root. A run fills it value by value, the results file keeps it
-//! between runs, and everything that a person sees (tables, plots, report, comparisons) is made of it alone.
+//! What a study found, as plain data: no PETSc, no ranks, whole on the root. A run fills it value by value, the results
+//! file keeps it between runs, and everything that a person sees (tables, plots, report, comparisons) is made of it
+//! alone.
 
 mod external;
 pub mod file;
@@ -133,7 +134,8 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// Part of each triangle.
     pub part: Vec<i32>,
-    /// Some of the nodes, spread over all parts: there every mode's shape is known, so that it can be compared with another's.
+    /// Some of the nodes, spread over all parts: there every mode's shape is known, so that it can be compared with
+    /// another's.
     pub samples: Vec<u32>,
 }
 
@@ -192,8 +194,8 @@ pub struct ModeData {
     pub sources: Vec<Source>,
 }
 
-/// Displacements of a complex mode, scaled so that the largest one where the mode is known (at the surface, else at its samples) is 1
-/// and real.
+/// Displacements of a complex mode, scaled so that the largest one where the mode is known (at the surface, else at its
+/// samples) is 1 and real.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shape {
     /// Real part.

@@ -3,7 +3,8 @@
 /// Nodes of a part at least, as far as it has them.
 const LEAST: usize = 32;
 
-/// About `n` of the surface's nodes, rising: of each part as many as its share of all nodes, along a curve that fills space.
+/// About `n` of the surface's nodes, rising: of each part as many as its share of all nodes, along a curve that fills
+/// space.
 pub fn spread(nodes: &[[f64; 3]], triangles: &[[u32; 3]], part: &[i32], n: usize) -> Vec<u32> {
     let mut by_part: Vec<(i32, u32)> =
         triangles.iter().zip(part).flat_map(|(triangle, &part)| triangle.map(|node| (part, node))).collect();

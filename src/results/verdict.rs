@@ -1,7 +1,8 @@
 //! The one place that decides what a study says: unstable, stable or unknown.
 //!
-//! *Stable* is said only where nothing casts doubt on it: modes were found in the band, their number is confirmed, they were followed
-//! everywhere, and contact carries a force at every value. An instability is said with the doubts beside it.
+//! *Stable* is said only where nothing casts doubt on it: modes were found in the band, their number is confirmed, they
+//! were followed everywhere, and contact carries a force at every value. An instability is said with the doubts beside
+//! it.
 
 use std::fmt::{self, Display};
 

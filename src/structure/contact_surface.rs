@@ -6,8 +6,8 @@ use crate::contact::{ContactPoint, Interface, Response, Status};
 use crate::mesh::Mesh;
 use crate::results::ContactFaces;
 
-/// The slave facets of all pairs, each pair with nodes of its own: exact values at the contact points (midside nodes), the mean of the
-/// neighbours at corners.
+/// The slave facets of all pairs, each pair with nodes of its own: exact values at the contact points (midside nodes),
+/// the mean of the neighbours at corners.
 #[derive(Default)]
 pub struct ContactSurface {
     /// The mesh's node behind each node of the surface.

@@ -7,8 +7,8 @@ use crate::contact::search::{Foot, Team};
 use crate::mesh::{Mesh, Piece, order};
 use crate::native::{Comm, partition};
 
-/// Gives every rank its piece of a mesh that the root alone has read: METIS shares out the nodes, which are numbered rank by rank,
-/// and near each other within a rank. Collective.
+/// Gives every rank its piece of a mesh that the root alone has read: METIS shares out the nodes, which are numbered
+/// rank by rank, and near each other within a rank. Collective.
 ///
 /// # Errors
 /// What befell the root when it read; METIS's.

@@ -1,4 +1,5 @@
-//! What an equilibrium is checked by: forces of the contact pairs, balance of forces and moments, torque of each rotation.
+//! What an equilibrium is checked by: forces of the contact pairs, balance of forces and moments, torque of each
+//! rotation.
 
 use crate::Result;
 use crate::algebra::norm;

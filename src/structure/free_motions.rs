@@ -1,9 +1,9 @@
 //! Unconstrained bodies: rigid-body motions that no support, connector or contact resists.
 //!
-//! Every body of parts that share nodes has six rigid motions `q` about its centroid, rotations scaled by its size. Each
-//! support, connector and closed contact point is a linear functional of them, `s = R q`; motions with `R q = 0` are free.
-//! They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a body along an axis, a contact pair, a connector)
-//! has the same say whatever its number of points and the model's unit of length.
+//! Every body of parts that share nodes has six rigid motions `q` about its centroid, rotations scaled by its size.
+//! Each support, connector and closed contact point is a linear functional of them, `s = R q`; motions with `R q = 0`
+//! are free. They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a body along an
+//! axis, a contact pair, a connector) has the same say whatever its number of points and the model's unit of length.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use pathfinding::undirected::connected_components::separate_components;
@@ -29,8 +29,8 @@ pub struct FreeMotion {
 }
 
 /// Eigenvalues of the Gram matrix below this fraction of the largest count as zero: a support that gives way by three
-/// thousandths of the motion. A piston that spins in its bore is resisted by the facets of a coarse mesh with 1e-10 to 1e-6, where
-/// supports give 1e-2 and more.
+/// thousandths of the motion. A piston that spins in its bore is resisted by the facets of a coarse mesh with 1e-10 to
+/// 1e-6, where supports give 1e-2 and more.
 const FREE: f64 = 1e-5;
 
 /// A component of a motion that messages name, relative to the largest.
@@ -130,8 +130,8 @@ fn extents(comm: &Comm, own: impl Iterator<Item = ([f64; 3], usize)> + Clone, n:
     (centroid, squares.iter().zip(&sums).map(|(square, sum)| (square / sum[3]).sqrt()).collect())
 }
 
-/// The free motions of a model; none where every body is held. `held` says which displacements are zero. Collective: each rank has a
-/// piece of the mesh, with all nodes of contacts, supports and connectors.
+/// The free motions of a model; none where every body is held. `held` says which displacements are zero. Collective:
+/// each rank has a piece of the mesh, with all nodes of contacts, supports and connectors.
 pub fn free_motions(
     comm: &Comm,
     mesh: &Mesh,
@@ -174,7 +174,8 @@ pub fn free_motions(
     }
     for link in links {
         for (values, _) in link.motion.rows.iter().zip(link.stiffness).filter(|(_, k)| *k > 0.0) {
-            // A rotation has the unit 1/m: taken times the size of the node set, it is a displacement as all others are.
+            // A rotation has the unit 1/m: taken times the size of the node set, it is a displacement as all others
+            // are.
             let size = values.iter().map(|v| v.abs()).sum::<f64>();
             resist(size.powi(-2), &mut |row| {
                 for (&node, v) in link.nodes.iter().zip(values.chunks_exact(3)) {
@@ -212,9 +213,9 @@ fn null_space(gram: DMatrix<f64>, bodies: &Bodies) -> Vec<FreeMotion> {
     motions.iter().map(|(own, q)| describe(q, own / 6, bodies)).collect()
 }
 
-/// Combines the vectors of a basis so that each has a component of its own, which is 1 in it and 0 in all others: "along x" and
-/// "along y" instead of two mixtures. Returns these components. Gauss-Jordan elimination, rotations first, so that a body that turns
-/// about a point is said to turn.
+/// Combines the vectors of a basis so that each has a component of its own, which is 1 in it and 0 in all others:
+/// "along x" and "along y" instead of two mixtures. Returns these components. Gauss-Jordan elimination, rotations
+/// first, so that a body that turns about a point is said to turn.
 fn separate(basis: &mut [Vec<f64>]) -> Vec<usize> {
     let width = basis.first().map_or(0, Vec::len);
     let rotations_first = (0..width).filter(|i| i % 6 >= 3).chain((0..width).filter(|i| i % 6 < 3));

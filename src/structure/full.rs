@@ -18,8 +18,8 @@ use super::contact_surface::{ContactSurface, Fields};
 use super::distribution::distribute;
 use super::{digest, free_motions, pairs, plausibility};
 
-/// A model with its mesh and contact interface. Each rank has its piece of the mesh ([`Piece`]), and all that is on surfaces: contact, loads
-/// and supports, in the numbers of its own piece.
+/// A model with its mesh and contact interface. Each rank has its piece of the mesh ([`Piece`]), and all that is on
+/// surfaces: contact, loads and supports, in the numbers of its own piece.
 pub struct FullModel {
     /// What the user wrote.
     pub model: Model,
@@ -56,8 +56,8 @@ impl Families<'_> {
 }
 
 impl FullModel {
-    /// Reads and checks model and mesh and finds the contact points; each rank has its piece of the mesh. Collective: all ranks
-    /// fail together.
+    /// Reads and checks model and mesh and finds the contact points; each rank has its piece of the mesh. Collective:
+    /// all ranks fail together.
     ///
     /// # Errors
     /// [`Error::Input`] with file and line, whatever is wrong.
@@ -67,8 +67,8 @@ impl FullModel {
         comm.agree(FullModel::new(model, piece, comm))
     }
 
-    /// Reads a brake, with so many reference pairs in place of the contact points of the sliding pairs where `n_contacts` asks for them.
-    /// Collective.
+    /// Reads a brake, with so many reference pairs in place of the contact points of the sliding pairs where
+    /// `n_contacts` asks for them. Collective.
     ///
     /// # Errors
     /// See [`FullModel::read`] and [`reduction::contacts::reduce`].
@@ -137,7 +137,8 @@ impl FullModel {
         self.model.loads.iter().all(is_zero) && !self.interface.pairs.iter().any(overlaps)
     }
 
-    /// Refuses a brake whose parts only contacts constrain, where nothing presses these: its equilibrium is not unique. Collective.
+    /// Refuses a brake whose parts only contacts constrain, where nothing presses these: its equilibrium is not unique.
+    /// Collective.
     ///
     /// # Errors
     /// [`Error::Input`] that names the parts and their free motions.
@@ -160,7 +161,8 @@ impl FullModel {
         )))
     }
 
-    /// The tetrahedra that this rank counts where each is to be counted once: those of whose first node it is the owner.
+    /// The tetrahedra that this rank counts where each is to be counted once: those of whose first node it is the
+    /// owner.
     pub fn own_tets(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         (0..self.mesh.tets.len()).filter(|&e| self.nodes.owns(self.mesh.tets[e][0]))
     }
@@ -215,7 +217,8 @@ impl FullModel {
         Ok(system)
     }
 
-    /// The values of the friction coefficient to analyse: those given, else the model's sweep, else the swept pairs' own.
+    /// The values of the friction coefficient to analyse: those given, else the model's sweep, else the swept pairs'
+    /// own.
     ///
     /// # Errors
     /// [`Error::Input`] where no pair slides.

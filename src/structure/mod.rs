@@ -6,8 +6,9 @@
 //! .se.h5 file ----ReducedModel---/
 //! ```
 //!
-//! From [`Structure::assemble`] on, full and reduced models are the same to every analysis. What differs stands here: how they are read and
-//! assembled, where their outer surface and their contacts are, and which parts their matrices come from.
+//! From [`Structure::assemble`] on, full and reduced models are the same to every analysis. What differs stands here:
+//! how they are read and assembled, where their outer surface and their contacts are, and which parts their matrices
+//! come from.
 
 pub mod contact_surface;
 mod digest;
@@ -72,8 +73,8 @@ impl Structure {
     /// Reads a model file (TOML) with its mesh, or a super-element's file (HDF5), and checks it. Collective.
     ///
     /// # Errors
-    /// [`Error::Input`] with file, line and advice: whatever is wrong with the files, options that are for the other kind of structure, a
-    /// part that can move freely.
+    /// [`Error::Input`] with file, line and advice: whatever is wrong with the files, options that are for the other
+    /// kind of structure, a part that can move freely.
     pub fn read(comm: &Comm, path: &Path, options: &StructureOptions) -> Result<Structure> {
         if is_hdf5(path) {
             return Ok(Structure::Reduced(Box::new(ReducedModel::read(comm, path, options)?)));
@@ -125,7 +126,8 @@ impl Structure {
         }
     }
 
-    /// The values of the friction coefficient to analyse: those given, else the file's sweep, else the swept pairs' own.
+    /// The values of the friction coefficient to analyse: those given, else the file's sweep, else the swept pairs'
+    /// own.
     ///
     /// # Errors
     /// [`Error::Input`] where no pair slides.
@@ -166,7 +168,8 @@ impl Structure {
         }
     }
 
-    /// Normal pressure (Pa) and status (0 open, 1 slip, 2 stick, -1 no contact point) at the nodes of the contact faces.
+    /// Normal pressure (Pa) and status (0 open, 1 slip, 2 stick, -1 no contact point) at the nodes of the contact
+    /// faces.
     pub fn contact_fields(&self, responses: &[Response]) -> (Vec<f64>, Vec<i32>) {
         match self {
             Structure::Full(full) => full.contact_fields(responses),
@@ -185,7 +188,8 @@ impl Structure {
         }
     }
 
-    /// The super-element that a full model is about an equilibrium, with the model's limit of fixed-interface modes. Collective.
+    /// The super-element that a full model is about an equilibrium, with the model's limit of fixed-interface modes.
+    /// Collective.
     ///
     /// # Errors
     /// [`Error::Input`] of a super-element; see [`FullModel::reduce`].
@@ -211,8 +215,8 @@ impl Structure {
         }
     }
 
-    /// The work of an analysis by all ranks, or, on a super-element, by the first rank alone: its few dofs are not worth sharing. `None` on
-    /// ranks that have no part in it; all ranks end together. Collective.
+    /// The work of an analysis by all ranks, or, on a super-element, by the first rank alone: its few dofs are not
+    /// worth sharing. `None` on ranks that have no part in it; all ranks end together. Collective.
     ///
     /// # Errors
     /// Those of the work.

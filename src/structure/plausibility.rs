@@ -1,7 +1,7 @@
 //! What can hardly be meant: numbers of a model that no brake has, mostly by a mistake of units.
 //!
-//! A warning is a sentence without its full stop: what is there, and what was probably meant. None of it stops a run, but a run with a
-//! warning never ends in "stable".
+//! A warning is a sentence without its full stop: what is there, and what was probably meant. None of it stops a run,
+//! but a run with a warning never ends in "stable".
 
 use nalgebra::Matrix6;
 
@@ -17,7 +17,8 @@ const DENSITY: [f64; 2] = [100.0, 3e4];
 const USUAL_DENSITY: [f64; 2] = [500.0, 2.5e4];
 /// Largest extents of brakes and their parts, m.
 const SIZE: [f64; 2] = [0.01, 10.0];
-/// Normal stiffness of contacts over E/h of the softer neighbour: below, surfaces visibly overlap; above, digits are lost.
+/// Normal stiffness of contacts over E/h of the softer neighbour: below, surfaces visibly overlap; above, digits are
+/// lost.
 const CONTACT_RATIO: [f64; 2] = [1e-3, 1e4];
 /// N/m3 in a N/mm3.
 const PER_CUBIC_MILLIMETRE: f64 = 1e9;

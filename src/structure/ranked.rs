@@ -22,7 +22,8 @@ impl Ranked<'_> {
         self.n
     }
 
-    /// The number that has k below it, to round-off: by bisection, with a count over all ranks at each step. Collective.
+    /// The number that has k below it, to round-off: by bisection, with a count over all ranks at each step.
+    /// Collective.
     pub fn nth(&self, k: usize) -> f64 {
         let (mut low, mut high) = (-1.0, 1.0);
         for _ in 0..f64::MANTISSA_DIGITS {

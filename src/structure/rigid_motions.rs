@@ -37,7 +37,8 @@ pub struct RigidMotions {
 }
 
 impl RigidMotions {
-    /// Those of a brake of which nothing is held: translations along and rotations about the axes through the mean of its nodes. Collective.
+    /// Those of a brake of which nothing is held: translations along and rotations about the axes through the mean of
+    /// its nodes. Collective.
     ///
     /// # Errors
     /// PETSc's; [`Error::Input`] where the nodes lie on a line.

@@ -11,8 +11,8 @@ use crate::reduction::super_element::{Origin, SuperElement};
 use super::{FullModel, digest};
 
 impl FullModel {
-    /// Reduces the brake about an equilibrium to its sliding contacts, the mean motions of its loaded sets and its fixed-interface modes
-    /// below `limit` (Hz). The surface's basis is on the root alone. Collective.
+    /// Reduces the brake about an equilibrium to its sliding contacts, the mean motions of its loaded sets and its
+    /// fixed-interface modes below `limit` (Hz). The surface's basis is on the root alone. Collective.
     ///
     /// # Errors
     /// See [`craig_bampton::reduce`].

@@ -45,7 +45,8 @@ pub struct Partner {
 pub struct Hopf {
     /// Index of the branch.
     pub branch: usize,
-    /// Two solved values, the lower one first, on which the branch is stable and unstable, no farther apart than the tolerance.
+    /// Two solved values, the lower one first, on which the branch is stable and unstable, no farther apart than the
+    /// tolerance.
     pub bracket: [f64; 2],
     /// Where the growth rate is zero between them, by the model that joins the two.
     pub value: f64,
@@ -60,7 +61,8 @@ pub struct Hopf {
 /// Branches of a family and their Hopf points.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Diagram {
-    /// The values solved, in the order in which the parameter runs: those asked for and those in between that were needed.
+    /// The values solved, in the order in which the parameter runs: those asked for and those in between that were
+    /// needed.
     pub values: Vec<f64>,
     /// Branches, by the frequency of their first point, those that are there from the beginning first.
     pub branches: Vec<Branch>,

@@ -10,7 +10,8 @@ use crate::native::lapack::{Eigen, eigen};
 pub struct Path {
     /// (s, eigenvalues), s rising.
     pub samples: Vec<(f64, Vec<Complex64>)>,
-    /// The largest share `|V_ki (V^-1)_ik|` of a mode of s = 0 in another at each sample: 1 or less, but near a coalescence.
+    /// The largest share `|V_ki (V^-1)_ik|` of a mode of s = 0 in another at each sample: 1 or less, but near a
+    /// coalescence.
     pub sharing: Vec<f64>,
     /// Eigenvalues at s = 1.
     pub end: Vec<Complex64>,
@@ -25,11 +26,11 @@ const LONGEST: f64 = 0.125;
 /// A coalescence is passed in a step of this length.
 const SHORTEST: f64 = 1e-6;
 
-/// Follows the modes of `A(s) = (1 - s) diag(a) + s T diag(b) T^-1` from `start`, which are those of s = 0 in the order and the basis
-/// wanted; none where T is singular or LAPACK-like iterations fail.
+/// Follows the modes of `A(s) = (1 - s) diag(a) + s T diag(b) T^-1` from `start`, which are those of s = 0 in the order
+/// and the basis wanted; none where T is singular or LAPACK-like iterations fail.
 ///
-/// Steps are halved until every mode is recognised. Two modes that exchange their frequencies are looked at in steps of `resolution`: a
-/// veering narrower than that is a crossing.
+/// Steps are halved until every mode is recognised. Two modes that exchange their frequencies are looked at in steps of
+/// `resolution`: a veering narrower than that is a crossing.
 pub fn follow(
     start: State,
     a: &[Complex64],
@@ -139,7 +140,8 @@ impl Path {
         Some(s + (t - s) * f / (f - g))
     }
 
-    /// Where inside two modes come closest to one vector, and how close: by how much the sharing exceeds that of the ends.
+    /// Where inside two modes come closest to one vector, and how close: by how much the sharing exceeds that of the
+    /// ends.
     pub fn nearest_coalescence(&self) -> (f64, f64) {
         let end = self.sharing.last().copied().unwrap_or(1.0).max(1.0);
         let inside = self.samples.iter().zip(&self.sharing).map(|((s, _), share)| (*s, share / end));
@@ -182,7 +184,8 @@ mod tests {
         assert_eq!(path.end, [i(2.0), i(1.0)]);
     }
 
-    /// A rotation by x couples the two with sin(2x)/2 of their distance at s = 1, half of that where they meet: that is half the gap.
+    /// A rotation by x couples the two with sin(2x)/2 of their distance at s = 1, half of that where they meet: that is
+    /// half the gap.
     #[test]
     fn with_coupling_they_veer() {
         let (sin, cos) = 0.1_f64.sin_cos();

@@ -22,9 +22,9 @@ pub struct Aim {
 impl Hunt {
     /// The value to solve at for a root foretold between a and b.
     ///
-    /// At first that is nearly half a tolerance before the root; then, if the model was right, as much behind it, and the bracket is
-    /// closed. Where the root has moved since the last solve, part of that is added, away from the nearer end; and where two solves
-    /// have not halved the interval, it is bisected.
+    /// At first that is nearly half a tolerance before the root; then, if the model was right, as much behind it, and
+    /// the bracket is closed. Where the root has moved since the last solve, part of that is added, away from the
+    /// nearer end; and where two solves have not halved the interval, it is bisected.
     pub fn aim(&self, branch: usize, root: f64, [a, b]: [f64; 2], tolerance: f64) -> (f64, Aim) {
         let (width, near) = ((b - a).abs(), 0.4 * tolerance);
         let Some(last) = self.aim.filter(|aim| aim.branch == branch) else {
@@ -47,7 +47,8 @@ impl Hunt {
 mod tests {
     use super::*;
 
-    /// Aims at the root of a function with a straight line through both ends, as a model would, until the bracket is closed.
+    /// Aims at the root of a function with a straight line through both ends, as a model would, until the bracket is
+    /// closed.
     fn solves(function: impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2], tolerance: f64) -> usize {
         let mut hunt = Hunt::default();
         for n_solves in 0.. {

@@ -30,10 +30,11 @@ const DEGENERATE: f64 = 1e-7;
 
 /// Finds each mode of `before` among the eigenpairs of `after`.
 ///
-/// With `V' = V T`, `S_ij = |T_ij (T^-1)_ji|` is the share of mode i in mode j, whatever the vectors' scales; it is 1 for one mode
-/// that has not changed. Modes that share make a group. A group of one is recognised by its share, a group with one common eigenvalue
-/// on either side as a subspace: then the vectors of that eigenvalue are turned to continue those before. Any other group is
-/// not clear; its modes are paired in the order of `Im + Re`: where two undamped modes meet, the lower goes on as the one that decays.
+/// With `V' = V T`, `S_ij = |T_ij (T^-1)_ji|` is the share of mode i in mode j, whatever the vectors' scales; it is 1
+/// for one mode that has not changed. Modes that share make a group. A group of one is recognised by its share, a group
+/// with one common eigenvalue on either side as a subspace: then the vectors of that eigenvalue are turned to continue
+/// those before. Any other group is not clear; its modes are paired in the order of `Im + Re`: where two undamped modes
+/// meet, the lower goes on as the one that decays.
 pub fn matched(before: &State, after: Eigen) -> Matched {
     let n = before.values.len();
     let (forward, backward) = match transfers(&before.vectors, &after.vectors) {

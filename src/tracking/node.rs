@@ -29,8 +29,8 @@ impl<M> Node<M> {
         Ok(Node { value, modes, lambdas, own, factor })
     }
 
-    /// Whether two modes have become one vector, so that the modes of this value do not span what they should: the least singular
-    /// value of `G_ij / (2 sqrt|lambda_i lambda_j|)` is zero.
+    /// Whether two modes have become one vector, so that the modes of this value do not span what they should: the
+    /// least singular value of `G_ij / (2 sqrt|lambda_i lambda_j|)` is zero.
     pub fn is_defective(&self) -> bool {
         let scale = |i: usize| (2.0 * self.lambdas[i].norm()).max(self.own[(i, i)].norm()).sqrt();
         let n = self.lambdas.len();

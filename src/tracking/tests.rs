@@ -26,8 +26,8 @@ fn at(branch: &Branch, value: f64) -> Complex64 {
     branch.points.iter().find(|point| point.value == value).unwrap().lambda
 }
 
-/// `lambda^2 = -2 +- sqrt(1 - 4 mu / 3)`: the two modes meet at mu = 3/4 (Hoffmann et al., Eur. J. Mech. A 21, 2002). The lower one
-/// goes on as the one that decays. Steps of 0.25 and 0.05 meet the defective point itself.
+/// `lambda^2 = -2 +- sqrt(1 - 4 mu / 3)`: the two modes meet at mu = 3/4 (Hoffmann et al., Eur. J. Mech. A 21, 2002).
+/// The lower one goes on as the one that decays. Steps of 0.25 and 0.05 meet the defective point itself.
 #[test]
 fn hoffmann_couples_at_three_quarters_whatever_the_step() {
     for step in [1.0, 0.5, 0.25, 0.1, 0.05, 0.01] {
@@ -72,8 +72,8 @@ fn hulten_sinou_passes_its_hopf_points() {
     }
 }
 
-/// The bicycle of Meijaard et al. (Proc. R. Soc. A 463, 2007): two real eigenvalues meet at 0.684 m/s and weave, which ends at
-/// 4.292 m/s; a real eigenvalue passes zero at 6.024 m/s (capsize), where no two modes couple.
+/// The bicycle of Meijaard et al. (Proc. R. Soc. A 463, 2007): two real eigenvalues meet at 0.684 m/s and weave, which
+/// ends at 4.292 m/s; a real eigenvalue passes zero at 6.024 m/s (capsize), where no two modes couple.
 #[test]
 fn bicycle_weaves_and_capsizes_where_it_should() {
     let m = [[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]];
@@ -90,8 +90,9 @@ fn bicycle_weaves_and_capsizes_where_it_should() {
     }
 }
 
-/// A shaft with internal damping c_i and external damping c_e whirls from `Omega = omega (1 + c_e / c_i)` on: forward and backward whirl
-/// have fixed shapes, (1, -i) and (1, i), and nothing couples. (The threshold of 1e-6 of omega is reached 1e-4 later.)
+/// A shaft with internal damping c_i and external damping c_e whirls from `Omega = omega (1 + c_e / c_i)` on: forward
+/// and backward whirl have fixed shapes, (1, -i) and (1, i), and nothing couples. (The threshold of 1e-6 of omega is
+/// reached 1e-4 later.)
 #[test]
 fn a_whirling_shaft_needs_no_partner() {
     let (ci, ce) = (0.02, 0.03);
@@ -123,8 +124,8 @@ fn modes_that_do_not_couple_cross() {
     }
 }
 
-/// With a weak coupling they turn away from each other: the lower stays lower. A veering narrower than the tolerance is a
-/// crossing, unless a value falls into it.
+/// With a weak coupling they turn away from each other: the lower stays lower. A veering narrower than the tolerance is
+/// a crossing, unless a value falls into it.
 #[test]
 fn weakly_coupled_modes_veer() {
     for (coupling, veers) in [(0.05, true), (0.01, true), (1e-5, false)] {
@@ -176,7 +177,8 @@ fn branches_begin_and_end_at_the_edges_of_the_band() {
     let options = Options { band: [1.0 - 1e-9, 2.0], ..options() };
     let diagram = followed(&mut family, &values(0.0, 0.7, 0.1), &options);
     assert_eq!(family.solved.len(), 8);
-    // First frequencies 1 to 2.75 in steps of 0.25, less 0.7 at the end: the last does not come down to 2, the others are met.
+    // First frequencies 1 to 2.75 in steps of 0.25, less 0.7 at the end: the last does not come down to 2, the others
+    // are met.
     assert_eq!(diagram.branches.len(), 7);
     for branch in &diagram.branches {
         for w in branch.points.windows(2) {
@@ -224,7 +226,8 @@ fn ends(diagram: &Diagram, value: f64) -> Vec<Complex64> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Where the problem depends on p linearly, the model between two values is exact: one step finds what a hundred find.
+    /// Where the problem depends on p linearly, the model between two values is exact: one step finds what a hundred
+    /// find.
     #[test]
     fn linear_families_are_followed_in_one_step(
         entries in prop::collection::vec(-1.0..1.0, 108),

@@ -14,15 +14,15 @@ use super::transfer::Transfer;
 use super::{Family, Options};
 use crate::{Error, Result};
 
-/// Follows all modes of a family over `values`, which rise or fall, and brackets every Hopf point of the band by solves. The diagram
-/// holds what was found, also where an error ended the work.
+/// Follows all modes of a family over `values`, which rise or fall, and brackets every Hopf point of the band by
+/// solves. The diagram holds what was found, also where an error ended the work.
 ///
-/// Values at which two modes are one vector (a coalescence that is met exactly) are replaced by a neighbour a tenth of the
-/// tolerance away.
+/// Values at which two modes are one vector (a coalescence that is met exactly) are replaced by a neighbour a tenth of
+/// the tolerance away.
 ///
 /// # Errors
-/// Those of the family; [`Error::Input`] where the values neither rise nor fall; [`Error::NotConverged`] where the modes of
-/// two values have nothing in common.
+/// Those of the family; [`Error::Input`] where the values neither rise nor fall; [`Error::NotConverged`] where the
+/// modes of two values have nothing in common.
 pub fn track<F: Family>(family: &mut F, values: &[f64], options: &Options) -> (Diagram, Result<()>) {
     if !values.is_sorted_by(|a, b| a < b) && !values.is_sorted_by(|a, b| a > b) {
         let disorder = "the values of a sweep must rise or fall for its branches to be followed";
@@ -80,8 +80,9 @@ struct Span {
     path: Option<Path>,
 }
 
-/// Two modes whose sharing exceeds this pass a coalescence so closely that the model may err about the side, which decides which of
-/// them becomes which. The model's error falls as the step is shortened, and the limit rises accordingly.
+/// Two modes whose sharing exceeds this pass a coalescence so closely that the model may err about the side, which
+/// decides which of them becomes which. The model's error falls as the step is shortened, and the limit rises
+/// accordingly.
 const NEAR: f64 = 1.6;
 
 impl<F: Family> Tracker<'_, F> {
@@ -225,8 +226,9 @@ impl<F: Family> Tracker<'_, F> {
         Ok(())
     }
 
-    /// Of which modes of the first value a branch's mode is made, but for its own: with `T` and `T'` the coordinates of the two values'
-    /// modes in each other's basis, the shares `|T_kj T'_jk|` of a mode j, divided by their sum. None where the branch was unstable from the start.
+    /// Of which modes of the first value a branch's mode is made, but for its own: with `T` and `T'` the coordinates of
+    /// the two values' modes in each other's basis, the shares `|T_kj T'_jk|` of a mode j, divided by their sum. None
+    /// where the branch was unstable from the start.
     fn partner(&mut self, at: &Rc<Node<F::Modes>>, branch: usize) -> Result<Option<Partner>> {
         let start = self.start.clone();
         let first = self.diagram.branches[branch].points[0];

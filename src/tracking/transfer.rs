@@ -24,8 +24,8 @@ const LOSS: f64 = 0.1;
 
 impl Transfer {
     /// Compares two values. With `T_ab` and `T_ba` the coordinates of each one's modes in the basis of the other,
-    /// `(T_ab T_ba)_ii` is how much of mode i is left in the other's modes: 1, or 0 where it has left the band. The trace is the
-    /// number of modes in common.
+    /// `(T_ab T_ba)_ii` is how much of mode i is left in the other's modes: 1, or 0 where it has left the band. The
+    /// trace is the number of modes in common.
     pub fn new<F: Family>(
         a: &Node<F::Modes>,
         b: &Node<F::Modes>,

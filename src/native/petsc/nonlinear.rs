@@ -128,8 +128,9 @@ unsafe fn use_corrections(snes: sys::SNES, context: *mut c_void) -> Result<()> {
 /// Leaves a tolerance as it is (a macro of PETSc).
 const PETSC_DEFAULT: i32 = -2;
 
-/// Line search for the critical point of the residual's projection on the step: robust under contact. Its absolute tolerance is zero, as that
-/// of SNES is: PETSc's own, 1e-15 of `F^T du`, ends the solve as converged where the loads are small.
+/// Line search for the critical point of the residual's projection on the step: robust under contact. Its absolute
+/// tolerance is zero, as that of SNES is: PETSc's own, 1e-15 of `F^T du`, ends the solve as converged where the loads
+/// are small.
 unsafe fn use_critical_points(snes: sys::SNES) -> Result<()> {
     let mut line = ptr::null_mut();
     // SAFETY: the solver is alive; the string is static.

@@ -1,0 +1,120 @@
+//! What a model is, before anything is computed.
+
+use crate::Result;
+use crate::contact::interface::ContactPair;
+use crate::equilibrium::tangent_precision;
+use crate::mesh::quality::scaled_jacobian;
+use crate::model::{Load, LoadKind};
+use crate::native::{Comm, Factor, FactorKind};
+use crate::output::model_summary::{LayoutRow, LoadRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow};
+use crate::structure::{FullModel, Ranked, plausibility};
+
+/// Masses, contact pairs, mesh quality, constraints and loads of a model; with reference contacts their cells, too. The
+/// matrix is left open. Collective.
+pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> ModelSummary {
+    let load = |load: &Load| LoadRow { load: load.name.clone(), on: load.on.clone(), what: amount(&load.kind) };
+    let sliding = || full.interface.pairs.iter().filter(|pair| pair.is_sliding());
+    ModelSummary {
+        title: full.model.title.clone(),
+        mesh: mesh(comm, full),
+        parts: (0..full.mesh.parts.len()).map(|i| part(comm, full, i)).collect(),
+        pairs: full.interface.pairs.iter().map(pair).collect(),
+        layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
+        held_displacements: full.held.as_flattened().iter().filter(|&&h| h).count(),
+        connectors: full.links.len(),
+        loads: full.model.loads.iter().map(load).collect(),
+        sum_of_loads_n: full.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i])),
+        warnings: plausibility::warnings(full, comm),
+        matrix: None,
+    }
+}
+
+fn mesh(comm: &Comm, full: &FullModel) -> MeshSummary {
+    let ends = |sign: f64| {
+        let most = |i: usize| full.mesh.nodes.iter().map(|x| sign * x[i]).fold(f64::MIN, f64::max);
+        let mut ends = [0, 1, 2].map(most);
+        comm.max_all(&mut ends);
+        ends
+    };
+    let (high, low) = (ends(1.0), ends(-1.0));
+    MeshSummary {
+        nodes: full.nodes.n_global(),
+        tetrahedra: comm.sum(full.own_tets().count()),
+        size_m: [0, 1, 2].map(|i| high[i] + low[i]),
+    }
+}
+
+/// Mass, centre, moments of inertia and mesh quality of a part. Collective.
+fn part(comm: &Comm, full: &FullModel, i: usize) -> PartRow {
+    let mesh = &full.mesh;
+    let own = full.own_tets().filter(|&e| mesh.tet_part[e] as usize == i).map(|e| mesh.tet_nodes(e));
+    let properties = full.part_properties(comm, i);
+    let quality = Ranked::new(comm, own.map(|x| scaled_jacobian(&x)).collect());
+    let centre = properties.centre();
+    let inertia = properties.inertia_about(centre);
+    PartRow {
+        part: mesh.parts[i].clone(),
+        tetrahedra: quality.len(),
+        mass_kg: properties.mass,
+        centre_m: centre,
+        inertia_kg_m2: [0, 1, 2].map(|k| inertia[k][k]),
+        quality_min: quality.nth(0),
+        quality_median: quality.nth(quality.len() / 2),
+    }
+}
+
+fn pair(pair: &ContactPair) -> PairRow {
+    let statistics = &pair.statistics;
+    PairRow {
+        pair: pair.name.clone(),
+        kind: format!("{:?}", pair.kind).to_lowercase(),
+        points: pair.points.len(),
+        dropped: statistics.dropped.len(),
+        touching: statistics.touching,
+        area_m2: statistics.area,
+        gap_min_m: statistics.gap[0],
+        gap_max_m: statistics.gap[1],
+        friction: pair.friction,
+    }
+}
+
+/// The reference nodes of a sliding pair.
+fn layout(full: &FullModel, pair: &ContactPair) -> LayoutRow {
+    let own = &full.interface.points[pair.points.clone()];
+    let areas = || own.iter().map(|point| point.law.weight);
+    let points = || own.iter().map(|point| point.nodes.len());
+    LayoutRow {
+        pair: pair.name.clone(),
+        reference_nodes: own.len(),
+        cell_area_min_m2: areas().fold(f64::INFINITY, f64::min),
+        cell_area_mean_m2: areas().sum::<f64>() / own.len() as f64,
+        cell_area_max_m2: areas().fold(0.0, f64::max),
+        cell_points_min: points().min().unwrap_or(0),
+        cell_points_max: points().max().unwrap_or(0),
+    }
+}
+
+fn amount(kind: &LoadKind) -> String {
+    let force = |f: &[f64; 3]| f.map(|f| f.to_string()).join(" ");
+    match kind {
+        LoadKind::ForceByNode(f) => format!("{} N, the same on each node", force(f)),
+        LoadKind::ForceByArea(f) => format!("{} N, spread over the area", force(f)),
+        LoadKind::Pressure(p) => format!("a pressure of {p} Pa"),
+    }
+}
+
+/// Size of the stiffness matrix and of its factor, which is not made. Collective.
+///
+/// # Errors
+/// PETSc's and MUMPS's.
+pub fn matrix_summary(comm: &Comm, full: &FullModel) -> Result<MatrixSummary> {
+    let system = full.assemble(comm, &full.families()?)?;
+    let mut factor = Factor::new(FactorKind::Unsymmetric);
+    factor.set_precision(tangent_precision(&system));
+    factor.analyse(&system.k)?;
+    Ok(MatrixSummary {
+        equations: system.dofs.n_global(),
+        entries: system.k.n_entries()?,
+        factor_gb: factor.stats().estimated_mb / 1024.0,
+    })
+}
