@@ -1,6 +1,6 @@
 //! Finds the flutter of Hoffmann's two-degree-of-freedom model from three matrix files of another program.
 //!
-//! Source: Hoffmann, Fischer, Allgaier, Gaul, European Journal of Mechanics A 21, 2002: M = I, K = [[2, 1 - 4/3 mu],
+//! Source: Hoffmann, Fischer, Allgaier, Gaul, Mechanics Research Communications 29, 2002: M = I, K = [[2, 1 - 4/3 mu],
 //! [1, 2]]; the two modes couple at mu = 3/4.
 //!
 //! ```text

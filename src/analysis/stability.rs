@@ -3,7 +3,6 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use crate::Result;
 use crate::equilibrium::Equilibrium;
 use crate::native::{Comm, Vector};
 use crate::output::fields::FieldWriter;
@@ -12,6 +11,7 @@ use crate::results::{Results, Source};
 use crate::stability::{Complex, Mode};
 use crate::structure::Structure;
 use crate::tracking::track;
+use crate::{Error, Result};
 
 use super::explain::explain;
 use super::family::{FrictionFamily, Snapshot, Solutions, Vectors, tracking_options, widened};
@@ -76,6 +76,9 @@ impl StabilityOptions {
     }
 
     fn job(&self, structure: &Structure) -> Result<Job> {
+        if self.reduce_each && matches!(structure, Structure::Reduced(_)) {
+            return Err(Error::input("a super-element cannot be reduced again: --reduce-each is for models"));
+        }
         let values = structure.friction_values(self.friction_values.as_deref())?;
         let follows = self.follows(values.len());
         let values = order(values, follows);

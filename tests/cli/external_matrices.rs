@@ -1,7 +1,7 @@
 //! Modes of given matrices through files: exact models, problems of any structure against a dense solver, formats,
 //! ranks.
 //!
-//! Sources: Hoffmann et al., Eur. J. Mech. A 21 (2002); Sinou and Jezequel, Eur. J. Mech. A 26 (2007); Meijaard et al.,
+//! Sources: Hoffmann et al., Mech. Res. Commun. 29 (2002); Sinou and Jezequel, Eur. J. Mech. A 26 (2007); Meijaard et al.,
 //! Proc. R. Soc. A 463 (2007); Betcke et al., NLEVP, ACM TOMS 39 (2013). Random problems: eigenvalues of `[0 I; -M^-1
 //! K, -M^-1 C]` by nalgebra.
 //!
@@ -228,7 +228,7 @@ fn coordinates(a: &DMatrix<f64>, symmetry: &str) -> String {
     format!("%%MatrixMarket matrix coordinate real {symmetry}\n% a comment\n{n} {n} {}\n{lines}", places.len())
 }
 
-/// PETSc's binary format, written here anew.
+/// PETSc's binary format, written here again.
 fn petsc(a: &DMatrix<f64>) -> Vec<u8> {
     let n = a.nrows() as i32;
     let rows: Vec<Vec<i32>> =

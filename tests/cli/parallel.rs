@@ -68,8 +68,8 @@ fn displacements(text: &str) -> (Displacements, usize) {
 #[test]
 fn pieces_add_up_to_the_whole() {
     let place = Place::pads();
-    let before_the_equations =
-        |said: &Said| said.out.lines().take_while(|l| !l.contains("equations")).collect::<Vec<_>>().join("\n");
+    let before_the_dofs =
+        |said: &Said| said.out.lines().take_while(|l| !l.contains("free dofs")).collect::<Vec<_>>().join("\n");
     let alone = place.run(&["check", "brake.toml"]);
     let said = place.run(&["static", "brake.toml", "--friction", "0.4", "-o", "1"]);
     assert_eq!((alone.code, said.code), (0, 0), "{}{}", alone.err, said.err);
@@ -77,7 +77,7 @@ fn pieces_add_up_to_the_whole() {
     let largest = whole.values().flatten().flatten().fold(0.0, |most: f32, u| most.max(u.abs()));
     for ranks in [2, 3] {
         let check = place.run_on(ranks, &["check", "brake.toml"]);
-        assert_eq!(before_the_equations(&check), before_the_equations(&alone));
+        assert_eq!(before_the_dofs(&check), before_the_dofs(&alone));
         let folder = ranks.to_string();
         let said = place.run_on(ranks, &["static", "brake.toml", "--friction", "0.4", "-o", &folder]);
         assert_eq!(said.code, 0, "{}", said.err);

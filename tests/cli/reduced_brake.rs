@@ -45,9 +45,10 @@ fn a_super_element_has_the_modes_of_its_model() {
     let said = place.run(&["stability", "brake.se.h5", "--output", "reduced", BAND]);
     assert_eq!(said.code, 0, "{}", said.err);
     assert_same(&modes(&place, "reduced"), &modes(&place, "full"), 1e-6);
-    let anew = ["stability", "brake.toml", "--contacts", "4", "--friction", "0.4", "--anew", "--output", "anew", BAND];
-    assert_eq!(place.run(&anew).code, 0);
-    assert_same(&modes(&place, "anew"), &modes(&place, "reduced"), 1e-9);
+    let each =
+        ["stability", "brake.toml", "--contacts", "4", "--friction", "0.4", "--reduce-each", "--output", "each", BAND];
+    assert_eq!(place.run(&each).code, 0);
+    assert_same(&modes(&place, "each"), &modes(&place, "reduced"), 1e-9);
     let files = place.list("reduced");
     assert!(files.iter().any(|name| name == "equilibrium_mu0.400.vtu"), "{files:?}");
     let said = place.run(&["static", "brake.se.h5", "--friction", "0.2", "--law", "cubic:1e9,1e19", "--pressure", "2"]);
@@ -84,7 +85,7 @@ fn a_file_that_is_no_super_element_is_refused() {
     file.close().unwrap();
     assert_refused(
         &stability("new.se.h5"),
-        &["is of version 7, this program reads version 2", "anew with `squeal reduce`"],
+        &["is of version 7, this program reads version 2", "again with `squeal reduce`"],
     );
 
     std::fs::copy(place.path("brake.se.h5"), place.path("nan.se.h5")).unwrap();
@@ -105,7 +106,7 @@ fn what_a_super_element_does_not_hold_is_refused() {
     let place = reduced();
     let with = |more: &[&str]| place.run(&[&["stability", "brake.se.h5", "--output", "none"], more].concat());
     assert_refused(&with(&["--band", "0:241000"]), &["up to 240000 Hz only", "up to 241000 Hz are asked for"]);
-    assert_refused(&with(&["--anew"]), &["is a super-element; --anew"]);
+    assert_refused(&with(&["--reduce-each"]), &["a super-element cannot be reduced again"]);
     assert_refused(&with(&["--contacts", "6"]), &["has its contacts already"]);
     assert_refused(&with(&["--law", "cubic:1e9"]), &["two coefficients", "cubic:K1,K3"]);
     assert_refused(&with(&["--law", "cubic"]), &["no coefficients"]);

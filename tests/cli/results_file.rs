@@ -109,12 +109,12 @@ fn a_super_element_has_the_shapes_of_its_model_on_two_ranks() {
     let (band, friction) = ("--band=0:60000", "--friction=0.4");
     run(&["reduce", "brake.toml", "--contacts", "4", "-o", "brake.se.h5"], 1);
     run(&["stability", "brake.toml", "--contacts", "4", friction, band, "-o", "full"], 1);
-    run(&["stability", "brake.toml", "--contacts", "4", friction, band, "--anew", "-o", "anew"], 1);
+    run(&["stability", "brake.toml", "--contacts", "4", friction, band, "--reduce-each", "-o", "each"], 1);
     run(&["stability", "brake.se.h5", band, "-o", "reduced"], 1);
     run(&["stability", "brake.se.h5", band, "-o", "reduced-on-two"], 2);
     let full = results(&place, "full");
     assert!(full.values[0].modes.len() > 3 && full.about.mesh_digest.len() == 64);
-    for folder in ["reduced", "reduced-on-two", "anew"] {
+    for folder in ["reduced", "reduced-on-two", "each"] {
         let other = results(&place, folder);
         assert_eq!(full.surface, other.surface, "{folder}");
         assert_eq!(full.about.mesh_digest, other.about.mesh_digest, "{folder}");

@@ -1,8 +1,10 @@
 //! A run that ends early, at whatever moment and by whatever signal, goes on with the same command and finds what it
 //! would have found.
 //!
-//! No two runs are the same to the last bit, since clocks decide which factors are made anew. So at the frictions asked
-//! for eigenvalues are compared to 1e-9, and what tracking solves in between to the tolerance of Hopf points.
+//! Counts and not clocks decide when a factor is made again, so that a run on one rank repeats itself. A run that
+//! continues starts with another factor than the one that was never stopped had at that point, which changes rounding.
+//! So eigenvalues at the values asked for are compared to 1e-9, and what tracking solves in between to the tolerance of
+//! Hopf points.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -216,9 +218,11 @@ fn ctrl_c_ends_after_the_friction_at_hand() {
         signal(name, child.id());
         let Said { code: found, out, err } = end(child);
         assert_eq!((found, out.as_str()), (code, ""), "{err}");
-        for part in
-            ["ending after this friction; a second signal", "stopped after friction 0.", "The same command goes on"]
-        {
+        for part in [
+            "stopping after this value; a second signal",
+            "stopped after friction coefficient 0.",
+            "The same command goes on",
+        ] {
             assert!(err.contains(part), "{part}: {err}");
         }
         assert!(!err.contains("error") && n_done(&place) > n && !place.path("run").exists(), "{err}");
@@ -243,12 +247,12 @@ fn what_was_begun_otherwise_is_not_gone_on_with() {
     let refused = |says: &str| {
         let said = place.run(&with("--friction=0:1:0.002"));
         assert_eq!(said.code, 2, "{}", said.err);
-        for part in ["run is unfinished (", says, "--force to start anew"] {
+        for part in ["run is unfinished (", says, "--force to begin again"] {
             assert!(said.err.contains(part), "{part}: {}", said.err);
         }
     };
     let said = place.run(&with("--friction=0.1"));
-    assert!(said.code == 2 && said.err.contains("frictions was 0, 0.002, "), "{}", said.err);
+    assert!(said.code == 2 && said.err.contains("friction values was 0, 0.002, "), "{}", said.err);
     let model = place.read("brake.toml");
     place.write("brake.toml", swap(&model, "-1000", "-1001"));
     refused("SHA-256 of the model was ");

@@ -83,7 +83,7 @@ fn results_that_have_nothing_in_common_are_refused_on_two_ranks() {
 
 /// A study of two layouts and super-elements.
 const STUDY: [&str; 8] = ["study", "brake.toml", "--friction", "0.2,0.4", "--layouts", "4,8", "--super-element", "8"];
-const PARTS: [&str; 5] = ["full", "contacts-4", "contacts-8", "super-element-8", "super-element-8-anew"];
+const PARTS: [&str; 5] = ["full", "contacts-4", "contacts-8", "super-element-8", "super-element-8-each"];
 
 /// When the results of all parts were written.
 fn times(place: &Place) -> Vec<SystemTime> {
@@ -131,7 +131,7 @@ fn a_study_compares_all_models_with_full_contact_and_reuses_files_on_two_ranks()
 
     place.write("brake.toml", swap(&place.read("brake.toml"), "force = [0, 0, -1000]", "force = [0, 0, -1100]"));
     let again = done(place.run(&STUDY));
-    assert_eq!(again.err.matches("begins").count(), 6, "another model: all is made anew: {}", again.err);
+    assert_eq!(again.err.matches("begins").count(), 6, "another model: all is made again: {}", again.err);
 }
 
 #[test]

@@ -12,7 +12,7 @@ const PREFACE: &str = "# Validation
 
 Every number of the tables below was computed by `make validation`, which writes this file. The references are exact solutions, published
 values, and results of other programs. Each section is a case of `tests/validation/`, where a file tells its geometry, its source and
-what may be expected. `make test` computes all of them anew, TD-1 on its coarse mesh, and fails where a difference leaves the allowed range or
+what may be expected. `make test` computes all of them again, TD-1 on its coarse mesh, and fails where a difference leaves the allowed range or
 where a number is no longer the one below.
 
 `make calculix` compares 30 modes of two models with CalculiX on the same mesh (`tests/physics/calculix.rs`).

@@ -1,5 +1,5 @@
 //! Minimal friction models with exact eigenvalues: Hoffmann (2 dofs), Hulten/Sinou (2 dofs, damped), NLEVP's `bicycle`
-//! and `qep1`. Sources: Hoffmann et al., Eur. J. Mech. A 21 (2002); Sinou and Jezequel, Eur. J. Mech. A 26 (2007);
+//! and `qep1`. Sources: Hoffmann et al., Mech. Res. Commun. 29 (2002); Sinou and Jezequel, Eur. J. Mech. A 26 (2007);
 //! Betcke et al., NLEVP, ACM TOMS 39 (2013); Meijaard et al., Proc. R. Soc. A 463 (2007).
 
 use std::f64::consts::TAU;
@@ -72,7 +72,7 @@ fn hoffmann(comm: &Comm) -> Case {
     let row = |mu: f64| rows(&format!("friction {mu}"), "1/s", &at(mu), &exact(mu), 1e-12);
     Case {
         title: "Hoffmann's model",
-        text: "Two degrees of freedom that couple at a friction of 3/4. Reference: exact (Hoffmann et al., Eur. J. Mech. A 21, 2002).",
+        text: "Two degrees of freedom that couple at a friction of 3/4. Reference: exact (Hoffmann et al., Mech. Res. Commun. 29, 2002).",
         rows: [0.5, 0.8, 0.9].into_iter().flat_map(row).collect(),
     }
 }

@@ -124,7 +124,7 @@ impl Case {
 }
 
 /// What to do where the document differs.
-pub const ADVICE: &str = "`make validation` writes it anew";
+pub const ADVICE: &str = "`make validation` writes it again";
 
 /// The document.
 pub fn document() -> PathBuf {
