@@ -118,8 +118,8 @@ pub fn open(path: &Path, format: &Format) -> Result<File> {
 
 /// Whether a file is of a kind, of whatever version. Not collective.
 pub fn is_of(path: &Path, format: &Format) -> bool {
-    let name = || File::open(path).and_then(|file| file.attr("format")?.read_scalar::<VarLenUnicode>());
-    is_hdf5(path) && name().is_ok_and(|name| name.as_str() == format.name)
+    let name = || File::open(path).and_then(|file| read_mark(&file.attr("format")?));
+    is_hdf5(path) && name().is_ok_and(|name| name == format.name)
 }
 
 /// The error for a file that HDF5 cannot read to its end, or that does not fit together.
@@ -245,7 +245,18 @@ mod tests {
         file.new_attr::<VarLenUnicode>().create("format").unwrap().write_scalar(&name).unwrap();
         file.new_attr::<i32>().create("version").unwrap().write_scalar(&FORMAT.version).unwrap();
         file.close().unwrap();
-        assert!(open(&path, &FORMAT).is_ok());
+        assert!(open(&path, &FORMAT).is_ok() && is_of(&path, &FORMAT));
+    }
+
+    #[test]
+    fn a_file_is_recognised_by_its_mark() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.h5");
+        create(&path, &FORMAT, |file| list(file, "x", &[1.0])).unwrap();
+        assert!(is_of(&path, &FORMAT));
+        assert!(!is_of(&path, &Format { name: "another kind", ..FORMAT }));
+        std::fs::write(&path, "no HDF5").unwrap();
+        assert!(!is_of(&path, &FORMAT));
     }
 
     #[test]

@@ -5,10 +5,12 @@
 //! about             text, TOML: [origin] model, mesh with hash, friction, bands; [[pair]] the sliding pairs; parts
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
-//! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + inertia modes; kg, N s/m, N/m at the retained points, unit modal mass
+//! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + inertia modes; kg, N s/m, N/m at the retained
+//!                               points, unit modal mass
 //! load, preload     n           generalised forces, N
-//! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero: frictionless), weight (m2),
-//!                   gap (m), touching (0 or 1), displacement (m) and normal_force (N) at the equilibrium it was made about
+//! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:
+//!                   frictionless), weight (m2), gap (m), touching (0 or 1), displacement (m) and normal_force (N) at
+//!                   the equilibrium that it was made about
 //! surface/nodes     n_s x 3     corners of the outer surface, m
 //! surface/triangles n_t x 3
 //! surface/part      n_t         index into the parts

@@ -1,7 +1,9 @@
 //! The structure between its sliding contacts, linear about an equilibrium.
 //!
 //! ```text
-//! K = K_elements + sum_other B_a^T D_a B_a          F = F_ext + sum_other B_a^T (f_a + D_a g_a)          K_s = K + B^T diag(k) B
+//! K   = K_elements + sum_other B_a^T D_a B_a
+//! F   = F_ext + sum_other B_a^T (f_a + D_a g_a)
+//! K_s = K + B^T diag(k) B
 //! ```
 
 use crate::Result;

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! Interface --layout--> cells --contacts--> Interface with reference nodes
-//! System + Interface + Equilibrium --craig_bampton--> Reduced --> SuperElement --> System + Interface of some hundred equations
+//! System + Interface + Equilibrium --craig_bampton--> Reduced --> SuperElement --> System + Interface of some hundred
+//!                                                                                    dofs
 //! ```
 
 pub mod contacts;

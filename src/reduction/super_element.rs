@@ -1,8 +1,10 @@
 //! A super-element: a brake that has become one element with some hundred coordinates and node-to-node contacts.
 //!
 //! ```text
-//! coordinates  [ slave points | master points | loaded points | fixed-interface modes | inertia modes ]    three a point, one a mode
-//! nodes        three coordinates each, the last one filled up with held ones; coordinates that cannot move are held, too
+//! coordinates  [ slave points | master points | loaded points | fixed-interface modes | inertia modes ]
+//!              three a point, one a mode
+//! nodes        three coordinates each, the last one filled up with constrained ones; coordinates that cannot move
+//!              are constrained, too
 //! contact      g_i = q_slave,i - q_master,i                                                   B = [I -I 0 0]
 //! ```
 //!

@@ -132,7 +132,9 @@ fn answer_section(findings: &Findings) -> Markup {
             p.verdict.(style) { (unbroken(&words::headline(findings))) }
             (list("cautions", &words::cautions(findings)))
             div.split {
-                div.answers { @for (i, one) in findings.instabilities.iter().enumerate() { (answer(findings, i, one)) } }
+                div.answers {
+                    @for (i, one) in findings.instabilities.iter().enumerate() { (answer(findings, i, one)) }
+                }
                 (shape())
             }
         }

@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! /                     attributes: format "squeal results", version 1
-//! about                 text, TOML: the fields of [`About`]: model and mesh with their SHA-256, program, libraries, command, band (Hz),
+//! about                 text, TOML: the fields of [`About`]: model and mesh with their SHA-256, program, libraries,
+//!                       command, band (Hz),
 //!                       frictions asked for, [[parts]], [[pairs]]
 //! costs                 text, for people
-//! failure               text, TOML, only where the study did not come to its end: reason, [[steps]] of the equilibrium not reached
+//! failure               text, TOML, only where the study did not come to its end: reason, [[steps]] of the equilibrium
+//!                       not reached
 //! surface/nodes         n_s x 3     the outer surface of all parts, m
 //! surface/triangles     n_t x 3     normals point out
 //! surface/part          n_t         index into the parts
@@ -14,18 +16,22 @@
 //! contact/triangles     n_f x 3     none where contacts are single points
 //! contact/pair          n_f         index into the pairs
 //! contact/pair_of_node  n_c
-//! values/0000/          one group a friction, in the order in which they were finished; attributes: friction, asked (1, or 0 where
+//! values/0000/          one group a value, in the order in which they were finished; attributes: friction, asked (1, or
+//!                       0 where
 //!                       only tracking needed it)
-//!   modes               n rows, by frequency: growth_rate (1/s) and omega (rad/s), which make the eigenvalue, backward_error, unstable (0 or 1)
+//!   modes               n rows, by frequency: growth_rate (1/s) and omega (rad/s), which make the eigenvalue,
+//!                       backward_error, unstable (0 or 1)
 //!   sampled             n x n_p x 3 x 2   displacements at the samples, the last index real and imaginary part
-//!   shaped              k           places of the modes that have a shape at all nodes: unstable ones at the frictions asked for
+//!   shaped              k           places of the modes that have a shape at all nodes: unstable ones at the values
+//!                                   asked for
 //!   shapes              k x n_s x 3 x 2   their displacements; the largest of a shape is 1
 //!   pressure, status    n_c         at the nodes of contact/, Pa; 0 open, 1 slip, 2 stick, -1 no contact point
-//!   record              text, TOML: seconds, checks, count of modes, [[pairs]] forces (N) and counts, [[steps]] Newton iterations,
+//!   record              text, TOML: seconds, checks, count of modes, [[pairs]] forces (N) and counts, [[steps]] Newton
+//!                       iterations,
 //!                       [[sources]] what explains a mode: its place, shares, sensitivities
 //! diagram/              only where modes were followed
 //!   values              solved frictions
-//!   points              n rows: branch (from 0), mode (place among those that the tracking knows), friction, growth_rate, omega
+//!   points              n rows: branch (from 0), mode (place among those of tracking), friction, growth_rate, omega
 //!   hopf                text, TOML: [[hopf]]
 //!   doubtful            n x 2       intervals over which not all modes could be recognised
 //! ```

@@ -4,7 +4,8 @@
 //! With its modes, of energy 1, other problems of the structure are
 //!
 //! ```text
-//! Phi^T K_0 Phi = I      Phi^T M Phi = diag(1 / omega^2)      Phi^T K Phi = I + sum Phi^T B_a^T (D_a - D_0a) B_a Phi = I + U V^T
+//! Phi^T K_0 Phi = I      Phi^T M Phi = diag(1 / omega^2)
+//! Phi^T K Phi = I + sum Phi^T B_a^T (D_a - D_0a) B_a Phi = I + U V^T
 //! ```
 //!
 //! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s. A step of a Krylov method then

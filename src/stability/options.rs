@@ -70,7 +70,7 @@ pub struct BlockedOptions {
     /// a start, 292 and 312 with 1, 262 and 290 with 1.3, 266 and 280 with 1.6).
     pub start_radius: f64,
     /// Relative change of an eigenvalue from round to round at which it is converged. A round wins a factor of three to
-    /// five, so that the error left is below half the change. Default: 1e-9.
+    /// five, so that the error left is below half the change: two searches differ by less than that. Default: 5e-10.
     pub eigenvalue_change: f64,
     /// Rounds of correction before the search is given up. Default: 40.
     pub max_rounds: usize,
@@ -82,7 +82,7 @@ impl Default for BlockedOptions {
             krylov_block: 16,
             krylov_per_mode: 1.4,
             start_radius: 1.3,
-            eigenvalue_change: 1e-9,
+            eigenvalue_change: 5e-10,
             max_rounds: 40,
         }
     }

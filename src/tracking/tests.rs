@@ -26,7 +26,8 @@ fn at(branch: &Branch, value: f64) -> Complex64 {
     branch.points.iter().find(|point| point.value == value).unwrap().lambda
 }
 
-/// `lambda^2 = -2 +- sqrt(1 - 4 mu / 3)`: the two modes meet at mu = 3/4 (Hoffmann et al., Mech. Res. Commun. 29, 2002).
+/// `lambda^2 = -2 +- sqrt(1 - 4 mu / 3)`: the two modes meet at mu = 3/4 (Hoffmann et al., Mech. Res.
+/// Commun. 29, 2002).
 /// The lower one goes on as the one that decays. Steps of 0.25 and 0.05 meet the defective point itself.
 #[test]
 fn hoffmann_couples_at_three_quarters_whatever_the_step() {

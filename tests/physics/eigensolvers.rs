@@ -74,7 +74,8 @@ fn a_search_starts_from_the_modes_of_another_friction() {
     println!("{} and {} solves", alone.report.n_solves, after.report.n_solves);
     assert!(4 * after.report.n_solves < 3 * alone.report.n_solves);
     assert!(alone.count.agrees() && after.count.agrees());
-    assert!(distance(&[alone.modes, after.modes]) < 1e-9);
+    let distance = distance(&[alone.modes, after.modes]);
+    assert!(distance < 1e-9, "{distance:e}");
 }
 
 #[test]
