@@ -54,12 +54,12 @@ fn part(comm: &Comm, full: &FullModel, i: usize) -> PartRow {
     let inertia = properties.inertia_about(centre);
     PartRow {
         part: mesh.parts[i].clone(),
-        tetrahedra: quality.len(),
+        tetrahedra: quality.n_numbers(),
         mass_kg: properties.mass,
         centre_m: centre,
         inertia_kg_m2: [0, 1, 2].map(|k| inertia[k][k]),
         quality_min: quality.nth(0),
-        quality_median: quality.nth(quality.len() / 2),
+        quality_median: quality.nth(quality.n_numbers() / 2),
     }
 }
 

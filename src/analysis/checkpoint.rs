@@ -5,8 +5,8 @@
 //!   study.txt                 what the numbers depend on, a line each: a run that differs does not go on
 //!   value-0003.h5             a finished value: its group of the results file, and the eigenvalues for tracking
 //!   path-0003.RANK.h5         the last equilibria of the path that ends there
-//!   vectors-0003.RANK.h5      right and left vectors of a snapshot that tracking still needs, single precision, and its
-//!                             equilibrium
+//!   vectors-0003.RANK.h5      right and left vectors of a snapshot that tracking still needs, single precision,
+//!                             and its equilibrium
 //!   products-0003-0005.h5     products of two snapshots' vectors
 //! ```
 //!

@@ -16,8 +16,8 @@
 //! contact/triangles     n_f x 3     none where contacts are single points
 //! contact/pair          n_f         index into the pairs
 //! contact/pair_of_node  n_c
-//! values/0000/          one group a value, in the order in which they were finished; attributes: friction, asked (1, or
-//!                       0 where
+//! values/0000/          one group a value, in the order in which they were finished; attributes: friction, asked
+//!                       (1, or 0 where
 //!                       only tracking needed it)
 //!   modes               n rows, by frequency: growth_rate (1/s) and omega (rad/s), which make the eigenvalue,
 //!                       backward_error, unstable (0 or 1)

@@ -231,7 +231,8 @@ mod tests {
     #[test]
     fn what_was_not_looked_at_is_unknown_and_an_instability_stays_one() {
         let step = Step { label: String::new(), converged: false, iterations: vec![] };
-        let changes: [(&str, &dyn Fn(&mut Results)); 7] = [
+        type Change<'a> = (&'a str, &'a dyn Fn(&mut Results));
+        let changes: [Change; 7] = [
             ("no mode lies in the band from 0 to 6000 Hz", &|results| results.values[0].modes.clear()),
             ("young is 210", &|results| results.about.warnings.push("young is 210".into())),
             ("ended early: out of luck.", &|results| {

@@ -6,6 +6,9 @@ use super::sturm::SturmCount;
 use crate::equilibrium::LabelledFactor;
 use crate::native::{Comm, machine};
 
+/// Whether the ranks together may still take so much memory, MB.
+type HasMemory = Box<dyn Fn(&Comm, f64) -> bool>;
+
 /// Memory of a symmetric factor over that of an LU on the same pattern, in double and in single precision: 3.0 GB over
 /// 5.3 GB on the full demo brake, or over 2.8 GB.
 const SYMMETRIC_OVER_LU: [f64; 2] = [0.6, 1.1];
@@ -13,7 +16,7 @@ const SYMMETRIC_OVER_LU: [f64; 2] = [0.6, 1.1];
 /// Decides by the memory that is left.
 pub(super) struct MemoryBudget {
     /// Whether the ranks together may still take so many MB. Collective.
-    pub has_mb: Box<dyn Fn(&Comm, f64) -> bool>,
+    pub has_mb: HasMemory,
 }
 
 impl Default for MemoryBudget {

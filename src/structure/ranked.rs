@@ -18,7 +18,7 @@ impl Ranked<'_> {
     }
 
     /// How many there are over all ranks.
-    pub fn len(&self) -> usize {
+    pub fn n_numbers(&self) -> usize {
         self.n
     }
 
@@ -47,6 +47,6 @@ mod tests {
         for (k, value) in [-0.25, 0.125, 0.5, 0.5, 0.75].into_iter().enumerate() {
             assert!((ranked.nth(k) - value).abs() < 1e-15, "{k}");
         }
-        assert_eq!(ranked.len(), 5);
+        assert_eq!(ranked.n_numbers(), 5);
     }
 }

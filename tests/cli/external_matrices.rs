@@ -1,9 +1,9 @@
 //! Modes of given matrices through files: exact models, problems of any structure against a dense solver, formats,
 //! ranks.
 //!
-//! Sources: Hoffmann et al., Mech. Res. Commun. 29 (2002); Sinou and Jezequel, Eur. J. Mech. A 26 (2007); Meijaard et al.,
-//! Proc. R. Soc. A 463 (2007); Betcke et al., NLEVP, ACM TOMS 39 (2013). Random problems: eigenvalues of `[0 I; -M^-1
-//! K, -M^-1 C]` by nalgebra.
+//! Sources: Hoffmann et al., Mech. Res. Commun. 29 (2002); Sinou and Jezequel, Eur. J. Mech. A 26 (2007); Meijaard et
+//! al., Proc. R. Soc. A 463 (2007); Betcke et al., NLEVP, ACM TOMS 39 (2013). Random problems: eigenvalues of `[0 I;
+//! -M^-1 K, -M^-1 C]` by nalgebra.
 //!
 //! Goal and, in brackets, measured: eigenvalues to 1e-10 of exact ones [1e-15], to 1e-8 of the dense solver's; backward
 //! errors below 1e-12 [1e-15]; Hopf points to 1e-6 of the parameter's range [4e-8].

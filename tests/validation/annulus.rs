@@ -67,7 +67,7 @@ fn mesh(cells: [usize; 3]) -> Mesh {
 fn modes(system: &System, shift: f64, band: [f64; 2]) -> Band {
     let problem = QuadraticProblem::symmetric(system.matrices());
     let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
-    let request = BandRequest { band: band, shift: shift };
+    let request = BandRequest { band, shift };
     let mut factor = LabelledFactor::new(Precision::Double);
     let band = solver.solve_band(&problem, &mut factor, &request, &mut |_| ()).unwrap();
     assert!(band.count.agrees(), "{:?}", band.count);

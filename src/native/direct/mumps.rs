@@ -124,7 +124,7 @@ impl Mumps {
             // SAFETY: PETSC reads the name, and writes value and flag.
             check(unsafe { sys::PetscOptionsGetInt(none, std::ptr::null(), name.as_ptr(), &mut value, &mut flag) })?;
             if found(flag) {
-                self.set_icntl(number, value as i32);
+                self.set_icntl(number, value);
             }
         }
         for number in 1..=N_CNTL {
