@@ -33,7 +33,7 @@ pub struct ExternalOptions {
 /// there with a note. Shapes and names of rows are on the root alone. Collective.
 ///
 /// # Errors
-/// [`Error::Input`] for matrices that cannot be read, do not fit together or are singular for every shift; PETSc's and
+/// [`crate::Error::Input`] for matrices that cannot be read, do not fit together or are singular for every shift; PETSc's and
 /// MUMPS's.
 pub fn external_modes(
     comm: &Comm,

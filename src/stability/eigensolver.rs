@@ -37,11 +37,11 @@ pub type OnProgress<'p> = dyn FnMut(EigenProgress) + 'p;
 /// The eigensolvers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolverKind {
-    /// [`super::toar`]
+    /// `stability::toar`
     Toar,
-    /// [`super::modal`]
+    /// `stability::modal`
     Modal,
-    /// [`super::blocked`]
+    /// `stability::blocked`
     Blocked,
 }
 

@@ -5,12 +5,12 @@
 //!
 //! | eigensolver | method | used for |
 //! |---|---|---|
-//! | [`blocked`] | a growing subspace, many right-hand sides at a time | large problems |
-//! | [`modal`] | TOAR in the modal coordinates of a reference | super-elements |
-//! | [`toar`] | SLEPc's TOAR about a real shift: one real factor serves the band | all others, the last resort |
+//! | `blocked` | a growing subspace, many right-hand sides at a time | large problems |
+//! | `modal` | TOAR in the modal coordinates of a reference | super-elements |
+//! | `toar` | SLEPc's TOAR about a real shift: one real factor serves the band | all others, the last resort |
 //!
 //! Each mode has its backward error; their number is compared with the Sturm count of the symmetric problem
-//! ([`count`]). [`BandSolver::left_vectors`] finds their left vectors. Tolerances and thresholds are in
+//! (`count`). [`BandSolver::left_vectors`] finds their left vectors. Tolerances and thresholds are in
 //! [`EigenOptions`].
 
 mod band;

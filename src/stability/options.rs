@@ -58,7 +58,7 @@ pub struct EigenOptions {
     pub backward_error: f64,
 }
 
-/// How the blocked search ([`super::blocked`]) works.
+/// How the blocked search (`stability::blocked`) works.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockedOptions {
     /// Columns of a Krylov block. Default: 16.

@@ -3,7 +3,7 @@
 use super::Int;
 use crate::{Error, Result};
 
-/// The pattern of some rows, compressed by rows. Offsets wrap beyond 2^31 entries; [`Rows::check`] looks at the
+/// The pattern of some rows, compressed by rows. Offsets wrap beyond 2^31 entries; `Rows::check` looks at the
 /// columns' number.
 #[derive(Debug, Clone)]
 pub struct Csr {
