@@ -56,7 +56,7 @@
 //! | [`matrices`] | external M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |
 //! | [`assembly`] | dofs, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
 //! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |
-//! | [`stability`] | linearisation, modes of a band, none missed; energies and sensitivities | [`stability::BandSolver::solve_band`] |
+//! | [`stability`] | modes of a band, none missed; energies, sensitivities | [`stability::BandSolver::solve_band`] |
 //! | [`reduction`] | reference nodes, super-elements and their files | [`reduction::craig_bampton::reduce`] |
 //! | [`results`] | what an analysis found, as plain data, and its file | [`results::Results`], [`results::file`] |
 //! | [`structure`] | a brake, full or reduced: reading, assembly, surface | [`structure::Structure::read`] |

@@ -33,8 +33,8 @@ pub struct ExternalOptions {
 /// there with a note. Shapes and names of rows are on the root alone. Collective.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for matrices that cannot be read, do not fit together or are singular for every shift; PETSc's and
-/// MUMPS's.
+/// [`crate::Error::Input`] for matrices that cannot be read, do not fit together or are singular for every shift;
+/// PETSc's and MUMPS's.
 pub fn external_modes(
     comm: &Comm,
     family: &MatrixFamily,
