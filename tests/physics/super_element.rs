@@ -197,7 +197,7 @@ fn modal_coordinates_of_one_friction_serve_the_others() {
     for friction in [FRICTION, 0.2] {
         let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
         let modes = sweep.modes(&equilibrium, WIDE, &mut ()).unwrap().modes;
-        let left = sweep.left_vectors(&modes, |_| 1e-8).unwrap();
+        let left = sweep.left_vectors(&modes, |_| 1e-7).unwrap();
         let look = |problem: &QuadraticProblem| {
             let mut solver = BandSolver::new(EigenOptions::default(), Vec::new());
             let (mut factor, request) =
