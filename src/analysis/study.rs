@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::comparison::{Sizes, Study, n_contacts};
 use crate::native::Comm;
 use crate::output::files::write_whole;
+use crate::output::overwrite::is_free;
 use crate::output::results_folder::RESULTS;
 use crate::reduction;
 use crate::results::{Results, file};
@@ -255,8 +256,7 @@ impl Record {
                 |reason| Error::input(format!("{} is damaged: {reason}. Remove it to begin again", file.display()));
             return toml::from_str(&text).map_err(damaged);
         }
-        let is_free = std::fs::read_dir(place).map_or(!place.exists(), |mut entries| entries.next().is_none());
-        if is_free {
+        if is_free(place) {
             return Ok(Record::default());
         }
         let what = format!("{} exists and is not the folder of a study", place.display());

@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::Result;
 use crate::analysis::{matrix_summary, model_summary};
-use crate::output::contact_cells::ContactCells;
+use crate::output::contact_cells_vtu::ContactCells;
 use crate::output::files::write_whole;
 use crate::output::overwrite::may_write_file;
 use crate::output::vtu;

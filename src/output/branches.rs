@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::rows::{BranchRow, PointRow};
+use super::columns::{BranchRow, PointRow};
 use crate::tracking::{Diagram, Hopf, Point};
 
 /// The points of all branches within a band (rad/s); branches are numbered from 1.

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde::Serialize;
 
-use super::rows::write_csv;
+use super::columns::write_csv;
 use crate::comparison::{Comparison, ComparisonAtValue, ModePair, UnpairedMode};
 
 /// The largest, by modulus, of some numbers of pairs, and the mean modulus.

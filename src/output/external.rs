@@ -9,9 +9,9 @@ use crate::results::{ExternalMode, ExternalResults, ExternalValue};
 use crate::stability::{Count, Evidence};
 
 use super::branches;
+use super::columns::{self, AtFriction, ModeRow};
 use super::folder::Folder;
 use super::results_folder::write_branches;
-use super::rows::{self, AtFriction, ModeRow};
 
 /// From this condition number on a warning is given: of sixteen digits four are left.
 const ILL_CONDITIONED: f64 = 1e12;
@@ -195,13 +195,13 @@ impl From<&ExternalMode> for ExternalModeRow {
 fn modes_table(out: &mut dyn io::Write, results: &ExternalResults) -> io::Result<()> {
     let rows_of = |value: &ExternalValue| value.modes.iter().map(ExternalModeRow::from).collect::<Vec<_>>();
     if !results.varies {
-        return rows::write_csv(out, results.values.iter().flat_map(rows_of));
+        return columns::write_csv(out, results.values.iter().flat_map(rows_of));
     }
     let with_value = |value: &ExternalValue| {
         let friction = value.value;
         rows_of(value).into_iter().map(move |row| AtFriction { friction, row })
     };
-    rows::write_csv_over(out, &results.parameter, results.values.iter().flat_map(with_value))
+    columns::write_csv_over(out, &results.parameter, results.values.iter().flat_map(with_value))
 }
 
 /// Shapes as CSV, a line for each dof: `row`, `node, dof` where rows have names, and `re_1, im_1, re_2, ...` of the

@@ -6,8 +6,8 @@ use crate::Result;
 use crate::results::{FreeMode, FreeModes, MeasuredComparison};
 use crate::stability::Count;
 
+use super::columns::write_csv;
 use super::folder::Folder;
-use super::rows::write_csv;
 
 /// The modes in words, with the files of their folder.
 pub fn summary(found: &FreeModes, place: &str) -> String {

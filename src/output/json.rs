@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::rows::{ContactRow, HopfRow, ModeRow, PointRow, SourceRow};
-use super::tables;
+use super::columns::{ContactRow, HopfRow, ModeRow, PointRow, SourceRow};
+use super::sweep_text;
 use crate::results::{About, ModeData, Part, Results, Status, Value};
 use crate::tracking::Branch;
 
@@ -108,7 +108,7 @@ impl<'a> ResultsDocument<'a> {
 impl VerdictDocument {
     fn new(results: &Results) -> VerdictDocument {
         let verdict = results.verdict();
-        let text = tables::verdict(results).trim_end().to_owned();
+        let text = sweep_text::verdict(results).trim_end().to_owned();
         VerdictDocument { status: verdict.status, reason: verdict.reason(), text }
     }
 }

@@ -2,8 +2,9 @@
 //! computes nothing of its own.
 
 pub mod branches;
+pub mod columns;
 pub mod comparison;
-pub mod contact_cells;
+pub mod contact_cells_vtu;
 pub mod details;
 pub mod explain;
 pub mod external;
@@ -15,10 +16,9 @@ pub mod json;
 pub mod model_summary;
 pub mod overwrite;
 pub mod results_folder;
-pub mod rows;
 pub mod study;
 pub mod summary;
 pub mod super_element;
-pub mod tables;
+pub mod sweep_text;
 mod volume;
 pub mod vtu;

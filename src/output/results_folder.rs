@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use super::columns::{self, AtFriction, ContactRow, HopfRow, IterationRow, ModeRow, ModeSourceRow, SourceRow};
 use super::folder::Folder;
-use super::rows::{self, AtFriction, ContactRow, HopfRow, IterationRow, ModeRow, ModeSourceRow, SourceRow};
 use super::{branches, details};
 use crate::Result;
 use crate::results::{Results, file};
@@ -19,8 +19,8 @@ pub const RESULTS: &str = "results.h5";
 /// The system's and HDF5's, with the file's path.
 pub fn write(folder: &Folder, results: &Results, summary: &str) -> Result<()> {
     file::write(&folder.draft().join(RESULTS), results)?;
-    folder.write("contact.csv", |out| rows::write_csv(out, contact(results)))?;
-    folder.write("convergence.csv", |out| rows::write_csv(out, convergence(results)))?;
+    folder.write("contact.csv", |out| columns::write_csv(out, contact(results)))?;
+    folder.write("convergence.csv", |out| columns::write_csv(out, convergence(results)))?;
     if results.about.band[1] > 0.0 {
         write_modes(folder, results)?;
     }
@@ -29,10 +29,10 @@ pub fn write(folder: &Folder, results: &Results, summary: &str) -> Result<()> {
 }
 
 fn write_modes(folder: &Folder, results: &Results) -> Result<()> {
-    folder.write("modes.csv", |out| rows::write_csv(out, modes(results)))?;
+    folder.write("modes.csv", |out| columns::write_csv(out, modes(results)))?;
     folder.write("details.txt", |out| out.write_all(details::text(results).as_bytes()))?;
     if results.modes().any(|(_, _, mode)| !mode.sources.is_empty()) {
-        folder.write("explained.csv", |out| rows::write_csv(out, sources(results)))?;
+        folder.write("explained.csv", |out| columns::write_csv(out, sources(results)))?;
     }
     let Some(diagram) = &results.diagram else { return Ok(()) };
     write_branches(folder, diagram, results.about.band, "friction")
@@ -44,9 +44,9 @@ fn write_modes(folder: &Folder, results: &Results) -> Result<()> {
 /// The system's, with the file's path.
 pub fn write_branches(folder: &Folder, diagram: &Diagram, band: [f64; 2], parameter: &str) -> Result<()> {
     let points = branches::points(diagram, band.map(|f| TAU * f));
-    folder.write("branches.csv", |out| rows::write_csv_over(out, parameter, points))?;
+    folder.write("branches.csv", |out| columns::write_csv_over(out, parameter, points))?;
     let hopf = diagram.hopf.iter().map(HopfRow::new);
-    folder.write("hopf.csv", |out| rows::write_csv_over(out, parameter, hopf))
+    folder.write("hopf.csv", |out| columns::write_csv_over(out, parameter, hopf))
 }
 
 fn modes(results: &Results) -> impl Iterator<Item = AtFriction<ModeRow>> {

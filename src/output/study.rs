@@ -4,7 +4,7 @@ use std::io::{Result, Write};
 
 use serde::Serialize;
 
-use super::rows::write_csv;
+use super::columns::write_csv;
 use crate::comparison::{CurvePoint, Errors, StudiedModel, Study};
 
 /// Sizes and times, errors, and the instabilities over friction.

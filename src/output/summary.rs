@@ -1,6 +1,6 @@
 //! What a run ends with on the screen.
 
-use super::{branches, details, explain, tables};
+use super::{branches, details, explain, sweep_text};
 use crate::results::Results;
 
 /// What the complex modes come to, and what is in the folder `place`.
@@ -9,9 +9,9 @@ pub fn stability(results: &Results, place: &str) -> String {
     let [from, to] = about.band;
     let mut summary = format!("{}: complex modes {from}-{to} Hz\n\n", about.title);
     if results.asked().next().is_some() {
-        summary += &format!("{}\n", tables::sweep(results));
+        summary += &format!("{}\n", sweep_text::sweep(results));
     }
-    summary += &tables::verdict(results);
+    summary += &sweep_text::verdict(results);
     let explained = results.modes().filter(|(_, _, mode)| !mode.sources.is_empty());
     let strongest = explained.max_by(|(_, _, a), (_, _, b)| a.growth_rate().total_cmp(&b.growth_rate()));
     summary += &strongest.map_or_else(String::new, |(friction, _, mode)| explain::sentence(friction, mode) + "\n");

@@ -44,9 +44,9 @@ use crate::equilibrium::Equilibrium;
 use crate::native::{Block, Factor, FactorKind, FactorStats, Matrix, Mck, Noise, Vector, lapack};
 use crate::{Error, Result};
 
+use super::fixed_interface::{self, Modes};
 use super::functionals::{Functionals, retained};
 use super::linear::Linear;
-use super::modes::{self, Modes};
 
 /// Right-hand sides in one pass over a factor or matrix.
 const PANEL: usize = 64;
@@ -205,9 +205,10 @@ impl Interior<'_> {
 
     fn modes(&self, psi: &Block, limit: f64, progress: &mut dyn FnMut(Event)) -> Result<Modes> {
         let (n, mass) = (self.n_dimensions(), &self.system.m);
-        let start = arbitrary(self.system, n.min(modes::WIDTH));
+        let start = arbitrary(self.system, n.min(fixed_interface::WIDTH));
         let mut invert = |r: &Block| self.answer(psi, r);
-        let mut modes = modes::below(limit, n, mass, &start, &mut invert, &mut |size| progress(Event::Fixed(size)))?;
+        let mut modes =
+            fixed_interface::below(limit, n, mass, &start, &mut invert, &mut |size| progress(Event::Fixed(size)))?;
         // Orthogonalisation has magnified what rounding left of B Phi.
         self.hold(psi, &mut modes.shapes);
         Ok(modes)
@@ -222,7 +223,7 @@ impl Interior<'_> {
         let moved = psi.leading_combined(self.functionals.len(), motions.as_slice(), motions.ncols());
         let mut answer = self.answer(psi, &moved.multiplied_by(&self.system.m)?)?;
         let room = self.n_dimensions() - modes.frequencies.len();
-        modes::make_orthonormal(&modes.shapes, &mut answer, &self.system.m, room)?;
+        fixed_interface::make_orthonormal(&modes.shapes, &mut answer, &self.system.m, room)?;
         self.hold(psi, &mut answer);
         Ok(answer)
     }

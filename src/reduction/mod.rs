@@ -9,9 +9,9 @@
 pub mod contacts;
 pub mod craig_bampton;
 pub mod file;
+pub mod fixed_interface;
 pub mod functionals;
 pub mod layout;
 mod linear;
-pub mod modes;
 pub mod recovery;
 pub mod super_element;

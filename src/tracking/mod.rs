@@ -30,7 +30,7 @@
 
 mod diagram;
 mod homotopy;
-mod hunt;
+mod hopf;
 mod matching;
 #[cfg(test)]
 mod models;

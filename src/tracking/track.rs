@@ -7,7 +7,7 @@ use num_complex::Complex64;
 
 use super::diagram::{Branch, Diagram, Hopf, Partner, Point};
 use super::homotopy::{Path, follow};
-use super::hunt::{Aim, Hunt};
+use super::hopf::{Aim, HopfSearch};
 use super::matching::State;
 use super::node::Node;
 use super::transfer::Transfer;
@@ -42,7 +42,7 @@ fn follow_all<F: Family>(family: &mut F, values: &[f64], options: &Options, diag
     let mut last = tracker.begin();
     for &value in others {
         let next = Rc::new(open(tracker.family, value, -inwards, options)?);
-        tracker.link(&last, &next, Hunt::default())?;
+        tracker.link(&last, &next, HopfSearch::default())?;
         last = next;
     }
     Ok(())
@@ -105,19 +105,19 @@ impl<F: Family> Tracker<'_, F> {
     }
 
     /// Strings the modes of b on the branches that have reached a; solves in between where that is needed.
-    fn link(&mut self, a: &Rc<Node<F::Modes>>, b: &Rc<Node<F::Modes>>, hunt: Hunt) -> Result<()> {
+    fn link(&mut self, a: &Rc<Node<F::Modes>>, b: &Rc<Node<F::Modes>>, search: HopfSearch) -> Result<()> {
         let transfer = Transfer::new(a, b, self.family, self.options)?;
         let path = self.path(a, b, &transfer);
         let span = Span { transfer, path };
         let width = (b.value - a.value).abs();
-        let Some((value, aim)) = self.split(&span, a.value, b.value, hunt).filter(|_| width > self.options.tolerance)
+        let Some((value, aim)) = self.split(&span, a.value, b.value, search).filter(|_| width > self.options.tolerance)
         else {
             return self.accept(a, b, span);
         };
         let middle = Rc::new(open(self.family, value, (a.value - b.value).signum(), self.options)?);
-        let hunt = Hunt { depth: hunt.depth + 1, aim };
-        self.link(a, &middle, hunt)?;
-        self.link(&middle, b, hunt)
+        let search = HopfSearch { depth: search.depth + 1, aim };
+        self.link(a, &middle, search)?;
+        self.link(&middle, b, search)
     }
 
     fn path(&self, a: &Node<F::Modes>, b: &Node<F::Modes>, transfer: &Transfer) -> Option<Path> {
@@ -130,24 +130,24 @@ impl<F: Family> Tracker<'_, F> {
     }
 
     /// The value between a and b at which one more solve is needed, if any, and the root that it aims at.
-    fn split(&self, span: &Span, a: f64, b: f64, hunt: Hunt) -> Option<(f64, Option<Aim>)> {
+    fn split(&self, span: &Span, a: f64, b: f64, search: HopfSearch) -> Option<(f64, Option<Aim>)> {
         let between = |s: f64| a + s * (b - a);
         let Some(path) = span.path.as_ref().filter(|_| span.transfer.complete) else {
             return Some((between(0.5), None));
         };
         let events = (0..path.end.len()).filter_map(|mode| self.event(path, mode).map(|event| (mode, event)));
         let branch = |mode: usize| self.carried.branches[span.transfer.from[mode]];
-        // A hunt is finished before another begins.
-        let current = |mode: usize| hunt.aim.is_some_and(|aim| aim.branch == branch(mode));
+        // A search for one root ends before another begins.
+        let current = |mode: usize| search.aim.is_some_and(|aim| aim.branch == branch(mode));
         if let Some((mode, (is_root, s))) = events.max_by_key(|(mode, _)| (current(*mode), std::cmp::Reverse(*mode))) {
             if !is_root {
                 return Some((between(s.clamp(0.05, 0.95)), None));
             }
-            let (value, aim) = hunt.aim(branch(mode), between(s), [a, b], self.options.tolerance);
+            let (value, aim) = search.aim(branch(mode), between(s), [a, b], self.options.tolerance);
             return Some((value, Some(aim)));
         }
         let (s, sharing) = path.nearest_coalescence();
-        (sharing > NEAR * 1.5_f64.powi(hunt.depth as i32)).then_some((between(s.clamp(0.3, 0.7)), None))
+        (sharing > NEAR * 1.5_f64.powi(search.depth as i32)).then_some((between(s.clamp(0.3, 0.7)), None))
     }
 
     /// A growth rate that passes zero, or does so twice: (whether once, where). Modes outside the band do not count.

@@ -1,4 +1,4 @@
-//! The lowest modes of `K x = omega^2 M x` on a subspace, by block Lanczos on the inverse.
+//! Fixed-interface modes: the lowest modes of `K x = omega^2 M x` on a subspace, by block Lanczos on the inverse.
 //!
 //! With `A r` the solution of the constrained static problem under r, the modes satisfy `A M x = theta x`, `theta =
 //! 1/omega^2`, where `A M` is symmetric in the inner product of M. The block Krylov basis V (`V^T M V = I`) is

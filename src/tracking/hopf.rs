@@ -1,15 +1,15 @@
-//! Where to solve for a Hopf point that the model foretells.
+//! Where to solve for a Hopf point that the interpolated modes predict.
 
 /// What led to the solves between two values asked for.
 #[derive(Clone, Copy, Default)]
-pub struct Hunt {
+pub struct HopfSearch {
     /// How often the step has been divided.
     pub depth: usize,
     /// The root that the last solve aimed at.
     pub aim: Option<Aim>,
 }
 
-/// A root of a branch's growth rate that is hunted.
+/// A root of a branch's growth rate that is sought.
 #[derive(Clone, Copy)]
 pub struct Aim {
     pub branch: usize,
@@ -19,8 +19,8 @@ pub struct Aim {
     widths: [f64; 2],
 }
 
-impl Hunt {
-    /// The value to solve at for a root foretold between a and b.
+impl HopfSearch {
+    /// The value to solve at for a root predicted between a and b.
     ///
     /// At first that is nearly half a tolerance before the root; then, if the model was right, as much behind it, and
     /// the bracket is closed. Where the root has moved since the last solve, part of that is added, away from the
@@ -50,15 +50,15 @@ mod tests {
     /// Aims at the root of a function with a straight line through both ends, as a model would, until the bracket is
     /// closed.
     fn solves(function: impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2], tolerance: f64) -> usize {
-        let mut hunt = Hunt::default();
+        let mut search = HopfSearch::default();
         for n_solves in 0.. {
             if b - a <= tolerance {
                 return n_solves;
             }
             let (f, g) = (function(a), function(b));
-            let (value, aim) = hunt.aim(3, a + (b - a) * f / (f - g), [a, b], tolerance);
+            let (value, aim) = search.aim(3, a + (b - a) * f / (f - g), [a, b], tolerance);
             assert!(a < value && value < b, "{a} {value} {b}");
-            hunt.aim = Some(aim);
+            search.aim = Some(aim);
             *(if (function(value) > 0.0) == (g > 0.0) { &mut b } else { &mut a }) = value;
         }
         unreachable!()
@@ -75,8 +75,8 @@ mod tests {
     #[test]
     fn a_new_branch_is_not_misled_by_the_last() {
         let aim = Aim { branch: 1, root: 0.9, widths: [1.0, 2.5] };
-        let hunt = Hunt { depth: 2, aim: Some(aim) };
-        assert!((hunt.aim(2, 0.5, [0.0, 1.0], 1e-3).0 - 0.4996).abs() < 1e-12);
-        assert!((hunt.aim(1, 0.4, [0.0, 1.0], 1e-3).0 - 0.55).abs() < 1e-12);
+        let search = HopfSearch { depth: 2, aim: Some(aim) };
+        assert!((search.aim(2, 0.5, [0.0, 1.0], 1e-3).0 - 0.4996).abs() < 1e-12);
+        assert!((search.aim(1, 0.4, [0.0, 1.0], 1e-3).0 - 0.55).abs() < 1e-12);
     }
 }
