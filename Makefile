@@ -15,7 +15,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help demo test report-test calculix td1 validation docs full bench lint setup build clean
+.PHONY: help demo test python-test report-test calculix td1 validation docs full bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## this list
@@ -29,6 +29,11 @@ test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## all test
 	@scripts/setup.sh --tests
 	cargo nextest run --workspace --release
 	node --test tests/page/*.test.mjs
+	$(MAKE) python-test
+
+python-test: setup build ## the Python package, beside the tables of the same run
+	@scripts/setup.sh --tests
+	SQUEAL=$(CURDIR)/$(BINARY) MODEL=tests/data/pads_on_disc.toml PYTHONPATH=python /usr/bin/python3 -m pytest -q -p no:cacheprovider python/tests
 
 validation: setup $(patsubst %,meshes/build/td1-%.msh,coarse medium fine) ## writes docs/validation.md: our numbers beside everybody else's
 	@scripts/setup.sh --tests

@@ -1,0 +1,62 @@
+"""Super-elements."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._file import opened, table
+
+FORMAT, VERSION = "squeal super-element", 2
+
+
+@dataclass(frozen=True)
+class SuperElement:
+    """A super-element. Its n coordinates: 3 a retained point, fixed-interface modes, inertia modes."""
+
+    about: dict
+    """Its origin (model, mesh, friction, band), the sliding pairs, the parts."""
+    points: np.ndarray
+    """Retained points, n_p x 3, m."""
+    frequencies: np.ndarray
+    """Of the fixed-interface modes, Hz."""
+    mass: np.ndarray
+    """n x n."""
+    damping: np.ndarray
+    """n x n."""
+    stiffness: np.ndarray
+    """n x n, without contact."""
+    load: np.ndarray
+    """Generalised forces of the loads, n."""
+    preload: np.ndarray
+    """Generalised forces of the equilibrium it was made about, n."""
+    contacts: dict
+    """One array a quantity, one row a contact: pair, position, normal, direction, speed, weight, gap, ..."""
+    nodes: np.ndarray
+    """Corners of the outer surface, n_s x 3, m."""
+    triangles: np.ndarray
+    """Triangles of the outer surface."""
+    basis: np.ndarray
+    """Displacements of the corners for a unit of each coordinate, n x n_s x 3."""
+
+    def motion(self, coordinates: np.ndarray) -> np.ndarray:
+        """Displacements of the corners of the surface, n_s x 3, of a vector of coordinates (real or complex)."""
+        return np.tensordot(coordinates, self.basis, axes=1)
+
+
+def read_super_element(path) -> SuperElement:
+    """Reads the file of `squeal reduce`.
+
+    Raises ValueError where the file is of another kind or version, OSError where it cannot be opened.
+    """
+    with opened(path, FORMAT, VERSION) as file:
+        surface = file["surface"]
+        n, nodes = file["mass"].shape[0], surface["nodes"][...]
+        names = ("points", "frequencies", "mass", "damping", "stiffness", "load", "preload")
+        return SuperElement(
+            about=table(file, "about"),
+            **{name: file[name][...] for name in names},
+            contacts={name: rows[...] for name, rows in file["contacts"].items()},
+            nodes=nodes,
+            triangles=surface["triangles"][...],
+            basis=surface["basis"][...].reshape(n, len(nodes), 3),
+        )
