@@ -16,7 +16,7 @@
 //! Why it is written by hand: the modes of 81 friction values of the full brake's super-element (782 coordinates) take
 //! 18 s where TOAR with the factor of K took 30 s.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Matrix2};
 
 use super::eigensolver::{Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
 use super::space::Side;
@@ -26,7 +26,7 @@ use crate::Result;
 use crate::contact::{Dyad, Tangent, TangentChange};
 use crate::equilibrium::{LabelledFactor, Woodbury};
 use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::native::{Block, Matrix, Vector, lapack};
+use crate::native::{Block, Matrix, Mck, Vector, lapack};
 
 /// An eigenvalue found twice differs by no more, relatively.
 const EIGENVALUE_ROUNDING: f64 = 1e-9;
@@ -88,7 +88,8 @@ impl Modal {
 
     /// `v` with `P(lambda)^T v = 0` for modes of the last problem solved: columns `2i` and `2i + 1` are the real and
     /// imaginary part for mode i. From a search of its own with K transposed; none where that does not find each
-    /// eigenvalue again, apart from all others.
+    /// eigenvalue again, apart from all others, or where the vectors do not solve the problem as right ones must: those
+    /// of stiff sliding contacts have an energy so large that it takes digits.
     ///
     /// # Errors
     /// PETSc's.
@@ -106,7 +107,8 @@ impl Modal {
             pair.re.local(|values| vectors.column_mut(2 * i).copy_from_slice(values))?;
             pair.im.local(|values| vectors.column_mut(2 * i + 1).copy_from_slice(values))?;
         }
-        Ok(Some(vectors))
+        let is_accurate = joint_error(problem, modes, &vectors)? <= self.options.backward_error;
+        Ok(is_accurate.then_some(vectors))
     }
 }
 
@@ -227,5 +229,92 @@ impl Inverse {
         lapack::multiply(true, [self.rank, b.len(), 1], &self.v, b, &mut projected);
         x.copy_from_slice(b);
         self.woodbury.correct(&projected, x);
+    }
+}
+
+/// About the largest backward error of left vectors, at the price of one: of `sum_i P(lambda_i)^T v_i / s_i` with `s_i =
+/// (|lambda_i|^2 |M| + |lambda_i| |C| + |K|) |v_i|`, maximum norms. At most the sum of all errors. Collective.
+fn joint_error(problem: &QuadraticProblem, modes: &[Mode], v: &Block) -> Result<f64> {
+    let Mck { m, c, k } = problem.matrices;
+    let norms = problem.matrices.try_map(Matrix::norm_inf)?;
+    let modulus = |x: &Block, i: usize| {
+        let entries = x.column(2 * i).iter().zip(x.column(2 * i + 1));
+        x.comm().max(entries.map(|(re, im)| re.hypot(*im)).fold(0.0, f64::max))
+    };
+    // Real and imaginary part of the sums that K, C and M are multiplied with, as columns.
+    let mut coefficients = DMatrix::zeros(v.n_columns(), 6);
+    for (i, lambda) in modes.iter().map(|mode| mode.lambda).enumerate() {
+        let scale = norms.k + norms.c * lambda.norm() + norms.m * lambda.norm_sqr();
+        for power in 0..3 {
+            let z = lambda.powi(power as i32) / (scale * modulus(v, i));
+            let rotation = Matrix2::new(z.re, z.im, -z.im, z.re);
+            coefficients.fixed_view_mut::<2, 2>(2 * i, 2 * power).copy_from(&rotation);
+        }
+    }
+    let sums = v.combined(coefficients.as_slice(), 6);
+    let mut residual = sums.columns(0..2).multiplied_by_transpose(k)?;
+    residual.add_products(&[c], &sums, 2..4)?;
+    residual.add_products(&[m], &sums, 4..6)?;
+    Ok(modulus(&residual, 0))
+}
+
+#[cfg(test)]
+mod tests {
+    use num_complex::Complex64;
+
+    use super::*;
+    use crate::native::{Precision, Session};
+    use crate::stability::testing::Blocks;
+
+    const BAND_END: f64 = 7.0;
+
+    /// Solves blocks on a belt in modal coordinates and looks at the solver and the modes.
+    fn with_modes(look: impl FnOnce(&QuadraticProblem, &mut Modal, &[Mode])) {
+        let comm = Session::start(&[]).unwrap();
+        Blocks::dense(&comm, 8).with(0.8, &[], |problem| {
+            let mut modal = Modal::new(EigenOptions::default());
+            let request = SearchRequest { n_modes: 10, end: BAND_END, shift: 0.0, attempt: 0 };
+            let mut factor = LabelledFactor::new(Precision::Double);
+            let found = modal.search(problem, &mut factor, &request, &mut |_| ()).unwrap().unwrap();
+            let mode = |(Pair { lambda, re, im }, backward_error)| Mode { lambda, backward_error, re, im };
+            let modes: Vec<Mode> = found.pairs.into_iter().zip(found.backward_errors).map(mode).collect();
+            look(problem, &mut modal, &modes);
+        });
+    }
+
+    #[test]
+    fn left_vectors_that_are_not_accurate_are_given_up() {
+        with_modes(|problem, modal, modes| {
+            let vectors = modal.left_vectors(problem, modes).unwrap().expect("accurate vectors");
+            let error = joint_error(problem, modes, &vectors).unwrap();
+            modal.options.backward_error = 2.0 * error;
+            assert!(modal.left_vectors(problem, modes).unwrap().is_some());
+            modal.options.backward_error = 0.5 * error;
+            assert!(modal.left_vectors(problem, modes).unwrap().is_none());
+        });
+    }
+
+    #[test]
+    fn the_joint_error_shows_the_one_vector_that_is_wrong() {
+        with_modes(|problem, modal, modes| {
+            let exact = modal.left_vectors(problem, modes).unwrap().expect("accurate vectors");
+            assert!(joint_error(problem, modes, &exact).unwrap() < 1e-10);
+            let [m, c, k] = problem.matrices.map(crate::stability::testing::entries).into_array();
+            for i in 0..modes.len() {
+                let mut wrong = exact.clone();
+                wrong.column_mut(2 * i)[0] += 1e-4;
+                let lambda = modes[i].lambda;
+                let v = |row: usize| Complex64::new(wrong.column(2 * i)[row], wrong.column(2 * i + 1)[row]);
+                let v = DMatrix::from_fn(m.nrows(), 1, |row, _| v(row));
+                let [m, c, k] = [&m, &c, &k].map(|a| a.transpose().map(Complex64::from));
+                let norm_inf = |a: &DMatrix<Complex64>| a.column_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
+                let scale = lambda.norm_sqr() * norm_inf(&m) + lambda.norm() * norm_inf(&c) + norm_inf(&k);
+                let residual = (m * lambda.powi(2) + c * lambda + k) * &v;
+                let largest = |x: &DMatrix<Complex64>| x.iter().map(|z| z.norm()).fold(0.0, f64::max);
+                let error = largest(&residual) / (scale * largest(&v));
+                let joint = joint_error(problem, modes, &wrong).unwrap();
+                assert!(error > 1e-8 && (joint / error - 1.0).abs() < 1e-3, "mode {i}: {joint:e}, {error:e}");
+            }
+        });
     }
 }

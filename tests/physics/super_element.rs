@@ -184,8 +184,9 @@ fn all_modes_kept_give_the_full_models_eigenvalues() {
 }
 
 /// In the modal coordinates of the first friction the others have the modes that a search with a factor of their own
-/// finds: eigenvalues to 1e-9 (measured 2.7e-10, the other search's), and left vectors solve the transposed problem as
-/// those of the search do, to 2e-10 (measured 1.5e-10).
+/// finds: eigenvalues to 1e-9 (measured 2.7e-10, the other search's), and left vectors solve the transposed problem to
+/// 1e-10, which is the largest backward error accepted (measured 4e-12; the first value's are found one by one, since
+/// modal coordinates leave 1.5e-10 there).
 #[test]
 fn modal_coordinates_of_one_friction_serve_the_others() {
     const WIDE: [f64; 2] = [0.0, 60000.0];
@@ -208,7 +209,7 @@ fn modal_coordinates_of_one_friction_serve_the_others() {
             let errors = transposed_errors(problem, &found, &left)?;
             let (right, left) = (largest_error(&found, &exact), errors.into_iter().fold(0.0, f64::max));
             println!("friction {friction}: {} modes, right {right:.1e}, left {left:.1e}", found.len());
-            assert!(found.len() > 6 && right < 1e-9 && left < 2e-10, "{right} {left}");
+            assert!(found.len() > 6 && right < 1e-9 && left < 1e-10, "{right} {left}");
             Ok(())
         };
         sweep.linearise(&equilibrium, look).unwrap();
