@@ -1,11 +1,11 @@
 //! The interface: all contact pairs of a model on its mesh, ready to be evaluated point by point.
 
 use super::gap_operator::GapOperator;
-use super::law::{self, Response, Status};
+use super::law::{self, Friction, FrictionLaw, Response, Status};
 use super::search::Team;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Model, NormalLaw};
+use crate::model::{Model, NormalLaw, names};
 use std::ops::Range;
 
 /// Contact as the equations see it: points, their laws, and the gap operator that ties them to the bodies.
@@ -30,8 +30,10 @@ pub struct ContactPair {
     pub master: String,
     /// Normal law.
     pub law: NormalLaw,
-    /// Coefficient of friction in the model file.
+    /// Friction value in the model file: `mu_0` of the friction law.
     pub friction: f64,
+    /// How the friction coefficient depends on speed and pressure.
+    pub friction_law: FrictionLaw,
     /// What acts in the tangent plane.
     pub kind: TangentialKind,
     /// Whether the pair may open.
@@ -134,6 +136,34 @@ impl Interface {
         self.pairs.iter().map(|pair| if pair.swept { swept } else { pair.friction }).collect()
     }
 
+    /// Gives a pair another friction law; its friction value stays.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where no pair has this name.
+    pub fn set_friction_law(&mut self, pair: &str, law: FrictionLaw) -> Result<()> {
+        if let Some(own) = self.pairs.iter_mut().find(|own| own.name == pair) {
+            own.friction_law = law;
+            return Ok(());
+        }
+        let advice = names::advice(pair, self.pairs.iter().map(|own| own.name.as_str()));
+        Err(Error::input(format!("no contact pair is called {pair:?}. {advice}")))
+    }
+
+    /// Refuses a pair of a super-element whose friction law is in no file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the pair.
+    pub fn require_friction_laws(&self) -> Result<()> {
+        match self.pairs.iter().find(|pair| pair.friction_law == FrictionLaw::Missing) {
+            None => Ok(()),
+            Some(pair) => Err(Error::input(format!(
+                "contact {:?}: its friction law was a program's own, which the file does not contain. \
+                 Analyse it from a program that calls Interface::set_friction_law",
+                pair.name
+            ))),
+        }
+    }
+
     /// The true laws with the swept pairs' friction at one value.
     pub fn stage(&self, swept: f64) -> Stage {
         Stage::Solve { friction: self.frictions_at(swept) }
@@ -142,25 +172,30 @@ impl Interface {
     /// What point `a` answers to its relative displacement g (m, from [`GapOperator::gap`]).
     ///
     /// # Panics
-    /// Where `a` is no point or the stage has not one friction a pair, as the methods below.
+    /// Where `a` is no point or the stage has not one friction value a pair, as the methods below.
     pub fn respond(&self, a: usize, g: [f64; 3], stage: &Stage) -> Response {
         let point = &self.points[a];
         match stage {
             Stage::Settle => law::settle(&point.law, g),
-            Stage::Solve { friction } => law::respond(&point.law, friction[point.pair], g),
+            Stage::Solve { friction } => law::respond(&point.law, self.friction(point, friction), g),
         }
     }
 
     /// Tangent D (N/m, by rows) of point `a` for stability, its status frozen: [`law::linearise`].
     pub fn linearise(&self, a: usize, g: [f64; 3], status: Status, friction: &[f64]) -> [[f64; 3]; 3] {
         let point = &self.points[a];
-        law::linearise(&point.law, friction[point.pair], g, status)
+        law::linearise(&point.law, self.friction(point, friction), g, status)
     }
 
     /// Friction damping block (N s/m, by rows) of point `a` under its normal force (N): [`law::friction_damping`].
     pub fn friction_damping(&self, a: usize, normal_force: f64, friction: &[f64]) -> [[f64; 3]; 3] {
         let point = &self.points[a];
-        law::friction_damping(&point.law, friction[point.pair], normal_force)
+        law::friction_damping(&point.law, self.friction(point, friction), normal_force)
+    }
+
+    /// Friction value and law of a point's pair.
+    fn friction(&self, point: &ContactPoint, values: &[f64]) -> Friction<'_> {
+        Friction { value: values[point.pair], law: &self.pairs[point.pair].friction_law }
     }
 }
 

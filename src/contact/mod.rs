@@ -42,6 +42,6 @@ pub(crate) mod testing;
 
 pub use gap_operator::GapOperator;
 pub use interface::{ContactPair, ContactPoint, Interface, Stage, Statistics, TangentialKind};
-pub use law::{PointLaw, Response, Status, Tangential};
+pub use law::{FrictionLaw, PointLaw, Response, Status, Tangential};
 pub use motion::sliding;
 pub use tangent_change::{Dyad, Tangent, TangentChange};

@@ -1,7 +1,7 @@
 //! From a contact of the model to a pair of the interface: search, and choose the laws.
 
 use super::interface::{ContactPair, ContactPoint, Interface, Statistics, TangentialKind};
-use super::law::{self, Tangential};
+use super::law::{self, FrictionLaw, Tangential};
 use super::motion::sliding;
 use super::search::{Found, FoundPoint, Options, Team, find};
 use crate::error::{Error, Result};
@@ -42,6 +42,7 @@ pub(super) fn add_pair(
         master: contact.master.clone(),
         law: contact.law,
         friction: contact.friction,
+        friction_law: contact.decay.map_or(FrictionLaw::Constant, FrictionLaw::Decay),
         kind: match (rotation, contact.stick) {
             (Some(_), _) => TangentialKind::Sliding,
             (None, Some(_)) => TangentialKind::StickSlip,

@@ -1,4 +1,4 @@
-//! Surfaces for the tests of this room.
+//! Surfaces for the tests of this module.
 
 use super::facet::Facet;
 use crate::element::tri6::NODES;
@@ -80,6 +80,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         master: master.into(),
         law: NormalLaw::Linear { stiffness: 2e13 },
         friction: 0.5,
+        decay: None,
         stick: None,
         separation: true,
         search_distance: None,

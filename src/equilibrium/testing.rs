@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
 use crate::contact::{
-    ContactPair, ContactPoint, GapOperator, Interface, PointLaw, Statistics, Tangential, TangentialKind,
+    ContactPair, ContactPoint, FrictionLaw, GapOperator, Interface, PointLaw, Statistics, Tangential, TangentialKind,
 };
 use crate::mesh::Numbering;
 use crate::model::NormalLaw;
@@ -94,6 +94,7 @@ pub fn belt(n: usize, tangential: Tangential) -> Interface {
         master: "belt".into(),
         law: NormalLaw::Linear { stiffness: CONTACT },
         friction: 0.3,
+        friction_law: FrictionLaw::Constant,
         kind: match tangential {
             Tangential::StickSlip { .. } => TangentialKind::StickSlip,
             _ => TangentialKind::Sliding,

@@ -1,9 +1,9 @@
 //! Contact pairs and connectors: what ties the parts together.
 
-use super::item::{Item, Vector};
+use super::item::{Item, Number, Vector};
 use super::keys;
 use super::source::ModelText;
-use super::{Connector, Contact, NormalLaw};
+use super::{Connector, Contact, NormalLaw, SpeedDecay};
 use crate::Result;
 use std::collections::HashMap;
 use toml::Spanned;
@@ -42,6 +42,7 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         return Err(item.error_here(what, "Name the two surfaces that meet"));
     }
     let stick = raw.stick.as_ref().map(|k| item.positive(k, "stick", "Give N/m3, such as 1e13"));
+    let (friction, decay) = contact_friction(item, &raw.friction)?;
     let search = raw
         .search
         .as_ref()
@@ -51,7 +52,8 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         slave: raw.slave.clone(),
         master: raw.master.clone(),
         law: law(item, &raw.law)?,
-        friction: friction(item, &raw.friction)?,
+        friction,
+        decay,
         stick: stick.transpose()?,
         separation: raw.separation.unwrap_or(true),
         search_distance: search.transpose()?.map(|d| d * unit),
@@ -60,9 +62,24 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
 }
 
 /// A coefficient of friction.
-pub fn friction(item: &Item, value: &Spanned<f64>) -> Result<f64> {
+pub fn friction(item: &Item, value: &Number) -> Result<f64> {
     let holds = (0.0..=LARGEST_FRICTION).contains(value.get_ref());
     item.check(value, holds, "friction", "must be from 0 to 2", "Give a coefficient, such as 0.5")
+}
+
+/// The friction value of a contact, and how it falls with the speed.
+fn contact_friction(item: &Item, raw: &Spanned<keys::Friction>) -> Result<(f64, Option<SpeedDecay>)> {
+    let (at_rest, kinetic, decay) = match *raw.get_ref() {
+        keys::Friction::Constant(mu) => return Ok((friction(item, &Spanned::new(raw.span(), mu))?, None)),
+        keys::Friction::Decay { at_rest, kinetic, decay } => (at_rest, kinetic, decay),
+    };
+    let is_coefficient = |mu: f64| (0.0..=LARGEST_FRICTION).contains(&mu);
+    if at_rest > 0.0 && is_coefficient(at_rest) && is_coefficient(kinetic) && decay > 0.0 && decay.is_finite() {
+        return Ok((at_rest, Some(SpeedDecay { kinetic_ratio: kinetic / at_rest, decay })));
+    }
+    let what = format!("friction has static = {at_rest}, kinetic = {kinetic}, decay = {decay}");
+    let advice = "Give static above 0 and kinetic from 0, both up to 2, and a decay above 0 in s/m";
+    Err(item.error(&raw.span(), what, advice))
 }
 
 fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {

@@ -106,10 +106,27 @@ pub struct ContactTable {
     pub slave: String,
     pub master: String,
     pub law: Spanned<LawTable>,
-    pub friction: Number,
+    pub friction: Spanned<Friction>,
     pub stick: Option<Number>,
     pub separation: Option<bool>,
     pub search: Option<Number>,
+}
+
+/// A coefficient, or one that falls with the sliding speed.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "expected a number, or { static = 0.6, kinetic = 0.4, decay = 0.5 }"
+)]
+pub enum Friction {
+    Constant(f64),
+    Decay {
+        #[serde(rename = "static")]
+        at_rest: f64,
+        kinetic: f64,
+        decay: f64,
+    },
 }
 
 #[derive(Deserialize)]

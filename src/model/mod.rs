@@ -43,6 +43,7 @@ pub use read::{parse, read};
 pub use source::located;
 pub use types::{
     Connector, Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction, Rotation,
+    SpeedDecay,
 };
 
 /// A model file that uses every key, with an explanation of each.

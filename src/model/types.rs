@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use super::names;
 use crate::{Error, Result};
 
@@ -140,8 +142,10 @@ pub struct Contact {
     pub master: String,
     /// Normal law.
     pub law: NormalLaw,
-    /// Coefficient of friction.
+    /// Coefficient of friction; that of rest where it decays.
     pub friction: f64,
+    /// How the coefficient falls with the sliding speed, where it does.
+    pub decay: Option<SpeedDecay>,
     /// Elastic stick, N/m3; none on pairs that slide for ever.
     pub stick: Option<f64>,
     /// Whether the pair may open.
@@ -152,6 +156,17 @@ pub struct Contact {
     pub line: usize,
 }
 
+/// A friction coefficient that falls from the static to the kinetic one with the sliding speed v,
+///
+/// `mu(v) = mu_s (r + (1 - r) exp(-d v))`
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SpeedDecay {
+    /// r, the kinetic coefficient divided by the static one.
+    pub kinetic_ratio: f64,
+    /// d, s/m.
+    pub decay: f64,
+}
+
 /// Pressure as a function of penetration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NormalLaw {
@@ -160,13 +175,23 @@ pub enum NormalLaw {
         /// Penalty stiffness, N/m3.
         stiffness: f64,
     },
-    /// `p = w (k_1 d + k_3 d^3)`; on node-to-node elements `w = 1` and k_1 is in N/m, k_3 in N/m3.
+    /// `p = w (k_1 d + k_3 d^3)`.
     Cubic {
         /// Linear coefficient, N/m3.
         k1: f64,
         /// Cubic coefficient, N/m5.
         k3: f64,
     },
+}
+
+impl NormalLaw {
+    /// A factor times the law: a law of forces (N/m, N/m3) divided by an area (m2) is one of pressures.
+    pub fn times(self, factor: f64) -> NormalLaw {
+        match self {
+            NormalLaw::Linear { stiffness } => NormalLaw::Linear { stiffness: factor * stiffness },
+            NormalLaw::Cubic { k1, k3 } => NormalLaw::Cubic { k1: factor * k1, k3: factor * k3 },
+        }
+    }
 }
 
 /// Spring and damper between the rigid motions that two node sets make on average.

@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::contact::interface::{ContactPair, Statistics, TangentialKind};
-use crate::contact::{ContactPoint, PointLaw, Tangential};
+use crate::contact::{ContactPoint, FrictionLaw, PointLaw, Tangential};
 use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
 use crate::model::NormalLaw;
 
@@ -57,6 +57,9 @@ struct PairText {
     swept: bool,
     area: f64,
     n_contacts: usize,
+    /// Without a user's own function.
+    #[serde(default)]
+    friction_law: FrictionLaw,
 }
 
 /// Whether a file is a super-element, of whatever version. Not collective.
@@ -125,6 +128,7 @@ fn pair_texts(element: &SuperElement) -> Vec<PairText> {
         swept: pair.swept,
         area: pair.statistics.area,
         n_contacts: pair.points.len(),
+        friction_law: pair.friction_law.storable(),
     };
     element.pairs.iter().map(of).collect()
 }
@@ -183,6 +187,7 @@ fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
                 _ => NormalLaw::Linear { stiffness: text.law.first().copied().unwrap_or(f64::NAN) },
             },
             friction: text.friction,
+            friction_law: text.friction_law.clone(),
             kind: TangentialKind::Sliding,
             separation: text.separation,
             swept: text.swept,

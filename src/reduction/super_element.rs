@@ -151,8 +151,9 @@ impl SuperElement {
     /// The assembled system under `factor` times the loads. Collective.
     ///
     /// # Errors
-    /// METIS's and PETSc's.
+    /// [`Error::Input`] where a friction law is missing; METIS's and PETSc's.
     pub fn assemble(&self, comm: &Comm, interface: &Interface, factor: f64) -> Result<System> {
+        interface.require_friction_laws()?;
         let n = self.n_coordinates();
         let is_held = |i: usize| i >= n || self.mass[i * n + i] == 0.0;
         let held: Vec<[bool; 3]> = (0..n.div_ceil(3)).map(|node| [0, 1, 2].map(|i| is_held(3 * node + i))).collect();
@@ -191,7 +192,7 @@ impl NodeContact {
     fn under(&self, law: Option<NormalLaw>) -> ContactPoint {
         let mut point = self.point.clone();
         if let Some(law) = law {
-            (point.law.normal_law, point.law.weight) = (law, 1.0);
+            point.law.normal_law = law.times(1.0 / point.law.weight);
         }
         if self.normal_force != 0.0 {
             // p(d + xi) = p_full

@@ -107,6 +107,14 @@ impl Structure {
         }
     }
 
+    /// The same, to be changed: [`Interface::set_friction_law`].
+    pub fn interface_mut(&mut self) -> &mut Interface {
+        match self {
+            Structure::Full(full) => &mut full.interface,
+            Structure::Reduced(reduced) => reduced.interface_mut(),
+        }
+    }
+
     /// The band to analyse, Hz: the one given, else the file's.
     ///
     /// # Errors

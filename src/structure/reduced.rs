@@ -78,6 +78,10 @@ impl ReducedModel {
         &self.interface
     }
 
+    pub(super) fn interface_mut(&mut self) -> &mut Interface {
+        &mut self.interface
+    }
+
     pub(super) fn band(&self, given: Option<[f64; 2]>) -> Result<[f64; 2]> {
         let band = given.unwrap_or(self.element.origin.band);
         if let Some(warning) = self.element.require_band(band)? {

@@ -7,6 +7,7 @@ mod calculix;
 mod eigensolvers;
 mod explain;
 mod factors;
+mod friction_law;
 mod manufactured_solution;
 mod super_element;
 #[path = "../support/mod.rs"]

@@ -17,15 +17,17 @@ use num_complex::Complex64;
 use squeal::Result;
 use squeal::analysis::Sweep;
 use squeal::assembly::System;
-use squeal::contact::{Interface, Response, Status};
+use squeal::contact::law::{FrictionFactor, FrictionFunction};
+use squeal::contact::{FrictionLaw, Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
 use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
 use squeal::model::NormalLaw;
 use squeal::native::{Block as Columns, Comm, Precision, Session};
 use squeal::reduction::craig_bampton::{self, Structure};
+use squeal::reduction::recovery::OuterSurface;
 use squeal::reduction::super_element::{Origin, SuperElement};
-use squeal::reduction::{contacts, craig_bampton::Reduced};
+use squeal::reduction::{contacts, craig_bampton::Reduced, file};
 use squeal::stability::{BandRequest, BandSolver, EigenOptions, QuadraticProblem};
 use squeal::structure::FullModel;
 
@@ -116,9 +118,12 @@ fn eigenvalues(sweep: &mut Sweep, equilibrium: &Equilibrium) -> Vec<Complex64> {
 
 impl Full {
     fn new(comm: &Comm, text: &str, friction: f64) -> Full {
-        let brake = blocks(text);
+        Full::of(comm, blocks(text), friction)
+    }
+
+    fn of(comm: &Comm, brake: FullModel, friction: f64) -> Full {
         let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
-        let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
+        let mut sweep = Sweep::new(&system, &brake.interface, brake.model.friction_damping).unwrap();
         let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
         let eigenvalues = eigenvalues(&mut sweep, &equilibrium);
         drop(sweep);
@@ -140,7 +145,7 @@ impl Full {
             n_equations: system.dofs.n_global(),
             band: BAND,
             limit,
-            friction_damping: false,
+            friction_damping: brake.model.friction_damping,
         };
         let element = SuperElement::new(origin, &structure, &reduced, &[[0.0; 3]]).unwrap();
         (reduced, element)
@@ -154,9 +159,17 @@ fn analyse(
     law: Option<NormalLaw>,
     friction: f64,
 ) -> (Interface, Equilibrium, Vec<Complex64>) {
-    let interface = element.interface(law);
+    analyse_under(comm, element, element.interface(law), friction)
+}
+
+fn analyse_under(
+    comm: &Comm,
+    element: &SuperElement,
+    interface: Interface,
+    friction: f64,
+) -> (Interface, Equilibrium, Vec<Complex64>) {
     let system = element.assemble(comm, &interface, 1.0).unwrap();
-    let mut sweep = Sweep::new(&system, &interface, false).unwrap();
+    let mut sweep = Sweep::new(&system, &interface, element.origin.friction_damping).unwrap();
     let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
     let eigenvalues = eigenvalues(&mut sweep, &equilibrium);
     drop(sweep);
@@ -320,6 +333,67 @@ fn every_contact_force_is_reproduced_under_any_law() {
         assert!(error < 1e-8, "{law:?}: {error}");
         assert_eq!(law.is_some(), xi > 1e-9);
     }
+}
+
+/// `phi = 1 / ((1 + v) (1 + q/q_0))`, with q_0 near the pressure of the pad.
+#[derive(Debug)]
+struct Falling;
+
+impl FrictionFunction for Falling {
+    fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {
+        let q_0 = 4e6;
+        let value = 1.0 / ((1.0 + speed) * (1.0 + pressure / q_0));
+        FrictionFactor { value, by_speed: -value / (1.0 + speed), by_pressure: -value / (q_0 + pressure) }
+    }
+}
+
+/// With every mode kept, a super-element has its model's eigenvalues under a friction law of a user's own, and its
+/// forces under any normal law. Its file does not contain the law, so that it has to be given again.
+#[test]
+fn a_users_friction_law_acts_in_the_super_element_as_in_its_model() {
+    let comm = Session::start(&[]).unwrap();
+    let mut brake = blocks(&MODEL.replace("band = ", "friction_damping = true\nband = "));
+    let law = FrictionLaw::user(Falling);
+    brake.interface.set_friction_law("disc / pad", law.clone()).unwrap();
+    let full = Full::of(&comm, brake, FRICTION);
+    let (_, element) = full.reduce(f64::INFINITY);
+    let (_, _, found) = analyse(&comm, &element, None, FRICTION);
+    let error = largest_error(&found, &full.eigenvalues);
+    let (constant, exact) = (Full::new(&comm, MODEL, FRICTION).eigenvalues[0], full.eigenvalues[0]);
+    let effect = (constant - exact).norm() / exact.norm();
+    println!("largest error {error:.1e}, effect of the law on the first mode {effect:.1e}");
+    assert!(error < 1e-10 && effect > 1e-4, "{error} {effect}");
+
+    let (_, equilibrium, _) = analyse(&comm, &element, Some(NormalLaw::Cubic { k1: 8e8, k3: 5e19 }), FRICTION);
+    for (found, exact) in equilibrium.responses.iter().zip(&full.equilibrium.responses) {
+        assert_close("friction force", found.force[1], exact.force[1], 1e-8);
+    }
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("blocks.se.h5");
+    let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
+    file::write(&path, &element, &surface).unwrap();
+    let (read, _) = file::read(&path).unwrap();
+    let mut interface = read.interface(None);
+    let refused = read.assemble(&comm, &interface, 1.0).err().unwrap().to_string();
+    assert!(refused.starts_with("contact \"disc / pad\": its friction law was a program's own"), "{refused}");
+    assert!(interface.set_friction_law("disc", law.clone()).unwrap_err().to_string().contains("disc / pad"));
+    interface.set_friction_law("disc / pad", law).unwrap();
+    let (_, _, again) = analyse_under(&comm, &read, interface, FRICTION);
+    assert!(largest_error(&again, &found) < 1e-12);
+}
+
+#[test]
+fn the_file_of_a_super_element_contains_a_decay() {
+    let comm = Session::start(&[]).unwrap();
+    let decay = MODEL.replace("friction = 0.4", "friction = { static = 0.4, kinetic = 0.3, decay = 2 }");
+    let (_, element) = Full::new(&comm, &decay, FRICTION).reduce(60e3);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("blocks.se.h5");
+    let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
+    file::write(&path, &element, &surface).unwrap();
+    assert_eq!(file::read(&path).unwrap().0.pairs[0].friction_law, element.pairs[0].friction_law);
+    assert!(matches!(element.pairs[0].friction_law, FrictionLaw::Decay(_)));
 }
 
 #[test]

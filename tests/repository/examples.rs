@@ -2,10 +2,17 @@
 
 #[path = "../../examples/external_matrices.rs"]
 mod external_matrices;
+#[path = "../../examples/friction_law.rs"]
+mod friction_law;
 #[path = "../../examples/friction_sweep.rs"]
 mod friction_sweep;
 #[path = "../../examples/super_element.rs"]
 mod super_element;
+
+#[test]
+fn a_friction_law_of_a_users_own() {
+    friction_law::main().unwrap();
+}
 
 #[test]
 fn a_friction_sweep() {

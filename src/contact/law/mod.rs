@@ -1,7 +1,7 @@
 //! What acts at a contact point.
 //!
-//! A law is three choices that do not know of each other, kept in a [`PointLaw`]: the normal law, whether the point may
-//! open, and the tangential law. With the unit normal n of the master, the initial gap, and the relative displacement g
+//! A law is four choices that do not depend on each other. A [`PointLaw`] has the normal law, whether the point may open,
+//! and the kinematics in the tangent plane; the [`FrictionLaw`] is that of its pair. With the unit normal n of the master, the initial gap, and the relative displacement g
 //! of the slave against the master,
 //!
 //! ```text
@@ -16,11 +16,13 @@
 //! - [`respond`]: how does it act by its true law?
 //! - [`linearise`]: what is its tangent for stability, with its status frozen?
 
+mod friction;
 mod frozen;
 mod normal;
 mod settling;
 mod tangential;
 
+pub use friction::{Friction, FrictionFactor, FrictionFunction, FrictionLaw, check_derivatives};
 pub use frozen::{friction_damping, linearise};
 pub use settling::settle;
 pub use tangential::{Tangential, respond};
@@ -31,7 +33,7 @@ use nalgebra::{Matrix3, Vector3};
 /// A contact point as its law sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLaw {
-    /// Weight w of the point, m2 (1 on node-to-node elements).
+    /// Weight w of the point, m2.
     pub weight: f64,
     /// Outward unit normal n of the master.
     pub normal: [f64; 3],
@@ -123,6 +125,23 @@ mod testing {
             (0.5..3.0).prop_map(|stiffness| NormalLaw::Linear { stiffness }),
             (0.5..3.0, 0.0..2.0).prop_map(|(k1, k3)| NormalLaw::Cubic { k1, k3 }),
         ]
+    }
+
+    /// A law that falls with speed and pressure, of order one.
+    #[derive(Debug)]
+    pub struct Falling;
+
+    impl FrictionFunction for Falling {
+        /// `phi = 1 / ((1 + v) (1 + q))`
+        fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {
+            let value = 1.0 / ((1.0 + speed) * (1.0 + pressure));
+            FrictionFactor { value, by_speed: -value / (1.0 + speed), by_pressure: -value / (1.0 + pressure) }
+        }
+    }
+
+    /// Constant laws and falling ones.
+    pub fn friction_law() -> impl Strategy<Value = FrictionLaw> {
+        prop_oneof![Just(FrictionLaw::Constant), Just(FrictionLaw::user(Falling))]
     }
 
     /// Points of every law.

@@ -1,5 +1,6 @@
 //! The true laws: normal force with sliding, sticking or slipping in the tangent plane.
 
+use super::friction::{Coefficient, Friction};
 use super::normal::{Normal, normal};
 use super::{PointLaw, Response, Status, rows};
 use nalgebra::{Matrix3, Vector3};
@@ -23,43 +24,45 @@ pub enum Tangential {
     },
 }
 
-/// Force and tangent of a point by its true law; `friction` is mu.
+/// Force and tangent of a point by its true law; `friction` is that of its pair, or a constant mu.
 ///
-/// With `P = I - n n^T`, `g_t = P g` and `p' = dp/dd`:
+/// With `P = I - n n^T`, `g_t = P g`, `p' = dp/dd` and `mu' = d(mu p)/dp = mu + p dmu/dp`, which is mu of a constant law:
 ///
 /// ```text
 /// open         f = 0                                  D = 0
 /// frictionless f = p n                                D = p' n n^T
-/// sliding      f = p n + mu p t                       D = p' (n + mu t) n^T
+/// sliding      f = p n + mu p t                       D = p' (n + mu' t) n^T
 /// stick        f = p n - w k_t g_t                    D = p' n n^T + w k_t P
-/// slip         f = p n + mu p s,  s = -g_t/|g_t|      D = p' (n + mu s) n^T + (mu p/|g_t|) (P - s s^T)
+/// slip         f = p n + mu p s,  s = -g_t/|g_t|      D = p' (n + mu' s) n^T + (mu p/|g_t|) (P - s s^T)
 /// ```
 ///
 /// A stick-slip point sticks while `w k_t |g_t| <= mu p`. Where p <= 0 (a point that may not open, in tension) the
 /// bound is zero: it slips without a tangential force. A sliding point keeps `mu p t` in tension too, so that a
 /// pair that may neither open nor stick is linear. Point forces are continuous everywhere; D jumps where the status
 /// changes.
-pub fn respond(point: &PointLaw, friction: f64, g: [f64; 3]) -> Response {
+pub fn respond<'a>(point: &PointLaw, friction: impl Into<Friction<'a>>, g: [f64; 3]) -> Response {
     match normal(point, point.penetration(g)) {
         None => Response::OPEN,
-        Some(normal) => closed(point, friction, &normal, &g.into()),
+        Some(normal) => closed(point, friction.into(), &normal, &g.into()),
     }
 }
 
 /// The response of a closed point.
-fn closed(point: &PointLaw, mu: f64, normal: &Normal, g: &Vector3<f64>) -> Response {
+fn closed(point: &PointLaw, friction: Friction, normal: &Normal, g: &Vector3<f64>) -> Response {
+    let at = |speed: f64| friction.at(speed, normal.force / point.weight);
     match point.tangential {
         Tangential::Frictionless => frictionless(point, normal),
-        Tangential::Sliding { direction, .. } => sliding(point, normal, mu, &direction.into()),
+        Tangential::Sliding { direction, speed } => sliding(point, normal, at(speed), &direction.into()),
         Tangential::StickSlip { stick } => {
             let g_t = point.tangent_plane() * g;
-            let bound = mu * normal.force.max(0.0);
+            let coefficient = at(0.0);
+            let bound = coefficient.mu * normal.force.max(0.0);
             if bound <= 0.0 {
                 frictionless(point, normal)
             } else if point.weight * stick * g_t.norm() <= bound {
                 sticking(point, normal, stick, g)
             } else {
-                slipping(point, normal, mu, &g_t)
+                slipping(point, normal, coefficient, &g_t)
             }
         }
     }
@@ -67,28 +70,33 @@ fn closed(point: &PointLaw, mu: f64, normal: &Normal, g: &Vector3<f64>) -> Respo
 
 /// `f = p n`, `D = p' n n^T`.
 pub(super) fn frictionless(point: &PointLaw, normal: &Normal) -> Response {
-    sliding(point, normal, 0.0, &Vector3::zeros())
+    sliding(point, normal, Coefficient::default(), &Vector3::zeros())
 }
 
-/// `f = p (n + mu t)`, `D = p' (n + mu t) n^T`.
-pub(super) fn sliding(point: &PointLaw, normal: &Normal, mu: f64, t: &Vector3<f64>) -> Response {
-    dragged(point, normal, mu, t, Matrix3::zeros())
+/// `f = p (n + mu t)`, `D = p' (n + mu' t) n^T`.
+pub(super) fn sliding(point: &PointLaw, normal: &Normal, friction: Coefficient, t: &Vector3<f64>) -> Response {
+    dragged(point, normal, friction, t, Matrix3::zeros())
 }
 
-/// `f = p (n + mu s)`, `D = p' (n + mu s) n^T + (mu p/|g_t|) (P - s s^T)`, with `s = -g_t/|g_t|`.
-fn slipping(point: &PointLaw, normal: &Normal, mu: f64, g_t: &Vector3<f64>) -> Response {
+/// `f = p (n + mu s)`, `D = p' (n + mu' s) n^T + (mu p/|g_t|) (P - s s^T)`, with `s = -g_t/|g_t|`.
+fn slipping(point: &PointLaw, normal: &Normal, friction: Coefficient, g_t: &Vector3<f64>) -> Response {
     let s = -g_t.normalize();
-    let turning = mu * normal.force / g_t.norm() * (point.tangent_plane() - s * s.transpose());
-    dragged(point, normal, mu, &s, turning)
+    let turning = friction.mu * normal.force / g_t.norm() * (point.tangent_plane() - s * s.transpose());
+    dragged(point, normal, friction, &s, turning)
 }
 
 /// Full friction along `s`; `turning` is what the change of direction adds to the tangent.
-fn dragged(point: &PointLaw, normal: &Normal, mu: f64, s: &Vector3<f64>, turning: Matrix3<f64>) -> Response {
+fn dragged(
+    point: &PointLaw,
+    normal: &Normal,
+    friction: Coefficient,
+    s: &Vector3<f64>,
+    turning: Matrix3<f64>,
+) -> Response {
     let n = point.n();
-    let along = n + mu * s;
     Response {
-        force: (normal.force * along).into(),
-        tangent: rows(normal.stiffness * along * n.transpose() + turning),
+        force: (normal.force * (n + friction.mu * s)).into(),
+        tangent: rows(normal.stiffness * (n + friction.slope * s) * n.transpose() + turning),
         normal_force: normal.force,
         status: Status::Slip,
     }
@@ -108,33 +116,38 @@ pub(super) fn sticking(point: &PointLaw, normal: &Normal, stick: f64, g: &Vector
 
 #[cfg(test)]
 mod tests {
+    use super::super::friction::FrictionLaw;
     use super::super::normal::two_sided;
     use super::super::testing::{
-        SLIDING, at_penetration, displacement, distance, point, point_with, stick_slip, tangent_error,
+        SLIDING, at_penetration, displacement, distance, friction_law, point, point_with, stick_slip, tangent_error,
     };
     use super::*;
     use proptest::prelude::*;
 
+    /// `mu p`, N, of a point that does not slide, at the penetration `d`.
+    fn bound(point: &PointLaw, friction: Friction, d: f64) -> f64 {
+        let p = two_sided(point, d).force;
+        friction.at(0.0, p / point.weight).mu * p
+    }
+
     /// Distances from the two kinks, opening and the onset of slip: `|d|` and `| w k_t |g_t| - mu p |`.
-    fn kinks(point: &PointLaw, mu: f64, g: [f64; 3]) -> [f64; 2] {
+    fn kinks(point: &PointLaw, friction: Friction, g: [f64; 3]) -> [f64; 2] {
         let d = point.penetration(g);
         let Tangential::StickSlip { stick } = point.tangential else {
             return [d.abs(), f64::INFINITY];
         };
         let g_t = (point.tangent_plane() * Vector3::from(g)).norm();
-        let p = two_sided(point, d).force;
-        [d.abs(), (point.weight * stick * g_t - mu * p).abs()]
+        [d.abs(), (point.weight * stick * g_t - bound(point, friction, d)).abs()]
     }
 
     /// `g` changed to the penetration `d` and, in the tangent plane, to a trial force of `ratio` times the bound.
-    fn at_ratio(point: &PointLaw, mu: f64, g: [f64; 3], d: f64, ratio: f64) -> [f64; 3] {
+    fn at_ratio(point: &PointLaw, friction: Friction, g: [f64; 3], d: f64, ratio: f64) -> [f64; 3] {
         let Tangential::StickSlip { stick } = point.tangential else {
             panic!("a stick-slip point is wanted");
         };
         let g = Vector3::from(at_penetration(point, g, d));
         let g_t = point.tangent_plane() * g;
-        let bound = mu * two_sided(point, d).force;
-        let limit = ratio * bound / (point.weight * stick);
+        let limit = ratio * bound(point, friction, d) / (point.weight * stick);
         (g - g_t + limit * g_t.normalize()).into()
     }
 
@@ -147,9 +160,9 @@ mod tests {
     proptest! {
         #[test]
         fn tangents_are_derivatives_of_the_force(
-            point in point(), mu in 0.0..1.0, g in displacement(),
+            point in point(), mu in 0.0..1.0, law in friction_law(), g in displacement(),
         ) {
-            let h = 1e-6;
+            let (h, mu) = (1e-6, Friction { value: mu, law: &law });
             prop_assume!(kinks(&point, mu, g).into_iter().all(|k| k > 1e-4));
             let g_t = (point.tangent_plane() * Vector3::from(g)).norm();
             prop_assume!(g_t > 1e-2);
@@ -159,9 +172,10 @@ mod tests {
         #[test]
         fn tangents_hold_on_both_sides_of_slip(
             point in stick_slip().prop_flat_map(point_with),
-            mu in 0.1..1.0, g in displacement(), d in 0.1..1.0,
+            mu in 0.1..1.0, law in friction_law(), g in displacement(), d in 0.1..1.0,
             side in prop::sample::select(vec![0.999, 1.001]),
         ) {
+            let mu = Friction { value: mu, law: &law };
             let near = at_ratio(&point, mu, g, d, side);
             let expected = if side < 1.0 { Status::Stick } else { Status::Slip };
             prop_assert_eq!(respond(&point, mu, near).status, expected);
@@ -171,8 +185,9 @@ mod tests {
         #[test]
         fn the_force_is_continuous_from_stick_to_slip(
             point in stick_slip().prop_flat_map(point_with),
-            mu in 0.1..1.0, g in displacement(), d in 0.1..1.0,
+            mu in 0.1..1.0, law in friction_law(), g in displacement(), d in 0.1..1.0,
         ) {
+            let mu = Friction { value: mu, law: &law };
             let [stick, slip] = [1.0 - 1e-9, 1.0 + 1e-9]
                 .map(|ratio| respond(&point, mu, at_ratio(&point, mu, g, d, ratio)));
             prop_assert_ne!(stick.status, slip.status);
@@ -181,8 +196,9 @@ mod tests {
 
         #[test]
         fn the_force_is_continuous_from_closed_to_open(
-            mut point in bounded(), mu in 0.0..1.0, g in displacement(),
+            mut point in bounded(), mu in 0.0..1.0, law in friction_law(), g in displacement(),
         ) {
+            let mu = Friction { value: mu, law: &law };
             point.separation = true;
             let closed = respond(&point, mu, at_penetration(&point, g, 1e-9));
             let open = respond(&point, mu, at_penetration(&point, g, -1e-9));
@@ -220,8 +236,18 @@ mod tests {
     }
 
     #[test]
-    fn sliding_drags_the_slave_along_the_master() {
-        let point = PointLaw {
+    fn pressure_and_speed_enter_by_their_units() {
+        let point = belt_point();
+        let law = FrictionLaw::user(super::super::testing::Falling);
+        // w = 1e-5 m2, p = 20 N, so q = 2e6 Pa; v = 0.5 m/s
+        let answer = respond(&point, Friction { value: 0.4, law: &law }, [0.0, 0.0, 1e-7]);
+        let mu = 0.4 / (1.5 * (1.0 + 2e6));
+        assert!((answer.force[0] / (mu * answer.normal_force) - 1.0).abs() < 1e-12);
+    }
+
+    /// A point that slides along x at 0.5 m/s, pressed along -z.
+    fn belt_point() -> PointLaw {
+        PointLaw {
             weight: 1e-5,
             normal: [0.0, 0.0, -1.0],
             gap: 0.0,
@@ -230,7 +256,12 @@ mod tests {
             separation: true,
             normal_law: crate::model::NormalLaw::Linear { stiffness: 2e13 },
             tangential: Tangential::Sliding { direction: [1.0, 0.0, 0.0], speed: 0.5 },
-        };
+        }
+    }
+
+    #[test]
+    fn sliding_drags_the_slave_along_the_master() {
+        let point = belt_point();
         let answer = respond(&point, 0.4, [0.0, 0.0, 1e-7]);
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
         assert!(close(answer.normal_force, 20.0));

@@ -1,7 +1,7 @@
 //! Fixes, rotations, contacts, connectors and loads.
 
 use super::{GOOD, complains, parsed};
-use crate::model::LoadKind;
+use crate::model::{LoadKind, SpeedDecay};
 
 #[test]
 fn fixes_and_rotations_are_checked() {
@@ -34,10 +34,34 @@ fn contacts_are_checked() {
             format!("friction must be from 0 to 2, not {friction} (contact \"pair\"). Give a coefficient, such as 0.5");
         complains("friction = 0.5", &format!("friction = {friction}"), 0, &said);
     }
+    for wrong in [
+        "static = 0, kinetic = 0.4, decay = 1",
+        "static = 0.6, kinetic = 3, decay = 1",
+        "static = 0.6, kinetic = -1, decay = 1",
+        "static = 0.6, kinetic = 0.4, decay = 0",
+    ] {
+        let said = format!(
+            "friction has {wrong} (contact \"pair\"). \
+             Give static above 0 and kinetic from 0, both up to 2, and a decay above 0 in s/m"
+        );
+        complains("friction = 0.5", &format!("friction = {{ {wrong} }}"), 0, &said);
+    }
+    let said = "expected a number, or { static = 0.6, kinetic = 0.4, decay = 0.5 } ([[contact]]). \
+                Correct it; the documentation explains every key";
+    complains("friction = 0.5", "friction = { static = 0.6, kinetic = 0.4 }", 0, said);
+    complains("friction = 0.5", "friction = { static = 0.6, kinetic = 0.4, decay = 1, p = 1 }", 0, said);
     let said = "search must be above 0, not -2 (contact \"pair\"). Give a distance in the mesh's unit, or leave it out for no limit";
     complains("search = 2", "search = -2", 0, said);
     let said = parsed(&GOOD.replace("slave = \"pad_face\"", "slave = \"disc_face\"")).unwrap_err();
     assert!(said.contains(":31: slave and master are both \"disc_face\" (contact \"pair\")"), "{said}");
+}
+
+#[test]
+fn friction_that_decays_keeps_its_ratio() {
+    let text = GOOD.replace("friction = 0.5", "friction = { static = 0.5, kinetic = 0.4, decay = 2 }");
+    let contact = &parsed(&text).unwrap().contacts[0];
+    assert_eq!(contact.friction, 0.5);
+    assert_eq!(contact.decay, Some(SpeedDecay { kinetic_ratio: 0.8, decay: 2.0 }));
 }
 
 #[test]
