@@ -5,7 +5,7 @@
 //! ```
 //!
 //! `mu_0` is the friction value of the contact pair, which a sweep changes; `phi` is the pair's [`FrictionLaw`]. So a
-//! friction value of 0 is a contact without friction under every law, and everything linear in mu stays linear in `mu_0`.
+//! friction value of 0 is a contact without friction under every law, and what is linear in mu stays linear in `mu_0`.
 //! The speed is that of the imposed motion at the point; a pair that does not slide has v = 0.
 
 use crate::model::SpeedDecay;

@@ -1,8 +1,8 @@
 //! What acts at a contact point.
 //!
-//! A law is four choices that do not depend on each other. A [`PointLaw`] has the normal law, whether the point may open,
-//! and the kinematics in the tangent plane; the [`FrictionLaw`] is that of its pair. With the unit normal n of the master, the initial gap, and the relative displacement g
-//! of the slave against the master,
+//! A law is four choices that do not depend on each other. A [`PointLaw`] has the normal law, whether the point may
+//! open, and the kinematics in the tangent plane; the [`FrictionLaw`] is that of its pair. With the unit normal n of
+//! the master, the initial gap, and the relative displacement g of the slave against the master,
 //!
 //! ```text
 //! d = -(gap0 + n.g) + xi    penetration; gap0 counts as zero where the point may not open; xi only in reduced models

@@ -26,7 +26,8 @@ pub enum Tangential {
 
 /// Force and tangent of a point by its true law; `friction` is that of its pair, or a constant mu.
 ///
-/// With `P = I - n n^T`, `g_t = P g`, `p' = dp/dd` and `mu' = d(mu p)/dp = mu + p dmu/dp`, which is mu of a constant law:
+/// With `P = I - n n^T`, `g_t = P g`, `p' = dp/dd` and `mu' = d(mu p)/dp = mu + p dmu/dp`, which is mu where that is
+/// constant:
 ///
 /// ```text
 /// open         f = 0                                  D = 0
