@@ -28,6 +28,7 @@ demo: setup results/demo/report.html ## the main job on the demo brake (medium m
 test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## all tests
 	@scripts/setup.sh --tests
 	cargo nextest run --workspace --release
+	cargo test --workspace --release --doc
 	node --test tests/page/*.test.mjs
 	$(MAKE) python-test
 

@@ -8,6 +8,13 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 /// What went wrong: where, why, and what to do about it.
+///
+/// ```
+/// use squeal::{Error, ErrorKind};
+///
+/// let error = Error::input("brake.toml:12: young must be above 0, not -1");
+/// assert_eq!((error.kind(), error.exit_code()), (ErrorKind::Input, 2));
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The input (model file, mesh, command line) cannot be analysed as it stands.

@@ -47,6 +47,19 @@ impl Default for StabilityOptions {
 /// lambda C + K) x = 0`, follows them over the values, and explains those that are unstable. Where a value does not
 /// converge, the analysis ends there, and [`Results::failure`] says why. The root's results are complete. Collective.
 ///
+/// ```no_run
+/// use squeal::analysis::{StabilityOptions, stability};
+/// use squeal::structure::StructureOptions;
+/// use squeal::{Session, Structure};
+///
+/// let comm = Session::start(&[])?;
+/// let brake = Structure::read(&comm, "brake.toml".as_ref(), &StructureOptions::default())?;
+/// let options = StabilityOptions { friction_values: Some(vec![0.3, 0.5]), ..StabilityOptions::default() };
+/// let results = stability(&comm, &brake, &options, &mut ())?;
+/// println!("{} modes", results.modes().count());
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`crate::Error::Input`] for values, a band or an output folder that cannot be used; [`crate::Error::Interrupted`];
 /// PETSc's, MUMPS's and the system's.

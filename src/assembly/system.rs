@@ -78,6 +78,20 @@ impl System {
     /// Numbers the free dofs, then assembles M, C and K of all families. `constrained` says which displacements of each
     /// node are zero; `contacts` take part in the pattern only. Collective.
     ///
+    /// ```no_run
+    /// use squeal::Session;
+    /// use squeal::assembly::System;
+    /// use squeal::structure::FullModel;
+    ///
+    /// let comm = Session::start(&[])?;
+    /// let brake = FullModel::read(&comm, "brake.toml".as_ref())?;
+    /// let families = brake.families()?;
+    /// let contacts = &brake.interface.gap_operator;
+    /// let system = System::assemble(&comm, &brake.nodes, &brake.held, &families.list(), &[contacts])?;
+    /// println!("{} dofs", system.dofs.n_global());
+    /// # Ok::<(), squeal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// PETSc's.
     pub fn assemble(

@@ -224,6 +224,10 @@ impl Run {
 }
 
 /// Runs the program and gives its exit code.
+///
+/// ```no_run
+/// std::process::exit(squeal::cli::main());
+/// ```
 pub fn main() -> i32 {
     let (arguments, options) = match arguments() {
         Ok(parsed) => parsed,

@@ -94,6 +94,17 @@ const SAME_FRICTION: f64 = 1e-9;
 
 /// Compares two results at all frictions that both have.
 ///
+/// ```no_run
+/// use squeal::comparison::compare;
+/// use squeal::results::file;
+///
+/// let (full, reduced) = (file::read("full/results.h5".as_ref())?, file::read("reduced/results.h5".as_ref())?);
+/// for value in &compare(&full, &reduced)?.frictions {
+///     println!("mu = {}: {} modes are the same", value.friction, value.pairs.len());
+/// }
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] where they have no friction, no band or no surface in common.
 pub fn compare(a: &Results, b: &Results) -> Result<Comparison> {

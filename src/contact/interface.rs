@@ -111,6 +111,22 @@ impl Interface {
     ///
     /// A pair slides where its master turns; t is the direction of the master's velocity `omega x (x - through)`.
     ///
+    /// ```
+    /// use squeal::contact::{Interface, search::Alone};
+    /// use squeal::{mesh, model};
+    ///
+    /// let model = model::read("tests/data/pads_on_disc.toml".as_ref())?;
+    /// let mesh = mesh::read(&model.mesh_file, model.mesh_unit)?;
+    /// let interface = Interface::build(&model, &mesh, &Alone)?;
+    /// assert_eq!(interface.points.len(), 236);
+    /// // Pressed into the disc by 10 nm, a point is dragged along with mu p.
+    /// let inwards = interface.points[0].law.normal.map(|n| -1e-8 * n);
+    /// let answer = interface.respond(0, inwards, &interface.stage(0.4));
+    /// let force = answer.force.iter().map(|f| f * f).sum::<f64>().sqrt();
+    /// assert!((force / answer.normal_force - 1.0_f64.hypot(0.4)).abs() < 1e-12);
+    /// # Ok::<(), squeal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// With the model file's line: a pair without any point (with the closest distance found), surfaces that share
     /// nodes.

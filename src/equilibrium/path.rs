@@ -120,6 +120,20 @@ impl<'a> Path<'a> {
     /// The equilibrium at a friction value of the swept pairs. `progress` takes (label, iteration, iterate).
     /// Collective.
     ///
+    /// ```no_run
+    /// use squeal::equilibrium::Path;
+    /// use squeal::structure::StructureOptions;
+    /// use squeal::{Session, Structure};
+    ///
+    /// let comm = Session::start(&[])?;
+    /// let brake = Structure::read(&comm, "brake.toml".as_ref(), &StructureOptions::default())?;
+    /// let system = brake.assemble(&comm)?;
+    /// let equilibrium = Path::new(&system, brake.interface())?.advance(0.4, &mut |_, _, _| ())?;
+    /// let force: f64 = equilibrium.responses.iter().map(|response| response.normal_force).sum();
+    /// println!("{force} N presses the contacts");
+    /// # Ok::<(), squeal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// PETSc's and MUMPS's; [`Error::NotConverged`] where even the smallest step fails.
     pub fn advance(&mut self, friction: f64, progress: &mut dyn FnMut(&str, usize, &Iteration)) -> Result<Equilibrium> {

@@ -78,6 +78,15 @@ struct RowBlock {
 impl ExternalMatrices {
     /// Reads the terms on the root and gives every rank its rows. `omega` is a typical frequency, rad/s. Collective.
     ///
+    /// ```no_run
+    /// use squeal::matrices::{ExternalMatrices, family};
+    ///
+    /// let comm = squeal::Session::start(&[])?;
+    /// let family = family::read("brake.toml".as_ref())?;
+    /// let matrices = ExternalMatrices::read(&comm, &family.terms, 2000.0)?;
+    /// # Ok::<(), squeal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// See [`CombinedTerms::read`]; PETSc's.
     pub fn read(comm: &Comm, terms: &[Term], omega: f64) -> Result<ExternalMatrices> {

@@ -13,6 +13,12 @@ const UNITS: [(&str, f64); 6] = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 
 ///
 /// The mesh it names is not opened; see [`Model::check_against`] for what only the mesh can tell.
 ///
+/// ```
+/// let model = squeal::model::read("tests/data/pads_on_disc.toml".as_ref())?;
+/// assert_eq!((model.contacts.len(), model.contacts[0].friction), (2, 0.4));
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`], `file:line: what (item). what to do`, for the first thing that is wrong.
 pub fn read(path: &Path) -> Result<Model> {

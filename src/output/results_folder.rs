@@ -15,6 +15,20 @@ pub const RESULTS: &str = "results.h5";
 /// Writes the results file, the tables that the results have rows for, and the summary, which ends with what went
 /// wrong. Not collective.
 ///
+/// ```
+/// use squeal::Results;
+/// use squeal::output::folder::Folder;
+/// use squeal::output::results_folder;
+///
+/// # let place = tempfile::tempdir().expect("a folder");
+/// let place = place.path().join("my-brake");
+/// let folder = Folder::open(&place, false)?;
+/// results_folder::write(&folder, &Results::default(), "nothing was found\n")?;
+/// folder.finish()?;
+/// assert!(place.join("results.h5").is_file() && place.join("summary.txt").is_file());
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// The system's and HDF5's, with the file's path.
 pub fn write(folder: &Folder, results: &Results, summary: &str) -> Result<()> {

@@ -119,6 +119,22 @@ pub struct Reduced {
 /// Reduces a structure to its sliding contacts and its fixed-interface modes below `limit` (Hz, may be infinite).
 /// Collective.
 ///
+/// ```no_run
+/// use squeal::Session;
+/// use squeal::equilibrium::Path;
+/// use squeal::reduction::craig_bampton::{Structure, reduce};
+/// use squeal::structure::FullModel;
+///
+/// let comm = Session::start(&[])?;
+/// let brake = FullModel::read_with_contacts(&comm, "brake.toml".as_ref(), Some(104))?;
+/// let (system, interface) = (brake.assemble(&comm, &brake.families()?)?, &brake.interface);
+/// let equilibrium = Path::new(&system, interface)?.advance(0.4, &mut |_, _, _| ())?;
+/// let structure = Structure { system: &system, interface, equilibrium: &equilibrium, loaded: &[] };
+/// let reduced = reduce(&structure, 12e3, &mut |_| ())?;
+/// println!("{} coordinates", reduced.load.len());
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] where nothing slides or retained points are not independent; [`Error::NotConverged`]; PETSc's and
 /// MUMPS's.

@@ -40,6 +40,12 @@ pub const KIND: FileKind = FileKind {
 
 /// The page. The figures are those of [`plots::figures`].
 ///
+/// ```
+/// let html = squeal::report::page::page(&squeal::Results::default())?;
+/// assert!(html.starts_with("<!DOCTYPE html>"));
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// Where the data cannot be written as JSON.
 pub fn page(results: &Results) -> Result<String> {

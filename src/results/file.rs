@@ -106,6 +106,19 @@ struct HopfText {
 
 /// Writes the results of a study; the file appears when it is complete. Not collective.
 ///
+/// ```
+/// use squeal::Results;
+/// use squeal::results::file;
+///
+/// # let folder = tempfile::tempdir().expect("a folder");
+/// let path = folder.path().join("results.h5");
+/// let mut results = Results::default();
+/// results.about.title = "my brake".into();
+/// file::write(&path, &results)?;
+/// assert_eq!(file::read(&path)?, results);
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// The system's and HDF5's, with the path.
 pub fn write(path: &Path, results: &Results) -> Result<()> {

@@ -27,6 +27,17 @@ use crate::stability::Count;
 use crate::tracking::Diagram;
 
 /// A study and what it found.
+///
+/// ```
+/// use squeal::Results;
+/// use squeal::results::{ModeData, Value};
+///
+/// let mode = ModeData { unstable: true, ..ModeData::default() };
+/// let value = Value { friction: 0.5, asked: true, modes: vec![mode], ..Value::default() };
+/// let results = Results { values: vec![value], ..Results::default() };
+/// let unstable = results.modes().filter(|(_, _, mode)| mode.unstable).map(|(mu, number, _)| (mu, number));
+/// assert_eq!(unstable.collect::<Vec<_>>(), [(0.5, 1)]);
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Results {
     /// What was analysed, and by what.

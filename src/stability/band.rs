@@ -88,6 +88,27 @@ impl BandSolver {
     /// Finds all modes of a band, sorted by frequency, vectors scaled to a largest entry of 1. Where the solver needs a
     /// factor, `factor` becomes that of the problem at the shift of the report. Collective.
     ///
+    /// ```no_run
+    /// use squeal::equilibrium::{LinearSystem, Path};
+    /// use squeal::stability::{BandSolver, EigenOptions, Linearised};
+    /// use squeal::structure::StructureOptions;
+    /// use squeal::{Session, Structure};
+    ///
+    /// let comm = Session::start(&[])?;
+    /// let brake = Structure::read(&comm, "brake.toml".as_ref(), &StructureOptions::default())?;
+    /// let system = brake.assemble(&comm)?;
+    /// let mut path = Path::new(&system, brake.interface())?;
+    /// let equilibrium = path.advance(0.4, &mut |_, _, _| ())?;
+    /// let LinearSystem { contacts, tangent, factor } = path.linear_system();
+    /// let linearised = Linearised::new(&system, contacts, &equilibrium, false, tangent)?;
+    /// let problem = linearised.problem(&system, contacts, tangent);
+    /// let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
+    /// for mode in solver.solve_band(&problem, factor, &[0.0, 6000.0].into(), &mut |_| ())?.modes {
+    ///     println!("{:.1} Hz grows by {:.1} 1/s", mode.frequency(), mode.lambda.re);
+    /// }
+    /// # Ok::<(), squeal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// PETSc's and MUMPS's; [`Error::NotConverged`] where the band could not be completed.
     pub fn solve_band(

@@ -72,6 +72,16 @@ impl Default for StructureOptions {
 impl Structure {
     /// Reads a model file (TOML) with its mesh, or a super-element's file (HDF5), and checks it. Collective.
     ///
+    /// ```no_run
+    /// use squeal::structure::StructureOptions;
+    /// use squeal::{Session, Structure};
+    ///
+    /// let comm = Session::start(&[])?;
+    /// let brake = Structure::read(&comm, "brake.toml".as_ref(), &StructureOptions::default())?;
+    /// println!("{} contact points", brake.interface().points.len());
+    /// # Ok::<(), squeal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::Input`] with file, line and advice: whatever is wrong with the files, options that are for the other
     /// kind of structure, a part that can move freely.

@@ -20,6 +20,44 @@ use crate::{Error, Result};
 /// Values at which two modes are one vector (a coalescence that is met exactly) are replaced by a neighbour a tenth of
 /// the tolerance away.
 ///
+/// ```
+/// use nalgebra::DMatrix;
+/// use num_complex::Complex64;
+/// use squeal::tracking::{Family, Options, track};
+///
+/// /// One oscillator, `lambda^2 + c lambda + 1 = 0`, whose damping `c = 0.1 - 0.2 mu` becomes negative at mu = 0.5.
+/// struct Oscillator;
+///
+/// struct Modes {
+///     c: f64,
+///     lambda: [Complex64; 1],
+/// }
+///
+/// impl Family for Oscillator {
+///     type Modes = Modes;
+///
+///     fn solve(&mut self, mu: f64) -> squeal::Result<Modes> {
+///         let c = 0.1 - 0.2 * mu;
+///         Ok(Modes { c, lambda: [Complex64::new(-0.5 * c, (1.0 - 0.25 * c * c).sqrt())] })
+///     }
+///
+///     fn eigenvalues<'m>(&self, modes: &'m Modes) -> &'m [Complex64] {
+///         &modes.lambda
+///     }
+///
+///     fn products(&mut self, left: &Modes, right: &Modes) -> squeal::Result<DMatrix<Complex64>> {
+///         Ok(DMatrix::from_element(1, 1, left.lambda[0] + right.lambda[0] + left.c))
+///     }
+/// }
+///
+/// let options = Options { band: [0.5, 2.0], tolerance: 1e-3, threshold: |_| 0.0 };
+/// let (diagram, outcome) = track(&mut Oscillator, &[0.1, 0.9], &options);
+/// outcome?;
+/// assert_eq!((diagram.branches.len(), diagram.hopf.len()), (1, 1));
+/// assert!((diagram.hopf[0].value - 0.5).abs() < 1e-3 && diagram.hopf[0].onset);
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// Those of the family; [`Error::Input`] where the values neither rise nor fall; [`Error::NotConverged`] where the
 /// modes of two values have nothing in common.

@@ -43,6 +43,34 @@ fn the_table_lists_each_module_once() {
     assert_eq!(listed, declared(&lib), "the table of src/lib.rs, and its modules");
 }
 
+/// Whether the documentation of a text has an example in Rust.
+fn has_doctest(text: &str) -> bool {
+    let comment = |line: &str| line.trim_start().strip_prefix("//").map(|rest| rest[1..].trim().to_owned());
+    let fences = text.lines().filter_map(comment).filter(|line| line.starts_with("```"));
+    // Every other fence closes a block.
+    fences.step_by(2).any(|fence| ["```", "```no_run"].contains(&fence.as_str()))
+}
+
+#[test]
+fn every_module_has_a_doctest() {
+    let sources = sources("src");
+    let is_documented = |module: &String| {
+        let own = |path: &Path| {
+            path.strip_prefix("src").is_ok_and(|path| {
+                path.iter()
+                    .next()
+                    .is_some_and(|first| Path::new(first).file_stem().is_some_and(|stem| stem.to_str() == Some(module)))
+            })
+        };
+        sources.iter().any(|source| own(&source.path) && has_doctest(&source.text))
+    };
+    let private = ["hdf", "algebra"];
+    let public = modules(&lib()).into_iter().filter(|module| !private.contains(&module.as_str()));
+    let without: Vec<String> = public.filter(|module| !is_documented(module)).collect();
+    assert!(without.is_empty(), "{without:?}");
+    assert!(has_doctest("/// ```\n/// f();\n/// ```\n") && !has_doctest("//! ```text\n//! f = p n\n//! ```\n"));
+}
+
 #[test]
 fn modules_import_only_modules_above_them() {
     let rule = Rule::new(&lib());

@@ -12,6 +12,14 @@
 //!            1             midsides: N_ij = 4 l_i l_j
 //! ```
 //!
+//! ```
+//! use squeal::element::tet10::{mass_properties, straight};
+//!
+//! let nodes = straight([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+//! let steel = mass_properties(&nodes, 7800.0);
+//! assert!((steel.mass - 1300.0).abs() < 1e-9 && (steel.centre()[0] - 0.25).abs() < 1e-12);
+//! ```
+//!
 //! Geometry and displacement share the shape functions, `x = sum_a N_a x_a`, `u = sum_a N_a u_a`. An element is well
 //! shaped when `detJ > 0` everywhere, which for the node order above means that corner 3 lies on the side of face
 //! (0, 1, 2) from which it is seen counterclockwise, `(x_1 - x_0) x (x_2 - x_0) . (x_3 - x_0) > 0`.

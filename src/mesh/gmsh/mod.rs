@@ -21,6 +21,13 @@ use std::path::Path;
 /// Physical volumes become parts (in the order of `$PhysicalNames`), physical surfaces become surfaces with facets that
 /// look out of their part, physical curves and points become node sets. Nodes that no tetrahedron uses are left out.
 ///
+/// ```
+/// let mesh = squeal::mesh::read("tests/data/pads_on_disc.msh".as_ref(), 1e-3)?;
+/// assert_eq!((mesh.parts.len(), mesh.parts[0].as_str()), (5, "disc"));
+/// assert!(mesh.surfaces.contains_key("lining_inner_face"));
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] with the file and line (or byte, or the names of part and element) for a file that is missing,
 /// truncated or of another version, for elements of other kinds, volumes outside all parts, names with two meanings,

@@ -29,6 +29,12 @@ impl Session {
     /// Starts MPI, PETSc and SLEPc, after HDF5. `options` are `(name, value)` pairs for PETSc's option database, names
     /// with their dash.
     ///
+    /// ```no_run
+    /// let comm = squeal::Session::start(&[])?;
+    /// println!("rank {} of {}", comm.rank(), comm.size());
+    /// # Ok::<(), squeal::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// Where a session is alive already, or MPI has ended in this process; PETSc's.
     pub fn start(options: &[(String, String)]) -> Result<Comm> {
