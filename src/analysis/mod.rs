@@ -2,6 +2,7 @@
 //!
 //! | call | from | to |
 //! |---|---|---|
+//! | [`propose_model`] | a mesh | the text of a model file, to be completed |
 //! | [`model_summary`] | a full model | masses, contact pairs, mesh quality, loads, warnings |
 //! | [`statics`] | a structure | equilibria over the friction coefficient |
 //! | [`stability`] | a structure | complex modes of a band over the friction coefficient, branches and Hopf points |
@@ -26,6 +27,7 @@ mod free_modes;
 mod measured;
 mod mode_data;
 mod observer;
+mod proposal;
 mod reduce;
 mod run;
 mod stability;
@@ -41,6 +43,7 @@ pub use external_sweep::{ExternalModes, ExternalSweep};
 pub use family::{FrictionFamily, Snapshot, Solutions, Spectrum, Vectors, tracking_options, widened};
 pub use free_modes::{FreeModesOptions, free_modes};
 pub use observer::{Event, Observer};
+pub use proposal::propose_model;
 pub use reduce::{ReduceOptions, Reduction, reduce, with_reference_contacts};
 pub use run::Output;
 pub use stability::{StabilityOptions, stability};

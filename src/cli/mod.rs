@@ -5,6 +5,7 @@ mod compare;
 mod export;
 mod interrupt;
 mod modes;
+mod new;
 mod progress;
 mod reduce;
 mod report;
@@ -106,6 +107,13 @@ fn warning_line(warning: &str, as_json: bool) -> String {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Write a model file for a mesh: parts, touching surfaces and axis are filled in, the rest is to be chosen
+    New {
+        #[command(flatten)]
+        new: new::New,
+    },
+    /// Print a model file that has every key, each explained
+    Example,
     /// Print what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
     Check {
         #[command(flatten)]
@@ -272,6 +280,8 @@ fn print_usage(usage: &clap::Error) -> i32 {
 
 fn run(command: &Command, shell: &Shell) -> Result<()> {
     match command {
+        Command::New { new } => new::run(shell, new),
+        Command::Example => new::example(shell),
         Command::Check { check } => check::run(shell, check),
         Command::Static { run } => r#static::run(shell, run),
         Command::Export { run, format, part } => export::run(shell, run, *format, part.as_deref()),
