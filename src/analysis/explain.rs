@@ -85,7 +85,7 @@ pub fn explain(
         Structure::Full(full) => explain_full(full, sweep, equilibrium, mode, left),
         Structure::Reduced(reduced) => {
             let named = [(Kind::Part, "super-element".to_owned())];
-            let member = Member::new(reduced.element());
+            let member = Member::new(&reduced.element);
             sweep.explain((&[(&member, &|_| 0)], &named), equilibrium, mode, left)
         }
     }

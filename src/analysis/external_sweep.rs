@@ -10,8 +10,7 @@ use crate::equilibrium::LabelledFactor;
 use crate::matrices::{ExternalMatrices, Sums};
 use crate::native::{Factor, FactorKind, Mck, Precision};
 use crate::stability::{
-    self, Band, BandRequest, BandSolver, EigenOptions, EigenProgress, Evidence, QuadraticProblem, condition,
-    condition_at,
+    self, Band, BandRequest, BandSolver, EigenOptions, Evidence, QuadraticProblem, condition, condition_at,
 };
 use crate::tracking::{Diagram, Options, track};
 use crate::{Error, Result};
@@ -87,9 +86,7 @@ impl<'a> ExternalSweep<'a> {
     fn modes_of(&mut self, sums: &Sums, band: [f64; 2], observer: &mut dyn Observer) -> Result<ExternalModes> {
         let problem = self.problem(sums);
         let (shift, condition) = self.choose_shift(&problem)?;
-        let mut progress = |EigenProgress { n_converged, n_wanted, n_solves }: EigenProgress| {
-            observer.event(Event::Modes { n_converged, n_wanted, n_solves });
-        };
+        let mut progress = |progress| observer.event(Event::Modes(progress));
         let band = self.solver.solve_band(&problem, &mut self.lu, &BandRequest { band, shift }, &mut progress)?;
         Ok(ExternalModes { band, condition, shift })
     }

@@ -15,7 +15,7 @@ use crate::native::{Comm, MaxLoc, Mck, Precision};
 use crate::output::fields::write_free_mode;
 use crate::output::folder::Folder;
 use crate::results::{FreeMode, FreeModes, MeasuredComparison};
-use crate::stability::{Band, BandRequest, BandSolver, EigenOptions, EigenProgress, Mode, QuadraticProblem};
+use crate::stability::{Band, BandRequest, BandSolver, EigenOptions, Mode, QuadraticProblem};
 use crate::structure::{FullModel, RigidMotions};
 
 use super::measured::{self, Measured};
@@ -94,9 +94,7 @@ fn solve(system: &System, band: [f64; 2], observer: &mut dyn Observer) -> Result
     let mut factor = LabelledFactor::new(Precision::Double);
     let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
     let request = BandRequest { band: [0.0, band[1]], shift: SHIFT_RATIO * TAU * band[1] };
-    let mut progress = |EigenProgress { n_converged, n_wanted, n_solves }: EigenProgress| {
-        observer.event(Event::Modes { n_converged, n_wanted, n_solves });
-    };
+    let mut progress = |progress| observer.event(Event::Modes(progress));
     solver.solve_band(&problem, &mut factor, &request, &mut progress)
 }
 

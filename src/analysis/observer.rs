@@ -4,6 +4,7 @@ use crate::equilibrium::Iteration;
 use crate::native::Comm;
 use crate::reduction::craig_bampton;
 use crate::results::Value;
+use crate::stability::EigenProgress;
 use crate::structure::{FullModel, plausibility};
 
 /// What happens in an analysis.
@@ -36,14 +37,7 @@ pub enum Event<'a> {
         iterate: &'a Iteration,
     },
     /// The eigensolver works.
-    Modes {
-        /// Eigenvalues that have converged.
-        n_converged: usize,
-        /// Eigenvalues wanted.
-        n_wanted: usize,
-        /// Right-hand sides solved for.
-        n_solves: usize,
-    },
+    Modes(EigenProgress),
     /// A part of a study begins, or was made before.
     Part {
         /// Its name.

@@ -11,9 +11,7 @@ use crate::assembly::System;
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, LinearSystem, Path};
 use crate::native::{Block, FactorStats, Matrix, Precision, Vector};
-use crate::stability::{
-    self, Band, BandSolver, Count, EigenOptions, EigenProgress, Linearised, Mode, QuadraticProblem,
-};
+use crate::stability::{self, Band, BandSolver, Count, EigenOptions, Linearised, Mode, QuadraticProblem};
 
 /// A structure under analysis at one friction coefficient after the other.
 pub struct Sweep<'a> {
@@ -85,9 +83,7 @@ impl<'a> Sweep<'a> {
         let LinearSystem { contacts, tangent, factor } = self.path.linear_system();
         self.linearised = Linearised::new(self.system, contacts, equilibrium, self.friction_damping, tangent)?;
         let problem = self.linearised.problem(self.system, contacts, tangent);
-        let mut progress = |EigenProgress { n_converged, n_wanted, n_solves }: EigenProgress| {
-            observer.event(Event::Modes { n_converged, n_wanted, n_solves });
-        };
+        let mut progress = |progress| observer.event(Event::Modes(progress));
         let outcome = self.solver.solve_band(&problem, factor, &band.into(), &mut progress);
         self.seconds[1] += start.elapsed().as_secs_f64();
         outcome

@@ -4,6 +4,7 @@ use crate::Result;
 use crate::analysis::{Event, Observer};
 use crate::reduction::craig_bampton;
 use crate::results::Value;
+use crate::stability::EigenProgress;
 
 use super::interrupt::Interrupt;
 use super::progress::Progress;
@@ -57,7 +58,7 @@ impl Observer for Watch {
                 let (residual, closed) = (iterate.residual, iterate.counts.closed());
                 self.progress.show(format!("{label}: iteration {iteration}, residual {residual:.1e}, {closed} closed"));
             }
-            Event::Modes { n_converged, n_wanted, n_solves } => {
+            Event::Modes(EigenProgress { n_converged, n_wanted, n_solves }) => {
                 self.progress.show(format!("modes: {n_converged} of {n_wanted} eigenvalues, {n_solves} solves"));
             }
             Event::Reduction(step) => self.progress.show(reduction_step(step)),

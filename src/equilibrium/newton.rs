@@ -164,7 +164,7 @@ pub(super) fn solve(
         iterations: Vec::new(),
         progress,
     };
-    let converged = nonlinear::solve(&mut newton, u, MAX_ITERATIONS)?.converged;
+    let converged = nonlinear::solve(&mut newton, u, MAX_ITERATIONS)?;
     Ok(Outcome { converged, iterations: newton.iterations, responses: newton.accepted })
 }
 

@@ -105,7 +105,7 @@ impl FieldWriter<'_> {
     fn outer_displacement(&self, reduced: &ReducedModel, name: &str, u: &Vector) -> Result<()> {
         let q = coordinates(self.system, &[u])?;
         self.outer_surface(reduced, name, || {
-            vec![("displacement", reduced.surface().displacements(&[&q[0]]).swap_remove(0))]
+            vec![("displacement", reduced.surface.displacements(&[&q[0]]).swap_remove(0))]
         })
     }
 
@@ -117,7 +117,7 @@ impl FieldWriter<'_> {
         fields: impl FnOnce() -> Vec<(&'static str, Vec<[f64; 3]>)>,
     ) -> Result<()> {
         let write = |folder: &Folder| {
-            let (surface, fields) = (reduced.surface(), fields());
+            let (surface, fields) = (&reduced.surface, fields());
             let grid = Grid {
                 points: &surface.nodes,
                 cells: Cells::Patches(&surface.triangles),

@@ -33,7 +33,7 @@ use super::space::{Basis, FactoredProblem, Ritz, SKETCH, Side, Space, Start};
 use super::{EigenOptions, QuadraticProblem};
 use crate::equilibrium::LabelledFactor;
 use crate::native::petsc::eigen::{self, Found, Pair, Quadratic};
-use crate::native::{Factor, FactorKind, Matrix, Mck};
+use crate::native::{Factor, FactorKind, Matrix};
 use crate::{ErrorKind, Result};
 
 /// Pairs whose vectors are looked at together.
@@ -229,14 +229,14 @@ fn ritz(space: &Space, target: &Target) -> Result<Option<Vec<Ritz>>> {
     // The same numbers on every rank, to the last bit.
     let small =
         |a: &DMatrix<f64>| Matrix::dense(&comm, n, &space.v.comm().broadcast(0, a.transpose().as_slice().to_vec()));
-    let Mck { m, c, k } = space.projected.as_ref().try_map(small)?;
+    let matrices = space.projected.as_ref().try_map(small)?;
     let mut factor = Factor::new(FactorKind::Unsymmetric);
-    factor.factorise(&k)?;
+    factor.factorise(&matrices.k)?;
     for margin in PROJECTED_MARGINS {
         let n_wanted = (2 * (target.n_expected + margin)).min(2 * n);
         let options = eigen::Options { n_wanted, n_basis: 0, tolerance: 1e-13, max_restarts: 500, scale: 0.0 };
-        let problem = Quadratic { m: &m, c: &c, k: &k, shift: 0.0, inverse: &|b, x| factor.solve(b, x) };
-        let Some(found) = eigen::solve_or_none(&problem, &options, &mut |_, _| ())? else { continue };
+        let problem = Quadratic { matrices: matrices.as_ref(), shift: 0.0, inverse: &|b, x| factor.solve(b, x) };
+        let Some(found) = eigen::solve(&problem, &options, &mut |_, _| ())? else { continue };
         let reach = found.pairs.iter().map(|pair| pair.lambda.norm()).fold(0.0, f64::max);
         if reach > target.radius || found.n_converged >= 2 * n {
             return within(found, target.radius).map(Some);

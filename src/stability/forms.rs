@@ -5,18 +5,10 @@ use num_complex::Complex64;
 use crate::Result;
 use crate::assembly::{ElementMatrices, Elements, System};
 use crate::equilibrium::{Contacts, Equilibrium};
-use crate::native::Vector;
+use crate::native::{Mck, Vector};
 
-/// The share of one source in the three forms of two vectors.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Forms {
-    /// `y^H M x`
-    pub m: Complex64,
-    /// `y^H C x`
-    pub c: Complex64,
-    /// `y^H K x`
-    pub k: Complex64,
-}
+/// The share of one source in the three forms of two vectors: `y^H M x`, `y^H C x`, `y^H K x`.
+pub type Forms = Mck<Complex64>;
 
 /// A complex vector in two real ones.
 #[derive(Clone, Copy)]
@@ -69,13 +61,11 @@ fn hermitian(a: &[f64], y: &[Complex64], x: &[Complex64]) -> Complex64 {
     a.chunks(x.len()).zip(y).map(|(a, y)| y.conj() * row(a)).sum()
 }
 
-fn summed(system: &System, mut sums: Vec<Forms>) -> Vec<Forms> {
-    let mut values: Vec<f64> = sums.iter().flat_map(|s| [s.m.re, s.m.im, s.c.re, s.c.im, s.k.re, s.k.im]).collect();
+fn summed(system: &System, sums: Vec<Forms>) -> Vec<Forms> {
+    let mut values: Vec<f64> = sums.into_iter().flat_map(Mck::into_array).flat_map(|z| [z.re, z.im]).collect();
     system.k.comm().sum_all(&mut values);
-    for (sum, v) in sums.iter_mut().zip(values.chunks(6)) {
-        [sum.m, sum.c, sum.k] = [0, 2, 4].map(|i| Complex64::new(v[i], v[i + 1]));
-    }
-    sums
+    let complex = |at: &[f64]| [0, 2, 4].map(|i| Complex64::new(at[i], at[i + 1]));
+    values.chunks(6).map(|at| complex(at).into()).collect()
 }
 
 /// The forms of the contact pairs, linearised about an equilibrium with a friction for each pair: `g_y^H D g_x`, and

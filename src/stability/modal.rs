@@ -167,8 +167,8 @@ impl Coordinates {
         self.set_damping(problem)?;
         let Some((_, c)) = &self.damping else { return Ok(None) };
         let solve = |b: &Vector, x: &mut Vector| b.local(|b| x.local_mut(|x| inverse.solve(b, x)))?;
-        let quadratic = Quadratic { m: &self.m, c, k: &self.k, shift: 0.0, inverse: &solve };
-        let Some(found) = eigen::solve_or_none(&quadratic, options, progress)? else { return Ok(None) };
+        let quadratic = Quadratic { matrices: Mck { m: &self.m, c, k: &self.k }, shift: 0.0, inverse: &solve };
+        let Some(found) = eigen::solve(&quadratic, options, progress)? else { return Ok(None) };
         let mut coordinates = Vec::new();
         for vector in found.pairs.iter().flat_map(|pair| [&pair.re, &pair.im]) {
             vector.local(|values| coordinates.extend_from_slice(values))?;
@@ -232,8 +232,8 @@ impl Inverse {
     }
 }
 
-/// About the largest backward error of left vectors, at the price of one: of `sum_i P(lambda_i)^T v_i / s_i` with `s_i =
-/// (|lambda_i|^2 |M| + |lambda_i| |C| + |K|) |v_i|`, maximum norms. At most the sum of all errors. Collective.
+/// About the largest backward error of left vectors, at the price of one: of `sum_i P(lambda_i)^T v_i / s_i`,
+/// `s_i = (|lambda_i|^2 |M| + |lambda_i| |C| + |K|) |v_i|`, maximum norms. At most the sum of all errors. Collective.
 fn joint_error(problem: &QuadraticProblem, modes: &[Mode], v: &Block) -> Result<f64> {
     let Mck { m, c, k } = problem.matrices;
     let norms = problem.matrices.try_map(Matrix::norm_inf)?;

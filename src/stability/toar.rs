@@ -10,7 +10,7 @@ use super::{EigenOptions, QuadraticProblem};
 use crate::Result;
 use crate::equilibrium::LabelledFactor;
 use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::native::{Block, Mck, Precision};
+use crate::native::{Block, Precision, Vector};
 
 /// Restarts before TOAR gives what it has.
 const MAX_RESTARTS: usize = 200;
@@ -33,13 +33,10 @@ impl Eigensolver for Toar {
         }
         let lu = problem.factorise(request.shift, factor)?;
         let options = pep_options(problem, request, self.options.toar_tolerance);
-        let Mck { m, c, k } = problem.matrices;
-        let quadratic = Quadratic { m, c, k, shift: request.shift, inverse: &|b, x| lu.solve(b, x) };
-        complete(
-            problem,
-            SolverKind::Toar,
-            eigen::solve_or_none(&quadratic, &options, &mut with_wanted(options.n_wanted, progress))?,
-        )
+        let inverse = |b: &Vector, x: &mut Vector| lu.solve(b, x);
+        let quadratic = Quadratic { matrices: problem.matrices, shift: request.shift, inverse: &inverse };
+        let found = eigen::solve(&quadratic, &options, &mut with_wanted(options.n_wanted, progress))?;
+        complete(problem, SolverKind::Toar, found)
     }
 }
 

@@ -37,7 +37,7 @@ impl EquilibriumChecks {
 
     /// Those of a super-element. Not collective.
     pub(super) fn of_reduced(reduced: &ReducedModel, equilibrium: &Equilibrium) -> EquilibriumChecks {
-        let pairs = PairForces::all(reduced.interface(), &equilibrium.responses);
+        let pairs = PairForces::all(&reduced.interface, &equilibrium.responses);
         EquilibriumChecks { pairs, text: String::new() }
     }
 }

@@ -113,7 +113,7 @@ impl Structure {
     pub fn interface(&self) -> &Interface {
         match self {
             Structure::Full(full) => &full.interface,
-            Structure::Reduced(reduced) => reduced.interface(),
+            Structure::Reduced(reduced) => &reduced.interface,
         }
     }
 
@@ -121,7 +121,7 @@ impl Structure {
     pub fn interface_mut(&mut self) -> &mut Interface {
         match self {
             Structure::Full(full) => &mut full.interface,
-            Structure::Reduced(reduced) => reduced.interface_mut(),
+            Structure::Reduced(reduced) => &mut reduced.interface,
         }
     }
 
@@ -140,7 +140,7 @@ impl Structure {
     pub fn friction_damping(&self) -> bool {
         match self {
             Structure::Full(full) => full.model.friction_damping,
-            Structure::Reduced(reduced) => reduced.friction_damping(),
+            Structure::Reduced(reduced) => reduced.element.origin.friction_damping,
         }
     }
 
@@ -174,7 +174,7 @@ impl Structure {
     pub fn surface_motion<'s>(&'s self, system: &'s System) -> Result<SurfaceMotion<'s>> {
         match self {
             Structure::Full(full) => SurfaceMotion::of_nodes(full.boundary(system.k.comm(), system), system),
-            Structure::Reduced(reduced) => Ok(SurfaceMotion::of_coordinates(reduced.surface(), system)),
+            Structure::Reduced(reduced) => Ok(SurfaceMotion::of_coordinates(&reduced.surface, system)),
         }
     }
 

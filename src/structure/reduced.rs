@@ -17,9 +17,12 @@ use super::{StructureOptions, contact_surface, digest, pairs};
 /// A super-element under a law and loads.
 pub struct ReducedModel {
     place: PathBuf,
-    element: SuperElement,
-    surface: OuterSurface,
-    interface: Interface,
+    /// The super-element.
+    pub element: SuperElement,
+    /// The outer surface and how the coordinates move it.
+    pub surface: OuterSurface,
+    /// Contact points under the law.
+    pub interface: Interface,
     load_factor: f64,
 }
 
@@ -64,34 +67,12 @@ impl ReducedModel {
         })
     }
 
-    /// The super-element.
-    pub fn element(&self) -> &SuperElement {
-        &self.element
-    }
-
-    /// The outer surface and how the coordinates move it.
-    pub fn surface(&self) -> &OuterSurface {
-        &self.surface
-    }
-
-    pub(super) fn interface(&self) -> &Interface {
-        &self.interface
-    }
-
-    pub(super) fn interface_mut(&mut self) -> &mut Interface {
-        &mut self.interface
-    }
-
     pub(super) fn band(&self, given: Option<[f64; 2]>) -> Result<[f64; 2]> {
         let band = given.unwrap_or(self.element.origin.band);
         if let Some(warning) = self.element.require_band(band)? {
             eprintln!("warning: {}: {warning}", self.place.display());
         }
         Ok(band)
-    }
-
-    pub(super) fn friction_damping(&self) -> bool {
-        self.element.origin.friction_damping
     }
 
     pub(super) fn friction_values(&self, given: Option<&[f64]>) -> Result<Vec<f64>> {

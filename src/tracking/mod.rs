@@ -32,9 +32,9 @@ mod diagram;
 mod homotopy;
 mod hopf;
 mod matching;
-#[cfg(test)]
-mod models;
 mod node;
+#[cfg(test)]
+mod testing;
 #[cfg(test)]
 mod tests;
 mod track;

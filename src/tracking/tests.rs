@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::models::{Model, Real, options, rows, undamped, values};
+use super::testing::{Model, Real, options, rows, undamped, values};
 use super::{Branch, Diagram, Family, Options, track};
 use num_complex::Complex64;
 

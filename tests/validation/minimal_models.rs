@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use squeal::native::petsc::eigen::{self, Options, Quadratic};
-use squeal::native::{Comm, Factor, FactorKind, Matrix, Session};
+use squeal::native::{Comm, Factor, FactorKind, Matrix, Mck, Session};
 
 use super::table::{Case, Row};
 
@@ -32,8 +32,8 @@ fn eigenvalues<const N: usize>(
     let mut factor = Factor::new(FactorKind::Unsymmetric);
     factor.factorise(&p).unwrap();
     let options = Options { n_wanted: 2 * N, n_basis: 0, tolerance: 1e-15, max_restarts: 100, scale: 0.0 };
-    let problem = Quadratic { m: &m, c: &c, k: &k, shift, inverse: &|b, x| factor.solve(b, x) };
-    let found = eigen::solve(&problem, &options, &mut |_, _| ()).unwrap();
+    let problem = Quadratic { matrices: Mck { m: &m, c: &c, k: &k }, shift, inverse: &|b, x| factor.solve(b, x) };
+    let found = eigen::solve(&problem, &options, &mut |_, _| ()).unwrap().unwrap();
     let mut lambdas: Vec<Complex64> = found.pairs.iter().map(|pair| pair.lambda).collect();
     let key = |z: &Complex64| ((z.im * 1e6).round(), z.re);
     lambdas.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap());

@@ -16,14 +16,9 @@ pub use noise::Noise;
 pub use orthonormal::Orthonormal;
 
 use std::ops::Range;
-use std::ptr;
-
-use squeal_sys as sys;
 
 use crate::Result;
 use crate::native::lapack;
-use crate::native::petsc::error::check;
-use crate::native::petsc::{DEFAULT, DETERMINE, Int};
 use crate::native::{Comm, Factor, Matrix, Vector};
 
 /// Columns distributed over the ranks by rows, column-major on each.
@@ -33,42 +28,6 @@ pub struct Block {
     n_local: usize,
     n_columns: usize,
     values: Vec<f64>,
-}
-
-/// A dense PETSc matrix on borrowed values, for the length of a call.
-struct View {
-    raw: sys::Mat,
-}
-
-impl Drop for View {
-    fn drop(&mut self) {
-        // SAFETY: this handle owns the matrix object; the values stay their owner's.
-        unsafe { sys::MatDestroy(&mut self.raw) };
-    }
-}
-
-impl View {
-    /// Of some columns of a block with these values.
-    fn new(block: &Block, columns: Range<usize>, values: *mut f64) -> Result<View> {
-        let mut raw = ptr::null_mut();
-        let (rows, n_columns) = (block.n_local as Int, columns.len() as Int);
-        // SAFETY: `values` has `n_local x n_columns` entries from the first column on and outlives the view.
-        unsafe {
-            check(sys::MatCreateDense(
-                block.comm.raw(),
-                rows,
-                DETERMINE,
-                DETERMINE,
-                n_columns,
-                values.add(columns.start * block.n_local),
-                &mut raw,
-            ))?;
-            let view = View { raw };
-            check(sys::MatAssemblyBegin(raw, sys::MatAssemblyType::MAT_FINAL_ASSEMBLY))?;
-            check(sys::MatAssemblyEnd(raw, sys::MatAssemblyType::MAT_FINAL_ASSEMBLY))?;
-            Ok(view)
-        }
-    }
 }
 
 impl Block {
@@ -189,32 +148,16 @@ impl Block {
     /// # Errors
     /// PETSc's.
     pub fn multiplied_by_transpose(&self, a: &Matrix) -> Result<Block> {
-        if !a.is_dense()? {
-            return self.multiplied_by_sparse_transpose(a);
-        }
         let mut product = self.like(self.n_columns);
         let sizes = [self.n_local, self.n_local, self.n_columns];
-        a.with_dense_values(|a| lapack::multiply(true, sizes, a, &self.values, &mut product.values))?;
+        if a.with_dense_values(|a| lapack::multiply(true, sizes, a, &self.values, &mut product.values))?.is_none() {
+            let mut y = Vector::zeros(&self.comm, self.n_local)?;
+            for j in 0..self.n_columns {
+                a.multiply_transpose(&self.vector(j)?, &mut y)?;
+                y.local(|y| product.column_mut(j).copy_from_slice(y))?;
+            }
+        }
         Ok(product)
-    }
-
-    fn multiplied_by_sparse_transpose(&self, a: &Matrix) -> Result<Block> {
-        if self.n_columns == 0 {
-            return Ok(self.clone());
-        }
-        let view = View::new(self, 0..self.n_columns, self.values.as_ptr().cast_mut())?;
-        let mut product = ptr::null_mut();
-        // SAFETY: the multiplication reads `view` only and creates `product`, which is read and destroyed here.
-        unsafe {
-            let reuse = sys::MatReuse::MAT_INITIAL_MATRIX;
-            check(sys::MatTransposeMatMult(a.raw(), view.raw, reuse, DEFAULT as f64, &mut product))?;
-            let product = View { raw: product };
-            let mut pointer = ptr::null_mut();
-            check(sys::MatDenseGetArray(product.raw, &mut pointer))?;
-            let values = std::slice::from_raw_parts(pointer, self.values.len()).to_vec();
-            check(sys::MatDenseRestoreArray(product.raw, &mut pointer))?;
-            Ok(Block { values, ..self.like(self.n_columns) })
-        }
     }
 
     /// `A^-1 self`, many columns in each pass over the factor.

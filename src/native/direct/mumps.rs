@@ -157,7 +157,7 @@ impl Mumps {
 
     /// A global real information number, numbered from 1.
     pub fn rinfog(&self, number: i32) -> f64 {
-        both!(&self.data, id => id.rinfog[number as usize - 1].to())
+        both!(&self.data, id => id.rinfog[number as usize - 1].into())
     }
 
     /// What MUMPS says of its last job.

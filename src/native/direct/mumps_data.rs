@@ -21,26 +21,19 @@ macro_rules! both {
 }
 
 /// A number of either precision.
-pub(super) trait Real: Datum {
+pub(super) trait Real: Datum + Into<f64> {
     fn of(x: f64) -> Self;
-    fn to(self) -> f64;
 }
 
 impl Real for f64 {
     fn of(x: f64) -> f64 {
         x
     }
-    fn to(self) -> f64 {
-        self
-    }
 }
 
 impl Real for f32 {
     fn of(x: f64) -> f32 {
         x as f32
-    }
-    fn to(self) -> f64 {
-        f64::from(self)
     }
 }
 

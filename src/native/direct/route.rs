@@ -50,10 +50,11 @@ impl Route {
         let others = comm.exchange(&self.sent.iter().map(packed).collect::<Vec<_>>());
         for (j, &scale) in scales.iter().enumerate() {
             let x = &mut x[j * n..(j + 1) * n];
-            self.own.iter().for_each(|&(place, row)| x[row] = scale * of_rows[row] * column(j)[place].to());
+            let mut set = |row: usize, value: T| x[row] = scale * of_rows[row] * Into::<f64>::into(value);
+            self.own.iter().for_each(|&(place, row)| set(row, column(j)[place]));
             for (rows, values) in self.received.iter().zip(&others) {
                 let values = &values[j * rows.len()..(j + 1) * rows.len()];
-                rows.iter().zip(values).for_each(|(&row, value)| x[row] = scale * of_rows[row] * value.to());
+                rows.iter().zip(values).for_each(|(&row, &value)| set(row, value));
             }
         }
     }

@@ -9,7 +9,7 @@ use squeal_sys as sys;
 use super::error::{Trap, check};
 use super::vector::Borrowed;
 use super::{Int, Matrix, PETSC_ERR_LIB, Vector};
-use crate::native::Comm;
+use crate::native::{Comm, Mck};
 use crate::{Error, Result};
 
 /// `x = P(sigma)^-1 b`.
@@ -17,12 +17,8 @@ pub type Inverse<'a> = dyn Fn(&Vector, &mut Vector) -> Result<()> + 'a;
 
 /// The polynomial `lambda^2 M + lambda C + K` and its inverse at a real shift.
 pub struct Quadratic<'a> {
-    /// Mass.
-    pub m: &'a Matrix,
-    /// Damping.
-    pub c: &'a Matrix,
-    /// Stiffness.
-    pub k: &'a Matrix,
+    /// M, C and K.
+    pub matrices: Mck<&'a Matrix>,
     /// The real shift sigma.
     pub shift: f64,
     /// Of `sigma^2 M + sigma C + K`.
@@ -83,15 +79,18 @@ pub struct Found {
 }
 
 /// Eigenpairs nearest to the shift by TOAR (two-level orthogonal Arnoldi) on the inverted problem. `progress` hears of
-/// (converged, solves). Options of the prefix `stability_` act (`-stability_pep_view`). Collective.
+/// (converged, solves). Options of the prefix `stability_` act (`-stability_pep_view`). None where LAPACK could not
+/// reorder the projected problem (xTREXC, info 1: blocks too close to swap, as the defective zeros of several rigid
+/// motions are): another search space does not meet the same blocks. Collective.
 ///
 /// # Errors
 /// PETSc's.
 ///
 /// # Panics
 /// Where `progress` panicked.
-pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(usize, usize)) -> Result<Found> {
-    let comm = problem.k.comm().clone();
+pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(usize, usize)) -> Result<Option<Found>> {
+    let Mck { m, c, k } = problem.matrices;
+    let comm = k.comm().clone();
     let mut context =
         Context { inverse: problem.inverse, comm: comm.clone(), n_solves: 0, progress, trap: Trap::default() };
     let pointer = ptr::from_mut(&mut context).cast::<c_void>();
@@ -100,34 +99,20 @@ pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(us
     unsafe {
         check(sys::PEPCreate(comm.raw(), &mut pep.0))?;
         check(sys::PEPSetOptionsPrefix(pep.0, c"stability_".as_ptr()))?;
-        let mut operators = [problem.k.raw(), problem.c.raw(), problem.m.raw()];
+        let mut operators = [k.raw(), c.raw(), m.raw()];
         check(sys::PEPSetOperators(pep.0, 3, operators.as_mut_ptr()))?;
         configure(pep.0, problem.shift, options)?;
         use_inverse(pep.0, problem.shift, pointer)?;
         check(sys::PEPMonitorSet(pep.0, Some(monitor), pointer, None))?;
         check(sys::PEPSetFromOptions(pep.0))?;
         let code = sys::PEPSolve(pep.0);
-        (*pointer.cast::<Context>()).trap.release(code)?;
+        match (*pointer.cast::<Context>()).trap.release(code) {
+            Err(error) if is_of_reordering(&error) => return Ok(None),
+            outcome => outcome?,
+        }
     }
     let n_solves = context.n_solves;
-    collect(&pep, &comm, problem.k.n_local(), n_solves)
-}
-
-/// [`solve`], or none where LAPACK could not reorder the projected problem (xTREXC, info 1: blocks too close to swap,
-/// as the defective zeros of several rigid motions are). Another search space does not meet the same blocks.
-/// Collective.
-///
-/// # Errors
-/// PETSc's.
-pub fn solve_or_none(
-    problem: &Quadratic,
-    options: &Options,
-    progress: &mut dyn FnMut(usize, usize),
-) -> Result<Option<Found>> {
-    match solve(problem, options, progress) {
-        Err(error) if is_of_reordering(&error) => Ok(None),
-        found => found.map(Some),
-    }
+    collect(&pep, &comm, k.n_local(), n_solves).map(Some)
 }
 
 /// Functions of SLEPc that call xTREXC and no other routine of LAPACK.

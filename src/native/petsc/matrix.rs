@@ -293,6 +293,15 @@ impl Matrix {
         check(unsafe { sys::MatMult(self.raw, x.raw(), y.raw()) })
     }
 
+    /// `y = self^T x`.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub(in crate::native) fn multiply_transpose(&self, x: &Vector, y: &mut Vector) -> Result<()> {
+        // SAFETY: all handles are alive and x is not y.
+        check(unsafe { sys::MatMultTranspose(self.raw, x.raw(), y.raw()) })
+    }
+
     /// Two numbers that no other values have: another matrix, or this one after a change, has others. Not collective.
     ///
     /// # Errors

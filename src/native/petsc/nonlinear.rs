@@ -7,7 +7,7 @@ use squeal_sys as sys;
 
 use super::error::{Trap, check};
 use super::vector::Borrowed;
-use super::{Int, Matrix, Vector};
+use super::{DEFAULT, Int, Matrix, Vector};
 use crate::Result;
 use crate::native::Comm;
 
@@ -49,17 +49,6 @@ pub enum Verdict {
     Diverged,
 }
 
-/// What a solve came to. "Not converged" is data.
-#[derive(Debug, Clone, Copy)]
-pub struct Outcome {
-    /// Whether the problem judged an iterate to be converged.
-    pub converged: bool,
-    /// SNES's own reason.
-    pub reason: i32,
-    /// Newton steps.
-    pub iterations: usize,
-}
-
 struct Context<'a> {
     problem: &'a mut dyn Problem,
     comm: Comm,
@@ -78,7 +67,8 @@ impl Drop for Snes {
     }
 }
 
-/// Solves `F(u) = 0` from `u`, which ends as the last iterate whether or not it converged. Options of the prefix
+/// Solves `F(u) = 0` from `u`, which ends as the last iterate whether or not it converged, and gives whether it did by
+/// [`Problem::judge`]. Options of the prefix
 /// `equilibrium_` act (`-equilibrium_snes_monitor`). Collective.
 ///
 /// # Errors
@@ -86,7 +76,7 @@ impl Drop for Snes {
 ///
 /// # Panics
 /// Where a callback panicked.
-pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -> Result<Outcome> {
+pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -> Result<bool> {
     let comm = u.comm().clone();
     let residual = Vector::zeros(&comm, u.n_local())?;
     let jacobian = problem.jacobian().raw();
@@ -108,7 +98,7 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -
         let code = sys::SNESSolve(snes.0, ptr::null_mut(), u.raw());
         (*pointer.cast::<Context>()).trap.release(code)?;
     }
-    outcome(&snes, context.verdict)
+    Ok(context.verdict == Verdict::Converged)
 }
 
 /// The linear solver is one application of [`Problem::correct`].
@@ -125,9 +115,6 @@ unsafe fn use_corrections(snes: sys::SNES, context: *mut c_void) -> Result<()> {
     }
 }
 
-/// Leaves a tolerance as it is (a macro of PETSc).
-const PETSC_DEFAULT: i32 = -2;
-
 /// Line search for the critical point of the residual's projection on the step: robust under contact. Its absolute
 /// tolerance is zero, as that of SNES is: PETSc's own, 1e-15 of `F^T du`, ends the solve as converged where the loads
 /// are small.
@@ -137,19 +124,9 @@ unsafe fn use_critical_points(snes: sys::SNES) -> Result<()> {
     unsafe {
         check(sys::SNESGetLineSearch(snes, &mut line))?;
         check(sys::SNESLineSearchSetType(line, c"cp".as_ptr()))?;
-        let same = f64::from(PETSC_DEFAULT);
-        check(sys::SNESLineSearchSetTolerances(line, same, same, same, 0.0, same, PETSC_DEFAULT))
+        let same = DEFAULT as f64;
+        check(sys::SNESLineSearchSetTolerances(line, same, same, same, 0.0, same, DEFAULT))
     }
-}
-
-fn outcome(snes: &Snes, verdict: Verdict) -> Result<Outcome> {
-    let (mut reason, mut iterations) = (sys::SNESConvergedReason(0), 0);
-    // SAFETY: the solver is alive.
-    unsafe {
-        check(sys::SNESGetConvergedReason(snes.0, &mut reason))?;
-        check(sys::SNESGetIterationNumber(snes.0, &mut iterations))?;
-    }
-    Ok(Outcome { converged: verdict == Verdict::Converged, reason: reason.0, iterations: iterations as usize })
 }
 
 /// Runs a callback's body on the context behind `pointer`.

@@ -128,28 +128,6 @@ impl Vector {
         check(unsafe { sys::VecScale(self.raw, a) })
     }
 
-    /// Inner product.
-    ///
-    /// # Errors
-    /// PETSc's, where layouts differ.
-    pub fn dot(&self, other: &Vector) -> Result<f64> {
-        let mut value = 0.0;
-        // SAFETY: both handles are alive.
-        check(unsafe { sys::VecDot(self.raw, other.raw, &mut value) })?;
-        Ok(value)
-    }
-
-    /// Largest absolute entry.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn norm_inf(&self) -> Result<f64> {
-        let mut value = 0.0;
-        // SAFETY: the handle is alive.
-        check(unsafe { sys::VecNorm(self.raw, sys::NormType::NORM_INFINITY, &mut value) })?;
-        Ok(value)
-    }
-
     /// Euclidean norm.
     ///
     /// # Errors
