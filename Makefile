@@ -15,7 +15,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help demo test python-test report-test calculix td1 validation docs full bench lint setup build clean
+.PHONY: help install deb demo test python-test report-test calculix td1 validation docs full bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## this list
@@ -75,6 +75,24 @@ setup: ## system packages, as far as they are missing
 
 build: setup ## the optimised binary
 	cargo build --release
+
+PREFIX  ?= /usr/local
+DESTDIR ?=
+SHARE    = $(DESTDIR)$(PREFIX)/share
+
+install: build ## the program, its manual pages and completions below PREFIX (/usr/local)
+	install -Dm755 $(BINARY) $(DESTDIR)$(PREFIX)/bin/squeal
+	install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions $(SHARE)/zsh/site-functions $(SHARE)/fish/vendor_completions.d
+	$(BINARY) man $(SHARE)/man/man1
+	$(BINARY) completions bash > $(SHARE)/bash-completion/completions/squeal
+	$(BINARY) completions zsh > $(SHARE)/zsh/site-functions/_squeal
+	$(BINARY) completions fish > $(SHARE)/fish/vendor_completions.d/squeal.fish
+
+deb: build ## a Debian package with what it depends on: target/debian
+	@command -v cargo-deb >/dev/null || cargo install cargo-deb --locked
+	rm -rf target/package
+	$(MAKE) install DESTDIR=target/package PREFIX=/usr
+	cargo deb --no-build
 
 clean: ## everything that can be made again
 	cargo clean

@@ -2,8 +2,10 @@
 
 mod check;
 mod compare;
+mod completions;
 mod export;
 mod interrupt;
+mod man;
 mod modes;
 mod new;
 mod progress;
@@ -169,6 +171,17 @@ enum Command {
         #[command(flatten)]
         compare: compare::Compare,
     },
+    /// Print the completions of a shell: squeal completions bash > /etc/bash_completion.d/squeal
+    Completions {
+        #[command(flatten)]
+        completions: completions::Completions,
+    },
+    /// Write the manual pages
+    #[command(hide = true)]
+    Man {
+        #[command(flatten)]
+        man: man::Man,
+    },
 }
 
 /// What all computing commands take.
@@ -291,6 +304,8 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::Stability { stability } => stability::run(shell, stability),
         Command::Study { study } => study::run(shell, study),
         Command::Compare { compare } => compare::run(shell, compare),
+        Command::Completions { completions } => completions::run(shell, completions),
+        Command::Man { man } => man::run(shell, man),
     }
 }
 
