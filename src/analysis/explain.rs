@@ -105,9 +105,9 @@ pub fn explain_full(
     let parts = full.mesh.parts.iter().map(|name| (Kind::Part, name.clone()));
     let connectors = full.model.connectors.iter().map(|connector| (Kind::Connector, connector.name.clone()));
     let named: Vec<_> = parts.chain(connectors).collect();
-    let part = |e: usize| full.mesh.tet_part[e] as usize;
+    let part = |e: usize| full.mesh.elements.get(e).part as usize;
     let link = |e: usize| full.mesh.parts.len() + e;
     let families = full.families()?;
-    let sources: [Sources; 2] = [(&families.tets, &part), (families.links, &link)];
+    let sources: [Sources; 2] = [(&families.solids, &part), (families.links, &link)];
     sweep.explain((&sources, &named), equilibrium, mode, left)
 }

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{DofMap, System};
 use crate::Result;
-use crate::element::tet10::FACES;
-use crate::mesh::{Mesh, Numbering};
+use crate::mesh::{Facet, Mesh, Numbering};
 use crate::native::{Comm, Gather, Vector};
 
 /// The outer surface of all parts of a mesh of which each rank has a piece, in triangles between the corners of the
@@ -82,7 +81,7 @@ struct Corner {
     dofs: [i32; 3],
 }
 
-/// An outer face of a tetrahedron.
+/// A triangle of an outer face.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct OuterFace {
     corners: [Corner; 3],
@@ -90,38 +89,46 @@ struct OuterFace {
 }
 
 /// The outer faces of a piece that are this rank's: those of whose corner with the lowest number it is the owner, as it
-/// has all tetrahedra around a node of its own.
+/// has all elements around a node of its own. Quadrilaterals are halved.
 fn own_faces(mesh: &Mesh, nodes: &Numbering, dofs: &DofMap) -> Vec<OuterFace> {
-    let mut faces: HashMap<[u32; 3], ([u32; 3], usize)> = HashMap::new();
-    for (e, tet) in mesh.tets.iter().enumerate() {
-        for face in FACES.map(|[a, b, c, ..]| [tet[a], tet[b], tet[c]]) {
-            let mut key = face;
-            key.sort_unstable();
-            // A face between two tetrahedra is not outside.
+    let mut faces: HashMap<[u32; 4], (Facet, usize)> = HashMap::new();
+    for (e, element) in mesh.elements.iter().enumerate() {
+        for facet in element.facets() {
+            let key = facet.key();
+            // A face between two elements is not outside.
             if nodes.owns(key[0]) && faces.remove(&key).is_none() {
-                faces.insert(key, (face, e));
+                faces.insert(key, (facet, e));
             }
         }
     }
-    let mut outer: Vec<([u32; 3], usize)> = faces.into_values().collect();
-    outer.sort_unstable_by_key(|&(face, e)| (e, face));
+    let mut outer: Vec<(Facet, usize)> = faces.into_values().collect();
+    outer.sort_unstable_by(|(a, e), (b, f)| e.cmp(f).then_with(|| a.corners().cmp(b.corners())));
     let corner = |n: u32| Corner {
         label: nodes.labels()[n as usize],
         position: mesh.nodes[n as usize],
         dofs: dofs.node_dofs(n),
     };
-    outer.iter().map(|&(face, e)| OuterFace { corners: face.map(corner), part: mesh.tet_part[e] as i32 }).collect()
+    let triangles = |(facet, e): (Facet, usize)| {
+        let corners: Vec<Corner> = facet.corners().iter().map(|&n| corner(n)).collect();
+        let part = mesh.elements.get(e).part as i32;
+        let triangle = move |k: usize| OuterFace { corners: [corners[0], corners[k], corners[k + 1]], part };
+        (1..facet.corners().len() - 1).map(triangle).collect::<Vec<_>>()
+    };
+    outer.into_iter().flat_map(triangles).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::ElementKind;
 
     /// Two tetrahedra with a common face.
     fn mesh() -> Mesh {
-        let tets = vec![[0, 1, 2, 3, 5, 6, 7, 8, 9, 10], [0, 2, 1, 4, 7, 6, 5, 11, 12, 13]];
         let nodes = (0..14).map(|n| [f64::from(n), 0.0, 0.0]).collect();
-        Mesh { nodes, tets, tet_part: vec![0, 1], parts: vec!["a".into(), "b".into()], ..Mesh::default() }
+        let mut mesh = Mesh { nodes, parts: vec!["a".into(), "b".into()], ..Mesh::default() };
+        mesh.elements.push(ElementKind::C3D10, 0, &[0, 1, 2, 3, 5, 6, 7, 8, 9, 10]);
+        mesh.elements.push(ElementKind::C3D10, 1, &[0, 2, 1, 4, 7, 6, 5, 11, 12, 13]);
+        mesh
     }
 
     fn faces(owned: std::ops::Range<u32>) -> Vec<OuterFace> {

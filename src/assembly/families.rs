@@ -1,81 +1,83 @@
-//! The families of elements of a model on its mesh, tetrahedra by part and connectors, its constraints and its loads.
+//! The families of elements of a model on its mesh, solid elements by part and connectors, its constraints and its loads.
 
 use crate::contact::{GapOperator, search};
 use crate::element::connector::{RelativeMotion, relative_motion};
 use crate::element::coupling::Cloud;
-use crate::element::{tet10, tri6};
+use crate::element::{facet, solid};
 use crate::mesh::{Mesh, Surface};
 use crate::model::{Connector, Load, LoadKind, Model, Part};
 use crate::{Error, Result};
 
 use super::{Connectivity, ElementMatrices, Elements};
 
-/// The 10-node tetrahedra of a mesh with the materials of their parts.
-pub struct Tets<'a> {
+/// The solid elements of a mesh with the materials of their parts.
+pub struct Solids<'a> {
     mesh: &'a Mesh,
     /// Model part of each mesh part.
     parts: Vec<&'a Part>,
 }
 
-impl<'a> Tets<'a> {
+impl<'a> Solids<'a> {
     /// Matches the mesh's parts with the model's by name.
     ///
     /// # Errors
     /// [`Error::Input`] where a part of the mesh is not in the model.
-    pub fn new(model: &'a Model, mesh: &'a Mesh) -> Result<Tets<'a>> {
+    pub fn new(model: &'a Model, mesh: &'a Mesh) -> Result<Solids<'a>> {
         let part = |name: &String| {
             model.parts.iter().find(|part| part.name == *name).ok_or_else(|| {
                 Error::input(format!("{}: the mesh's part {name:?} has no material", model.file.display()))
             })
         };
-        Ok(Tets { mesh, parts: mesh.parts.iter().map(part).collect::<Result<_>>()? })
+        Ok(Solids { mesh, parts: mesh.parts.iter().map(part).collect::<Result<_>>()? })
     }
 
-    /// Von Mises stress (Pa) of the mean stress of tetrahedron `e`, for nodal displacements `u` (m).
+    /// Von Mises stress (Pa) of the mean stress of element `e`, for nodal displacements `u` (m).
     pub fn von_mises(&self, e: usize, u: &[[f64; 3]]) -> f64 {
-        let displacements = self.mesh.tets[e].map(|n| u[n as usize]);
-        let stress = tet10::stress_at_nodes(&self.mesh.tet_nodes(e), &self.part(e).material.elasticity, &displacements);
-        tet10::von_mises(&std::array::from_fn(|i| stress.iter().map(|s| s[i]).sum::<f64>() / 10.0))
+        let element = self.mesh.elements.get(e);
+        let displacements: Vec<[f64; 3]> = element.nodes.iter().map(|&n| u[n as usize]).collect();
+        let elasticity = &self.part(e).material.elasticity;
+        let stress = solid::mean_stress(element.kind, &self.mesh.element_nodes(e), elasticity, &displacements);
+        solid::von_mises(&stress)
     }
 
-    /// Model part of tetrahedron `e`.
+    /// Model part of element `e`.
     pub fn part(&self, e: usize) -> &'a Part {
-        self.parts[self.mesh.tet_part[e] as usize]
+        self.parts[self.mesh.elements.get(e).part as usize]
     }
 }
 
-impl Connectivity for Tets<'_> {
+impl Connectivity for Solids<'_> {
     fn len(&self) -> usize {
-        self.mesh.tets.len()
+        self.mesh.elements.len()
     }
 
     fn nodes(&self, e: usize) -> &[u32] {
-        &self.mesh.tets[e]
+        self.mesh.elements.get(e).nodes
     }
 }
 
-impl Elements for Tets<'_> {
+impl Elements for Solids<'_> {
     fn mass_couples_axes(&self) -> bool {
         false
     }
 
     /// `C = alpha M + beta K` with the part's own coefficients; the mass does not couple axes.
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
-        let (x, part) = (self.mesh.tet_nodes(e), self.part(e));
-        out.k.resize(900, 0.0);
-        out.m.resize(100, 0.0);
-        let mass: &mut [f64; 100] = out.m.as_mut_slice().try_into().expect("ten nodes");
-        tet10::stiffness(&x, &part.material.elasticity, &mut out.k);
-        tet10::scalar_mass(&x, part.material.density, mass);
+        let (kind, x, part) = (self.mesh.elements.get(e).kind, self.mesh.element_nodes(e), self.part(e));
+        let n = x.len();
+        out.k.resize(9 * n * n, 0.0);
+        out.m.resize(n * n, 0.0);
+        solid::stiffness(kind, &x, &part.material.elasticity, &mut out.k);
+        solid::scalar_mass(kind.shape(), &x, part.material.density, &mut out.m);
         let (alpha, beta) = (part.rayleigh.alpha, part.rayleigh.beta);
         out.c.clear();
         if alpha == 0.0 && beta == 0.0 {
             return;
         }
         out.c.extend(out.k.iter().map(|k| beta * k));
-        for a in 0..10 {
-            for b in 0..10 {
-                (0..3).for_each(|i| out.c[30 * (3 * a + i) + 3 * b + i] += alpha * mass[10 * a + b]);
+        for a in 0..n {
+            for b in 0..n {
+                (0..3).for_each(|i| out.c[3 * n * (3 * a + i) + 3 * b + i] += alpha * out.m[n * a + b]);
             }
         }
     }
@@ -215,20 +217,28 @@ pub fn loads(model: &Model, mesh: &Mesh) -> Result<Vec<(u32, [f64; 3])>> {
             }
             LoadKind::ForceByArea(total) => {
                 let surface = surface_of(model, mesh, load)?;
-                let facets: Vec<_> = surface.facets.iter().map(|f| (f, f.map(|n| mesh.nodes[n as usize]))).collect();
-                let area: f64 = facets.iter().map(|(_, x)| tri6::area(x)).sum();
+                let area: f64 = surface.facets.iter().map(|f| facet::area(&f.positions(&mesh.nodes))).sum();
                 let traction = total.map(|f| f / area);
-                forces.extend(facets.iter().flat_map(|(f, x)| f.iter().copied().zip(tri6::traction_load(x, traction))));
+                forces.extend(surface_load(mesh, surface, |x| facet::traction_load(x, traction)));
             }
             LoadKind::Pressure(pressure) => {
-                for facet in &surface_of(model, mesh, load)?.facets {
-                    let x = facet.map(|n| mesh.nodes[n as usize]);
-                    forces.extend(facet.iter().copied().zip(tri6::pressure_load(&x, pressure)));
-                }
+                let surface = surface_of(model, mesh, load)?;
+                forces.extend(surface_load(mesh, surface, |x| facet::pressure_load(x, pressure)));
             }
         }
     }
     Ok(forces)
+}
+
+/// The nodal forces of all facets of a surface.
+fn surface_load(
+    mesh: &Mesh,
+    surface: &Surface,
+    of_facet: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>,
+) -> impl Iterator<Item = (u32, [f64; 3])> {
+    surface.facets.iter().flat_map(move |facet| {
+        facet.nodes().iter().copied().zip(of_facet(&facet.positions(&mesh.nodes))).collect::<Vec<_>>()
+    })
 }
 
 fn nodes_of(model: &Model, mesh: &Mesh, name: &str, line: usize) -> Result<Vec<u32>> {

@@ -7,12 +7,13 @@
 //! 2`.
 //!
 //! ```text
-//!   quadrature   points and weights on the reference tetrahedron and triangle
-//!   tet10        the body:     stiffness, mass, mass properties, recovered stress
-//!   tri6         its skin:     area, normal, consistent loads of traction and pressure
-//!   voigt        the order of stresses and strains
-//!   coupling     a cloud's mean rigid motion as 3x3 blocks on its nodes (distributing coupling)
-//!   connector    spring and damper between the mean motions of two clouds
+//!   shape          tetrahedra, wedges, hexahedra: nodes and faces, by tables      facet   their faces; loads on them
+//!   interpolation  shape functions from nodes and monomials                       quadrature   points and weights
+//!   kind           C3D4 ... C3D20R: a shape and how it is integrated
+//!   solid          stiffness, mass, mass properties, mean stress of any kind
+//!   voigt          the order of stresses and strains
+//!   coupling       a cloud's mean rigid motion as 3x3 blocks on its nodes (distributing coupling)
+//!   connector      spring and damper between the mean motions of two clouds
 //! ```
 //!
 //! Symbols, the same in all files of this module:
@@ -27,9 +28,16 @@
 
 pub mod connector;
 pub mod coupling;
+pub mod facet;
+pub mod interpolation;
+mod kind;
 pub mod quadrature;
 #[cfg(test)]
 pub(crate) mod samples;
-pub mod tet10;
-pub mod tri6;
+mod shape;
+pub mod solid;
 pub mod voigt;
+
+pub use facet::{FacetShape, MAX_FACET_NODES};
+pub use kind::ElementKind;
+pub use shape::{MAX_NODES, Shape};

@@ -1,8 +1,9 @@
 //! What the tests of this module share: reproducible random numbers, elements and materials, and a rule that is exact
 //! to any degree.
 
+use super::Shape;
 use super::quadrature::QuadraturePoint;
-use super::tet10::{NODES, determinants, straight};
+use super::solid::smallest_determinant;
 use crate::algebra::{cross, sub};
 
 /// A small linear congruential generator (Knuth's MMIX constants): the same numbers on every machine.
@@ -30,44 +31,31 @@ impl Random {
     pub fn vector(&mut self) -> [f64; 3] {
         [self.signed(), self.signed(), self.signed()]
     }
-
-    /// A point of the reference tetrahedron.
-    pub fn in_tetrahedron(&mut self) -> [f64; 3] {
-        loop {
-            let at = [self.unit(), self.unit(), self.unit()];
-            if at.iter().sum::<f64>() < 1.0 {
-                return at;
-            }
-        }
-    }
 }
 
-/// A straight-edged element of random shape, not too flat, about a metre across.
-pub fn straight_tet(random: &mut Random) -> [[f64; 3]; 10] {
+/// An element with straight edges and corners moved at random, about a metre across, with `detJ > 0`.
+pub fn distorted(shape: Shape, random: &mut Random) -> Vec<[f64; 3]> {
     loop {
-        let corner = |a: usize| NODES[a].map(|value| value + 0.4 * random.signed());
-        let x = straight([0, 1, 2, 3].map(corner));
-        if smallest_jacobian(&x) > 0.3 {
+        let nodes = &shape.interpolation().nodes()[..shape.n_corners()];
+        let corners: Vec<[f64; 3]> = nodes.iter().map(|node| node.map(|value| value + 0.3 * random.signed())).collect();
+        let x = shape.straight(&corners);
+        if smallest_determinant(shape, &x) > 0.25 {
             return x;
         }
     }
 }
 
-/// As [`straight_tet`], with every midside moved by up to `offset` in each axis, and `detJ > 0` at all samples.
-pub fn curved_tet(random: &mut Random, offset: f64) -> [[f64; 3]; 10] {
+/// As [`distorted`], with every midside moved by up to `offset` in each axis.
+pub fn curved(shape: Shape, random: &mut Random, offset: f64) -> Vec<[f64; 3]> {
     loop {
-        let mut x = straight_tet(random);
-        for value in x[4..].as_flattened_mut() {
+        let mut x = distorted(shape, random);
+        for value in x[shape.n_corners()..].as_flattened_mut() {
             *value += offset * random.signed();
         }
-        if smallest_jacobian(&x) > 0.05 {
+        if smallest_determinant(shape, &x) > 0.05 {
             return x;
         }
     }
-}
-
-fn smallest_jacobian(x: &[[f64; 3]; 10]) -> f64 {
-    determinants(x).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// A rigid motion's displacement at `x`: `u = shift + turn x (x - origin)`.
@@ -89,7 +77,7 @@ pub fn triclinic(random: &mut Random) -> [[f64; 6]; 6] {
 }
 
 /// Gauss-Legendre points and weights on (0, 1), exact to degree `2n - 1`: Newton on the Legendre recurrence.
-fn gauss(n: usize) -> Vec<(f64, f64)> {
+pub fn gauss(n: usize) -> Vec<(f64, f64)> {
     let legendre = |x: f64| {
         let (mut previous, mut value) = (1.0, x);
         for k in 2..=n {

@@ -1,4 +1,4 @@
-//! The finite element mesh: nodes, 10-node tetrahedra grouped into parts, named surfaces and node sets.
+//! The finite element mesh: nodes, solid elements grouped into parts, named surfaces and node sets.
 //!
 //! ```text
 //!  .msh --gmsh::sections--> tags, blocks, groups --gmsh::convert--> Mesh
@@ -9,8 +9,9 @@
 //! Physical volumes become parts, physical surfaces become [`Surface`]s, physical curves and points become node sets.
 //! The names are the only link between a mesh and a model file, so a name may mean one thing only.
 //!
-//! The order of nodes is that of [`tet10`](crate::element::tet10) and [`tri6`](crate::element::tri6).
+//! The order of nodes is that of [`Shape`](crate::element::Shape) and [`FacetShape`](crate::element::FacetShape).
 
+mod elements;
 mod gmsh;
 mod numbering;
 mod piece;
@@ -18,6 +19,7 @@ pub mod quality;
 mod skin;
 mod types;
 
+pub use elements::{Element, ElementList, Facet, Positions};
 pub use gmsh::read;
 pub use numbering::{Numbering, order};
 pub use piece::Piece;

@@ -1,6 +1,6 @@
 //! What a rank has of a mesh.
 //!
-//! Its own nodes, all tetrahedra that touch one of them, those tetrahedra's nodes, and everything that has a name:
+//! Its own nodes, all elements that touch one of them, those elements' nodes, and everything that has a name:
 //! surfaces and node sets with their nodes are on every rank, as contact, loads and supports are. They grow with the
 //! surface of the bodies, the rest with their volume.
 
@@ -8,12 +8,12 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Mesh, Numbering, Surface};
+use super::{Element, ElementList, Mesh, Numbering, Surface};
 
 /// A part of a mesh, in local numbers.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Piece {
-    /// Nodes and tetrahedra that the rank has; all surfaces and node sets.
+    /// Nodes and elements that the rank has; all surfaces and node sets.
     pub mesh: Mesh,
     /// The global numbers of its nodes.
     pub nodes: Numbering,
@@ -25,23 +25,23 @@ impl Piece {
     /// # Panics
     /// Where the range goes beyond the nodes.
     pub fn of(whole: &Mesh, owned: Range<u32>, labels: &[u32]) -> Piece {
-        let touches = |tet: &[u32; 10]| tet.iter().any(|n| owned.contains(n));
-        let tets: Vec<usize> = (0..whole.tets.len()).filter(|&e| touches(&whole.tets[e])).collect();
+        let touches = |element: &Element| element.nodes.iter().any(|n| owned.contains(n));
+        let mut elements: ElementList = whole.elements.iter().filter(touches).collect();
         let mut place = vec![u32::MAX; whole.nodes.len()];
-        let here = owned.clone().chain(tets.iter().flat_map(|&e| whole.tets[e])).chain(whole.named_nodes());
+        let here = owned.clone().chain(elements.all_nodes().0.iter().copied()).chain(whole.named_nodes());
         here.for_each(|n| place[n as usize] = 0);
         let global: Vec<u32> = (0..whole.nodes.len() as u32).filter(|&n| place[n as usize] == 0).collect();
         global.iter().enumerate().for_each(|(local, &n)| place[n as usize] = local as u32);
         let local = |n: u32| place[n as usize];
         let surface = |(name, surface): (&String, &Surface)| {
-            let facets = surface.facets.iter().map(|facet| facet.map(local)).collect();
+            let facets = surface.facets.iter().map(|facet| facet.renumbered(local)).collect();
             (name.clone(), Surface { facets, ..surface.clone() })
         };
         let set = |(name, nodes): (&String, &Vec<u32>)| (name.clone(), nodes.iter().map(|&n| local(n)).collect());
+        elements.renumber(local);
         let mesh = Mesh {
             nodes: global.iter().map(|&n| whole.nodes[n as usize]).collect(),
-            tets: tets.iter().map(|&e| whole.tets[e].map(local)).collect(),
-            tet_part: tets.iter().map(|&e| whole.tet_part[e]).collect(),
+            elements,
             parts: whole.parts.clone(),
             surfaces: whole.surfaces.iter().map(surface).collect(),
             node_sets: whole.node_sets.iter().map(set).collect(),
@@ -53,15 +53,19 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::ElementKind;
 
     /// A chain of tetrahedra with four new nodes each, a surface at its first end and a node set at its last.
     fn chain() -> Mesh {
-        let tets: Vec<[u32; 10]> = (0..6).map(|e| std::array::from_fn(|a| 4 * e + a as u32)).collect();
-        let surface = Surface { facets: vec![[0, 1, 2, 3, 4, 5]], parts: vec![1], inner: vec![] };
+        let mut elements = ElementList::default();
+        for e in 0..6 {
+            let nodes: Vec<u32> = (4 * e..4 * e + 10).collect();
+            elements.push(ElementKind::C3D10, u32::from(e < 3), &nodes);
+        }
+        let surface = Surface { facets: vec![[0, 1, 2, 3, 4, 5].into()], parts: vec![1], inner: vec![] };
         Mesh {
             nodes: (0..30).map(|n| [f64::from(n), 0.5, -0.25]).collect(),
-            tets,
-            tet_part: vec![1, 1, 1, 0, 0, 0],
+            elements,
             parts: vec!["a".into(), "b c".into()],
             surfaces: [("end".to_owned(), surface)].into(),
             node_sets: [("last".to_owned(), vec![28, 29])].into(),
@@ -79,9 +83,9 @@ mod tests {
         // Nodes 0..6 of the surface, 4..22 of the tetrahedra 1 to 3, and 28, 29 of the set.
         assert_eq!(global, [(0..22).collect::<Vec<_>>(), vec![28, 29]].concat());
         let back = |local: u32| global[local as usize];
-        let tets: Vec<_> = piece.mesh.tets.iter().map(|tet| tet.map(back)).collect();
-        assert_eq!(tets, chain().tets[1..4]);
-        assert_eq!(piece.mesh.tet_part, [1, 1, 0]);
+        let mut elements = piece.mesh.elements.clone();
+        elements.renumber(back);
+        assert!(elements.iter().eq(chain().elements.iter().skip(1).take(3)));
         assert_eq!(piece.mesh.node_sets["last"].iter().map(|&n| back(n)).collect::<Vec<_>>(), [28, 29]);
         assert!(piece.mesh.nodes.iter().zip(global).all(|(x, &n)| x[0] == f64::from(n)));
         assert!(piece.nodes.labels().iter().zip(global).all(|(&label, &n)| label == 100 + n));

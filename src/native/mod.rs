@@ -24,7 +24,7 @@ pub mod mpi;
 pub mod petsc;
 
 pub use block::{Block, Noise, Orthonormal};
-pub use direct::{Factor, FactorKind, FactorStats, Precision, partition};
+pub use direct::{Factor, FactorKind, FactorStats, Lists, Precision, partition};
 pub use mck::Mck;
 pub use mpi::{Comm, MaxLoc, Session, libraries};
 pub use petsc::{Csr, Gather, Matrix, Rows, Vector};

@@ -54,7 +54,7 @@ impl FieldWriter<'_> {
                 let (vectors, volume) = (self.system.nodal(&[&mode.re, &mode.im])?, Volume::new(full));
                 let [re, im] = [0, 1].map(|i| volume.at_nodes(&vectors[i]));
                 let fields = vec![("real", Values::Vectors(&re)), ("imaginary", Values::Vectors(&im))];
-                let parts = volume.at_tets(|e| full.mesh.tet_part[e] as i32);
+                let parts = volume.at_elements(|e| full.mesh.elements.get(e).part as i32);
                 self.volume(&volume, &name, fields, vec![("part", Values::Integers(&parts))])
             }
             Structure::Reduced(reduced) => {
@@ -85,11 +85,11 @@ impl FieldWriter<'_> {
     fn full_equilibrium(&self, full: &FullModel, name: &str, equilibrium: &Equilibrium) -> Result<()> {
         let u = self.system.nodal(&[&equilibrium.u])?.remove(0);
         let surface = ContactSurface::new(&full.mesh, &full.interface, &equilibrium.responses);
-        let (volume, tets) = (Volume::new(full), full.families()?.tets);
+        let (volume, solids) = (Volume::new(full), full.families()?.solids);
         let contact = surface.on_mesh(full.mesh.nodes.len()).at(volume.nodes());
         let displacement = volume.at_nodes(&u);
-        let von_mises = volume.at_tets(|e| tets.von_mises(e, &u));
-        let parts = volume.at_tets(|e| full.mesh.tet_part[e] as i32);
+        let von_mises = volume.at_elements(|e| solids.von_mises(e, &u));
+        let parts = volume.at_elements(|e| full.mesh.elements.get(e).part as i32);
         let displacement = [("displacement", Values::Vectors(&displacement))];
         let point_data = displacement.into_iter().chain(contact_arrays(&contact)).collect();
         let cell_data = vec![("part", Values::Integers(&parts)), ("von_mises", Values::Scalars(&von_mises))];
@@ -160,7 +160,7 @@ fn write_contact(
     let displacement = [("displacement", Values::Vectors(&u))];
     let grid = Grid {
         points: &points,
-        cells: Cells::Triangles(&surface.facets),
+        cells: Cells::Facets(&surface.facets),
         point_data: displacement.into_iter().chain(contact_arrays(&surface.fields)).collect(),
         cell_data: vec![("pair", Values::Integers(&surface.pairs))],
     };

@@ -1,4 +1,4 @@
-//! Fields on the tetrahedra as files: one alone, or a piece from each rank and a file that names them.
+//! Fields on the elements as files: one alone, or a piece from each rank and a file that names them.
 
 use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt;
@@ -8,30 +8,32 @@ use super::files::write_file;
 use super::folder::Folder;
 use super::vtu::{Array, Cells, Grid};
 use crate::Result;
+use crate::mesh::ElementList;
 use crate::native::Comm;
 use crate::structure::FullModel;
 
-/// What this rank draws: the tetrahedra that it counts, and their nodes.
+/// What this rank draws: the elements that it counts, and their nodes.
 pub struct Volume {
-    tets: Vec<usize>,
+    elements: Vec<usize>,
     nodes: Vec<u32>,
     points: Vec<[f64; 3]>,
-    cells: Vec<[u32; 10]>,
+    cells: ElementList,
 }
 
 impl Volume {
     /// The rank's share of a model. Not collective.
     pub fn new(full: &FullModel) -> Volume {
         let mesh = &full.mesh;
-        let tets: Vec<usize> = full.own_tets().collect();
-        let mut nodes: Vec<u32> = tets.iter().flat_map(|&e| mesh.tets[e]).collect();
+        let elements: Vec<usize> = full.own_elements().collect();
+        let mut cells: ElementList = elements.iter().map(|&e| mesh.elements.get(e)).collect();
+        let mut nodes: Vec<u32> = cells.all_nodes().0.to_vec();
         nodes.sort_unstable();
         nodes.dedup();
         let mut place = vec![0; mesh.nodes.len()];
         nodes.iter().enumerate().for_each(|(i, &n)| place[n as usize] = i as u32);
-        let cells = tets.iter().map(|&e| mesh.tets[e].map(|n| place[n as usize])).collect();
+        cells.renumber(|n| place[n as usize]);
         let points = nodes.iter().map(|&n| mesh.nodes[n as usize]).collect();
-        Volume { tets, nodes, points, cells }
+        Volume { elements, nodes, points, cells }
     }
 
     /// The nodes of this rank's mesh that are drawn.
@@ -44,9 +46,9 @@ impl Volume {
         self.nodes.iter().map(|&n| values[n as usize]).collect()
     }
 
-    /// A value for each tetrahedron that is drawn.
-    pub fn at_tets<T>(&self, value: impl FnMut(usize) -> T) -> Vec<T> {
-        self.tets.iter().copied().map(value).collect()
+    /// A value for each element that is drawn.
+    pub fn at_elements<T>(&self, value: impl FnMut(usize) -> T) -> Vec<T> {
+        self.elements.iter().copied().map(value).collect()
     }
 
     /// Writes `name.vtu` on one rank, else `name.pvtu` with a piece from each. Collective; the root has the folder.
@@ -61,7 +63,7 @@ impl Volume {
         point_data: Vec<Array>,
         cell_data: Vec<Array>,
     ) -> Result<()> {
-        let grid = Grid { points: &self.points, cells: Cells::Tets(&self.cells), point_data, cell_data };
+        let grid = Grid { points: &self.points, cells: Cells::Elements(&self.cells), point_data, cell_data };
         if comm.size() == 1 {
             let file = format!("{name}.vtu");
             return folder.map_or(Ok(()), |folder| folder.write(&file, |mut out| grid.write(&mut out)));

@@ -8,14 +8,17 @@ use std::io::{self, Write};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
+use crate::element::{FacetShape, Shape};
+use crate::mesh::{ElementList, Facet};
+
 use super::overwrite::{FileKind, SIGNATURE, head_contains};
 
-/// Cells of one kind; VTK's node orders are those of [`crate::mesh::Mesh`].
+/// Cells; VTK's node orders are those of [`Shape`] and [`FacetShape`].
 pub enum Cells<'a> {
-    /// 10-node tetrahedra.
-    Tets(&'a [[u32; 10]]),
-    /// 6-node triangles.
-    Triangles(&'a [[u32; 6]]),
+    /// Solid elements.
+    Elements(&'a ElementList),
+    /// Facets.
+    Facets(&'a [Facet]),
     /// 3-node triangles.
     Patches(&'a [[u32; 3]]),
 }
@@ -48,26 +51,57 @@ pub struct Grid<'a> {
 /// A file that [`Grid::write`] has written.
 pub const KIND: FileKind = FileKind { name: "a VTU file of squeal", is_one: |path| head_contains(path, SIGNATURE) };
 
-/// VTK's numbers of the cell types.
-const TRIANGLE: u8 = 5;
-const QUADRATIC_TRIANGLE: u8 = 22;
-const QUADRATIC_TETRA: u8 = 24;
+/// VTK's number of a cell type.
+const fn solid_type(shape: Shape) -> u8 {
+    match shape {
+        Shape::Tetrahedron4 => 10,
+        Shape::Hexahedron8 => 12,
+        Shape::Wedge6 => 13,
+        Shape::Tetrahedron10 => 24,
+        Shape::Hexahedron20 => 25,
+        Shape::Wedge15 => 26,
+    }
+}
 
-impl Cells<'_> {
-    fn shape(&self) -> (usize, usize, u8) {
-        match self {
-            Cells::Tets(cells) => (cells.len(), 10, QUADRATIC_TETRA),
-            Cells::Triangles(cells) => (cells.len(), 6, QUADRATIC_TRIANGLE),
-            Cells::Patches(cells) => (cells.len(), 3, TRIANGLE),
+/// VTK's number of a cell type.
+const fn facet_type(shape: FacetShape) -> u8 {
+    match shape {
+        FacetShape::Triangle3 => 5,
+        FacetShape::Quadrilateral4 => 9,
+        FacetShape::Triangle6 => 22,
+        FacetShape::Quadrilateral8 => 23,
+    }
+}
+
+/// Cells as VTK has them: the type of each, all their nodes, and where each one's end.
+#[derive(Default)]
+struct CellArrays {
+    types: Vec<u8>,
+    nodes: Vec<u32>,
+    ends: Vec<u32>,
+}
+
+impl CellArrays {
+    fn new(cells: &Cells) -> CellArrays {
+        let mut arrays = CellArrays::default();
+        match cells {
+            Cells::Elements(list) => {
+                list.iter().for_each(|element| arrays.push(solid_type(element.shape()), element.nodes));
+            }
+            Cells::Facets(list) => {
+                list.iter().for_each(|facet| arrays.push(facet_type(facet.shape()), facet.nodes()));
+            }
+            Cells::Patches(list) => {
+                list.iter().for_each(|nodes| arrays.push(facet_type(FacetShape::Triangle3), nodes));
+            }
         }
+        arrays
     }
 
-    fn connectivity(&self) -> &[u32] {
-        match self {
-            Cells::Tets(cells) => cells.as_flattened(),
-            Cells::Triangles(cells) => cells.as_flattened(),
-            Cells::Patches(cells) => cells.as_flattened(),
-        }
+    fn push(&mut self, cell_type: u8, nodes: &[u32]) {
+        self.types.push(cell_type);
+        self.nodes.extend_from_slice(nodes);
+        self.ends.push(self.nodes.len() as u32);
     }
 }
 
@@ -77,7 +111,8 @@ impl Grid<'_> {
     /// # Errors
     /// The writer's.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        let (n_cells, width, kind) = self.cells.shape();
+        let cells = CellArrays::new(&self.cells);
+        let n_cells = cells.types.len();
         writeln!(out, "<?xml version=\"1.0\"?>\n{SIGNATURE}")?;
         let attributes = r#"type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64""#;
         writeln!(out, "<VTKFile {attributes}>\n<UnstructuredGrid>")?;
@@ -85,11 +120,10 @@ impl Grid<'_> {
         writeln!(out, "<Points>")?;
         array(out, "Points", &Values::Vectors(self.points))?;
         writeln!(out, "</Points>\n<Cells>")?;
-        let connectivity = self.cells.connectivity().iter().flat_map(|n| n.to_le_bytes());
-        raw(out, "connectivity", "UInt32", 1, connectivity.collect())?;
-        let offsets = (1..=n_cells).flat_map(|e| ((e * width) as u32).to_le_bytes());
-        raw(out, "offsets", "UInt32", 1, offsets.collect())?;
-        raw(out, "types", "UInt8", 1, vec![kind; n_cells])?;
+        let bytes = |numbers: &[u32]| numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        raw(out, "connectivity", "UInt32", 1, bytes(&cells.nodes))?;
+        raw(out, "offsets", "UInt32", 1, bytes(&cells.ends))?;
+        raw(out, "types", "UInt8", 1, cells.types)?;
         writeln!(out, "</Cells>\n<PointData>")?;
         self.point_data.iter().try_for_each(|(name, values)| array(out, name, values))?;
         writeln!(out, "</PointData>\n<CellData>")?;
@@ -164,6 +198,7 @@ fn raw(out: &mut impl Write, name: &str, kind: &str, components: usize, bytes: V
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::ElementKind;
 
     #[test]
     fn arrays_carry_their_byte_count_and_little_endian_values() {
@@ -182,7 +217,7 @@ mod tests {
     fn a_list_of_pieces_names_files_and_arrays() {
         let grid = Grid {
             points: &[],
-            cells: Cells::Tets(&[]),
+            cells: Cells::Facets(&[]),
             point_data: vec![("u", Values::Vectors(&[]))],
             cell_data: vec![("part", Values::Integers(&[]))],
         };
@@ -202,12 +237,17 @@ mod tests {
     #[test]
     fn a_grid_names_its_counts_and_types() {
         let points = [[0.0; 3]; 10];
-        let tets = [[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]];
-        let grid = Grid { points: &points, cells: Cells::Tets(&tets), point_data: vec![], cell_data: vec![] };
+        let mut elements = ElementList::default();
+        elements.push(ElementKind::C3D10, 0, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
+        elements.push(ElementKind::C3D8I, 0, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let arrays = CellArrays::new(&Cells::Elements(&elements));
+        assert_eq!((arrays.types, arrays.ends), (vec![24, 12], vec![10, 18]));
+        let cells = Cells::Elements(&elements);
+        let grid = Grid { points: &points, cells, point_data: vec![], cell_data: vec![] };
         let mut out = Vec::new();
         grid.write(&mut out).unwrap();
         let text = String::from_utf8(out).unwrap();
-        assert!(text.contains(r#"<Piece NumberOfPoints="10" NumberOfCells="1">"#));
+        assert!(text.contains(r#"<Piece NumberOfPoints="10" NumberOfCells="2">"#));
         assert!(text.ends_with("</VTKFile>\n"));
     }
 }

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::Result;
 use crate::contact::search::{Foot, Team};
-use crate::mesh::{Mesh, Piece, order};
-use crate::native::{Comm, partition};
+use crate::mesh::{Element, Mesh, Piece, order};
+use crate::native::{Comm, Lists, partition};
 
 /// Gives every rank its piece of a mesh that the root alone has read: METIS shares out the nodes, which are numbered
 /// rank by rank, and near each other within a rank. Collective.
@@ -15,7 +15,8 @@ use crate::native::{Comm, partition};
 pub fn distribute(comm: &Comm, read: impl FnOnce() -> Result<Mesh>) -> Result<Piece> {
     let whole = || {
         let mut mesh = read()?;
-        let owner = partition(&mesh.tets, mesh.nodes.len(), comm.size())?;
+        let (nodes, offsets) = mesh.elements.all_nodes();
+        let owner = partition(Lists { nodes, offsets }, mesh.nodes.len(), comm.size(), smallest_face(&mesh))?;
         let labels = order(&mesh.nodes, &owner);
         mesh.reorder(&labels);
         Ok(Some((mesh, owner, labels)))
@@ -26,6 +27,12 @@ pub fn distribute(comm: &Comm, read: impl FnOnce() -> Result<Mesh>) -> Result<Pi
         comm.send_value(&Piece::of(&mesh, owned(&owner, rank), &labels), rank);
     }
     Ok(Piece::of(&mesh, owned(&owner, 0), &labels))
+}
+
+/// Number of nodes of the smallest face of any element: what neighbours share at least.
+fn smallest_face(mesh: &Mesh) -> i32 {
+    let of = |element: Element| element.shape().faces().map(<[usize]>::len).min();
+    mesh.elements.iter().filter_map(of).min().unwrap_or(0) as i32
 }
 
 /// The nodes of a rank, where nodes are numbered rank by rank.

@@ -76,9 +76,9 @@ fn friction_torque(full: &FullModel, balance: &Balance, rotation: &Rotation) -> 
 fn part_nodes(full: &FullModel, part: &str) -> Vec<bool> {
     let mut inside = vec![false; full.mesh.nodes.len()];
     let index = full.mesh.parts.iter().position(|name| name == part);
-    for (tet, &p) in full.mesh.tets.iter().zip(&full.mesh.tet_part) {
-        if Some(p as usize) == index {
-            tet.iter().for_each(|&n| inside[n as usize] = true);
+    for element in full.mesh.elements.iter() {
+        if Some(element.part as usize) == index {
+            element.nodes.iter().for_each(|&n| inside[n as usize] = true);
         }
     }
     inside

@@ -93,13 +93,14 @@ fn bodies_of_parts(n_parts: usize, meet: impl Fn(usize, usize) -> bool) -> Vec<u
 /// A part of each node, and for each two parts a number above zero where they share nodes. Collective.
 fn parts_of_nodes(comm: &Comm, mesh: &Mesh) -> (Vec<usize>, Vec<u8>) {
     let n_parts = mesh.parts.len();
-    // 0 where no tetrahedron of this rank has the node: nodes that have a name are on ranks without their tetrahedra.
+    // 0 where no element of this rank has the node: nodes that have a name are on ranks without their elements.
     let (mut part_of, mut meet) = (vec![0_usize; mesh.nodes.len()], vec![0_u8; n_parts * n_parts]);
-    for (tet, &part) in mesh.tets.iter().zip(&mesh.tet_part) {
-        for &n in tet {
-            let known = std::mem::replace(&mut part_of[n as usize], part as usize + 1);
+    for element in mesh.elements.iter() {
+        let part = element.part as usize;
+        for &n in element.nodes {
+            let known = std::mem::replace(&mut part_of[n as usize], part + 1);
             if known > 0 {
-                meet[n_parts * (known - 1) + part as usize] = 1;
+                meet[n_parts * (known - 1) + part] = 1;
             }
         }
     }

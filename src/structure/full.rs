@@ -3,10 +3,10 @@
 use std::fs::File;
 use std::path::Path;
 
-use crate::assembly::{self, Boundary, Connectivity, ConnectorElement, Elements, System, Tets};
+use crate::assembly::{self, Boundary, Connectivity, ConnectorElement, Elements, Solids, System};
 use crate::contact::search::Team;
 use crate::contact::{ContactPair, Interface, Response};
-use crate::element::tet10::{MassProperties, mass_properties};
+use crate::element::solid::{MassProperties, mass_properties};
 use crate::mesh::{self, Mesh, Numbering, Piece};
 use crate::model::{self, Load, LoadKind, Model, located};
 use crate::native::Comm;
@@ -42,8 +42,8 @@ const SMALLEST_OVERLAP: f64 = 1e-8;
 
 /// The families of elements of a brake.
 pub struct Families<'a> {
-    /// The tetrahedra.
-    pub tets: Tets<'a>,
+    /// The solid elements.
+    pub solids: Solids<'a>,
     /// The connectors.
     pub links: &'a Vec<ConnectorElement>,
 }
@@ -51,7 +51,7 @@ pub struct Families<'a> {
 impl Families<'_> {
     /// All of them, as the assembly takes them.
     pub fn list(&self) -> [&dyn Elements; 2] {
-        [&self.tets, self.links]
+        [&self.solids, self.links]
     }
 }
 
@@ -161,10 +161,9 @@ impl FullModel {
         )))
     }
 
-    /// The tetrahedra that this rank counts where each is to be counted once: those of whose first node it is the
-    /// owner.
-    pub fn own_tets(&self) -> impl Iterator<Item = usize> + Clone + '_ {
-        (0..self.mesh.tets.len()).filter(|&e| self.nodes.owns(self.mesh.tets[e][0]))
+    /// The elements that this rank counts where each is to be counted once: those of whose first node it is the owner.
+    pub fn own_elements(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+        (0..self.mesh.elements.len()).filter(|&e| self.nodes.owns(self.mesh.elements.get(e).nodes[0]))
     }
 
     /// Mass and moments of a part, by its place in the mesh's list. Collective.
@@ -176,8 +175,11 @@ impl FullModel {
         let density =
             self.model.parts.iter().find(|p| p.name == *name).expect("checked against the mesh").material.density;
         let mut own = MassProperties::default();
-        let tets = self.own_tets().filter(|&e| self.mesh.tet_part[e] as usize == part);
-        tets.for_each(|e| own += mass_properties(&self.mesh.tet_nodes(e), density));
+        for (e, element) in self.own_elements().map(|e| (e, self.mesh.elements.get(e))) {
+            if element.part as usize == part {
+                own += mass_properties(element.shape(), &self.mesh.element_nodes(e), density);
+            }
+        }
         let MassProperties { mass, first_moment, second_moment: [x, y, z] } = own;
         let mut sums = [[mass, 0.0, 0.0], first_moment, x, y, z];
         comm.sum_all(sums.as_flattened_mut());
@@ -195,7 +197,7 @@ impl FullModel {
     /// # Errors
     /// [`Error::Input`] where a part has no material.
     pub fn families(&self) -> Result<Families<'_>> {
-        Ok(Families { tets: Tets::new(&self.model, &self.mesh)?, links: &self.links })
+        Ok(Families { solids: Solids::new(&self.model, &self.mesh)?, links: &self.links })
     }
 
     /// Assembles M, C, K and the load. Collective.

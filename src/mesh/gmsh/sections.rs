@@ -1,6 +1,6 @@
 //! The sections of a Gmsh 4.1 file, as they stand: tags are Gmsh's, nothing is related to anything yet.
 
-use super::kinds::{self, ElementKind};
+use super::kinds::{self, GmshType};
 use super::scan::Scan;
 use crate::Result;
 use std::collections::HashMap;
@@ -22,7 +22,7 @@ pub struct ElementBlock {
     /// Tag of the entity.
     pub entity: i32,
     /// Kind of the elements.
-    pub kind: &'static ElementKind,
+    pub kind: &'static GmshType,
     /// Tags of the elements.
     pub elements: Vec<u64>,
     /// Tags of their nodes, in Gmsh's order, one element after another.
@@ -179,7 +179,7 @@ fn elements(scan: &mut Scan, blocks: &mut Vec<ElementBlock>) -> Result<()> {
     for _ in 0..n_blocks {
         let (dimension, entity, number) = (scan.int()?, scan.int()?, scan.int()?);
         let Some(kind) = kinds::by_number(number) else {
-            let advice = "Mesh with second-order tetrahedra (Mesh.ElementOrder = 2)";
+            let advice = "Mesh with tetrahedra, hexahedra or wedges of first or second order";
             return Err(scan.error(format_args!("unknown Gmsh element type {number}. {advice}")));
         };
         let count = scan.count()?;

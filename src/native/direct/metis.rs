@@ -7,29 +7,35 @@ use squeal_sys as sys;
 use crate::native::petsc::int;
 use crate::{Error, Result};
 
-/// Nodes that two 10-node tetrahedra share at a face.
-const NODES_OF_A_FACE: i32 = 6;
+/// Elements as lists of nodes, one after the other.
+#[derive(Debug, Clone, Copy)]
+pub struct Lists<'a> {
+    /// The nodes of all elements.
+    pub nodes: &'a [u32],
+    /// Where each element's nodes start, and the end of the last.
+    pub offsets: &'a [u32],
+}
 
-/// Shares out the nodes of a mesh of 10-node tetrahedra, about as many to each part and with few tetrahedra across
-/// parts; gives each node its part. Tetrahedra are neighbours where they share a face. Not collective; the same on
-/// every rank.
+/// Shares out the nodes of a mesh, about as many to each part and with few elements across parts; gives each node its
+/// part. Elements are neighbours where they share `n_common` nodes. Not collective; the same on every rank.
 ///
 /// # Errors
 /// [`Error::Input`] where the mesh has more than METIS's 32-bit numbers count; METIS's, with its code.
-pub fn partition(tets: &[[u32; 10]], n_nodes: usize, n_parts: usize) -> Result<Vec<u32>> {
+pub fn partition(elements: Lists, n_nodes: usize, n_parts: usize, n_common: i32) -> Result<Vec<u32>> {
     if n_parts == 1 {
         return Ok(vec![0; n_nodes]);
     }
-    int("nodes of the tetrahedra", 10 * tets.len())?;
-    let (mut n_tets, mut n, mut parts) = (tets.len() as i32, int("nodes", n_nodes)?, n_parts as i32);
-    let mut offsets: Vec<i32> = (0..=n_tets).map(|e| 10 * e).collect();
-    let mut nodes: Vec<i32> = tets.as_flattened().iter().map(|&n| n as i32).collect();
-    let (mut of_tets, mut of_nodes) = (vec![0_i32; tets.len()], vec![0_i32; n_nodes]);
-    let (mut common, mut cut) = (NODES_OF_A_FACE, 0);
+    int("nodes of the elements", elements.nodes.len())?;
+    let (mut n_elements, mut n, mut parts) =
+        (elements.offsets.len() as i32 - 1, int("nodes", n_nodes)?, n_parts as i32);
+    let mut offsets: Vec<i32> = elements.offsets.iter().map(|&at| at as i32).collect();
+    let mut nodes: Vec<i32> = elements.nodes.iter().map(|&n| n as i32).collect();
+    let (mut of_elements, mut of_nodes) = (vec![0_i32; n_elements as usize], vec![0_i32; n_nodes]);
+    let (mut common, mut cut) = (n_common, 0);
     // SAFETY: the arrays have the lengths that METIS expects; null means "default" for the optional ones.
     let status = unsafe {
         sys::METIS_PartMeshDual(
-            &mut n_tets,
+            &mut n_elements,
             &mut n,
             offsets.as_mut_ptr(),
             nodes.as_mut_ptr(),
@@ -40,12 +46,12 @@ pub fn partition(tets: &[[u32; 10]], n_nodes: usize, n_parts: usize) -> Result<V
             ptr::null_mut(),
             ptr::null_mut(),
             &mut cut,
-            of_tets.as_mut_ptr(),
+            of_elements.as_mut_ptr(),
             of_nodes.as_mut_ptr(),
         )
     };
     if status != 1 {
-        return Err(Error::library("METIS")(format!("PartMeshDual failed with code {status} on {n_tets} tetrahedra")));
+        return Err(Error::library("METIS")(format!("PartMeshDual failed with code {status} on {n_elements} elements")));
     }
     Ok(of_nodes.into_iter().map(|part| part as u32).collect())
 }
@@ -115,13 +121,15 @@ mod tests {
     /// four of neighbours' lists share.
     #[test]
     fn a_chain_is_cut_once_and_evenly() {
-        let chain: Vec<[u32; 10]> = (0..40).map(|e| std::array::from_fn(|a| 4 * e + a as u32)).collect();
-        let part = partition(&chain, 166, 2).unwrap();
+        let nodes: Vec<u32> = (0..40).flat_map(|e| 4 * e..4 * e + 10).collect();
+        let offsets: Vec<u32> = (0..=40).map(|e| 10 * e).collect();
+        let chain = Lists { nodes: &nodes, offsets: &offsets };
+        let part = partition(chain, 166, 2, 6).unwrap();
         let changes = part.windows(2).filter(|pair| pair[0] != pair[1]).count();
         let first = part.iter().filter(|&&p| p == part[0]).count();
         assert_eq!(changes, 1, "{part:?}");
         assert!((75..=91).contains(&first), "{first} of 166 nodes");
-        assert_eq!(partition(&chain, 166, 1).unwrap(), vec![0; 166]);
+        assert_eq!(partition(chain, 166, 1, 6).unwrap(), vec![0; 166]);
     }
 
     /// Two cliques of five with one vertex between them, which only one of each lists.

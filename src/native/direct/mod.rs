@@ -8,5 +8,5 @@ mod ordering;
 mod route;
 
 pub use factor::{Factor, FactorKind, FactorStats};
-pub use metis::partition;
+pub use metis::{Lists, partition};
 pub use mumps::Precision;
