@@ -11,6 +11,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use squeal::assembly::{Connectivity, ElementMatrices, Elements};
+use squeal::element::Shape;
+use squeal::element::solid::volume;
 use squeal::equilibrium::Contacts;
 use squeal::native::{Comm, Session};
 use squeal::structure::FullModel;
@@ -24,7 +26,7 @@ fn main() -> Result<()> {
     let others = if launched { None } else { Some(dolfinx(&path)?) };
     let comm = Session::start(&[])?;
     let brake = FullModel::read(&comm, &path)?;
-    let n_tets = comm.sum(brake.own_tets().count()) as f64;
+    let n_tets = comm.sum(brake.own_elements().count()) as f64;
     if comm.is_root() {
         println!("{}: {n_tets} tetrahedra on {} ranks", path.display(), comm.size());
     }
@@ -134,11 +136,11 @@ fn dolfinx(path: &Path) -> Result<std::result::Result<[[f64; 2]; 2], String>> {
     let write = |name: &str, bytes: Vec<u8>| fs::write(folder.join(name), bytes).expect("a temporary file");
     fs::create_dir_all(&folder).expect("a temporary folder");
     write("nodes", mesh.nodes.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect());
-    write("tets", mesh.tets.as_flattened().iter().flat_map(|n| n.to_le_bytes()).collect());
+    write("tets", mesh.elements.all_nodes().0.iter().flat_map(|n| n.to_le_bytes()).collect());
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/dolfinx/assembly.py");
     let said = Command::new(PYTHON).arg(script).arg(&folder).output().expect("it was there");
     fs::remove_dir_all(&folder).expect("our own folder");
-    let volume: f64 = (0..mesh.tets.len()).map(|e| squeal::element::tet10::volume(&mesh.tet_nodes(e))).sum();
+    let volume: f64 = (0..mesh.elements.len()).map(|e| volume(Shape::Tetrahedron10, &mesh.element_nodes(e))).sum();
     let lines = String::from_utf8_lossy(&said.stdout).into_owned();
     let numbers: Vec<f64> = lines.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     Ok(match numbers[..] {

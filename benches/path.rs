@@ -31,8 +31,8 @@ fn main() -> squeal::Result<()> {
     };
     let start = Instant::now();
     let brake = FullModel::read(&comm, &path)?;
-    let (nodes, tets) = (brake.nodes.n_global(), comm.sum(brake.own_tets().count()) as f64);
-    tell(format!("{}: {nodes} nodes, {tets} tetrahedra, {} ranks", path.display(), comm.size()));
+    let (nodes, elements) = (brake.nodes.n_global(), comm.sum(brake.own_elements().count()) as f64);
+    tell(format!("{}: {nodes} nodes, {elements} elements, {} ranks", path.display(), comm.size()));
     tell(format!("read, checked, contact found    {:8.2} s", start.elapsed().as_secs_f64()));
 
     let start = Instant::now();
@@ -40,9 +40,9 @@ fn main() -> squeal::Result<()> {
     let system = brake.assemble(&comm, &families)?;
     let seconds = start.elapsed().as_secs_f64();
     let (n, entries) = (system.dofs.n_global(), system.k.n_entries()?);
-    let rate = tets / seconds / comm.size() as f64;
+    let rate = elements / seconds / comm.size() as f64;
     tell(format!(
-        "assembly of M, C, K             {seconds:8.2} s  {n} equations, {:.1} M entries each, {rate:.0} tets/s and rank",
+        "assembly of M, C, K             {seconds:8.2} s  {n} equations, {:.1} M entries each, {rate:.0} elements/s and rank",
         1e-6 * entries
     ));
 

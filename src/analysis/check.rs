@@ -39,7 +39,7 @@ fn mesh(comm: &Comm, full: &FullModel) -> MeshSummary {
     let (high, low) = (ends(1.0), ends(-1.0));
     MeshSummary {
         nodes: full.nodes.n_global(),
-        tetrahedra: comm.sum(full.own_tets().count()),
+        elements: comm.sum(full.own_elements().count()),
         size_m: [0, 1, 2].map(|i| high[i] + low[i]),
     }
 }
@@ -47,14 +47,15 @@ fn mesh(comm: &Comm, full: &FullModel) -> MeshSummary {
 /// Mass, centre, moments of inertia and mesh quality of a part. Collective.
 fn part(comm: &Comm, full: &FullModel, i: usize) -> PartRow {
     let mesh = &full.mesh;
-    let own = full.own_tets().filter(|&e| mesh.tet_part[e] as usize == i).map(|e| mesh.tet_nodes(e));
+    let own = full.own_elements().filter(|&e| mesh.elements.get(e).part as usize == i);
+    let quality_of = |e: usize| scaled_jacobian(mesh.elements.get(e).shape(), &mesh.element_nodes(e));
     let properties = full.part_properties(comm, i);
-    let quality = Ranked::new(comm, own.map(|x| scaled_jacobian(&x)).collect());
+    let quality = Ranked::new(comm, own.map(quality_of).collect());
     let centre = properties.centre();
     let inertia = properties.inertia_about(centre);
     PartRow {
         part: mesh.parts[i].clone(),
-        tetrahedra: quality.n_numbers(),
+        elements: quality.n_numbers(),
         mass_kg: properties.mass,
         centre_m: centre,
         inertia_kg_m2: [0, 1, 2].map(|k| inertia[k][k]),
@@ -69,7 +70,7 @@ fn pair(pair: &ContactPair) -> PairRow {
         pair: pair.name.clone(),
         kind: format!("{:?}", pair.kind).to_lowercase(),
         points: pair.points.len(),
-        dropped: statistics.dropped.len(),
+        dropped: statistics.n_dropped,
         touching: statistics.touching,
         area_m2: statistics.area,
         gap_min_m: statistics.gap[0],
@@ -82,7 +83,7 @@ fn pair(pair: &ContactPair) -> PairRow {
 fn layout(full: &FullModel, pair: &ContactPair) -> LayoutRow {
     let own = &full.interface.points[pair.points.clone()];
     let areas = || own.iter().map(|point| point.law.weight);
-    let points = || own.iter().map(|point| point.nodes.len());
+    let points = || own.iter().map(|point| point.places.len());
     LayoutRow {
         pair: pair.name.clone(),
         reference_nodes: own.len(),

@@ -1,6 +1,7 @@
 //! The families of elements of a model on its mesh, solid elements by part and connectors, its constraints and its loads.
 
-use crate::contact::{GapOperator, search};
+use crate::contact::GapOperator;
+use crate::contact::surface_points::nodal_weights;
 use crate::element::connector::{RelativeMotion, relative_motion};
 use crate::element::coupling::Cloud;
 use crate::element::{facet, solid};
@@ -85,7 +86,7 @@ impl Elements for Solids<'_> {
 
 /// A connector on its mesh: a spring and damper between the mean motions of two clouds of nodes.
 ///
-/// A surface's cloud is its midside nodes with their contact weights, any other set's all nodes with equal weights.
+/// A surface's cloud is its midsides (its corners where it is linear) with their shares of the area, any other set's all nodes with equal weights.
 pub struct ConnectorElement {
     /// The nodes of both clouds, one after the other.
     pub nodes: Vec<u32>,
@@ -180,7 +181,7 @@ fn coordinates(mesh: &Mesh, nodes: &[u32]) -> Vec<[f64; 3]> {
 /// Nodes of a named set with their weights.
 fn cloud(mesh: &Mesh, name: &str) -> Option<(Vec<u32>, Vec<f64>)> {
     match mesh.surfaces.get(name) {
-        Some(surface) => Some(search::weights(surface, &mesh.nodes).into_iter().unzip()),
+        Some(surface) => Some(nodal_weights(surface, &mesh.nodes).into_iter().unzip()),
         None => mesh.node_set(name).map(|nodes| {
             let n = nodes.len();
             (nodes, vec![1.0; n])

@@ -14,7 +14,7 @@ pub struct Study {
     pub title: String,
     /// Band, Hz.
     pub band: [f64; 2],
-    /// Nodes and tetrahedra of the mesh.
+    /// Nodes and elements of the mesh.
     pub mesh: [usize; 2],
     /// The frictions asked for, rising.
     pub frictions: Vec<f64>,
@@ -93,7 +93,7 @@ impl Study {
             errors: Vec::new(),
             spurious: Vec::new(),
         };
-        let (title, mesh) = (about.title.clone(), [about.n_nodes, about.n_tets]);
+        let (title, mesh) = (about.title.clone(), [about.n_nodes, about.n_elements]);
         Study { title, band: about.band, mesh, frictions, reference, models: Vec::new() }
     }
 

@@ -6,10 +6,11 @@
 //! g_a = sum_n B_an u_n        B_an: 3 x 3
 //! ```
 //!
-//! Node-to-surface contact has `+I` at the slave node and `-N_j I` at the six nodes of the master's facet. A
-//! reference node that follows a cloud of nodes needs full blocks, a super-element has retained points for nodes:
+//! A point of a slave surface has `+N_i I` at the nodes that it moves with and `-N_j I` at the nodes of the master's
+//! facet. A reference node that follows a cloud of nodes needs full blocks, a super-element has retained points for nodes:
 //! other gap operators, the same contact code.
 
+use super::surface_points::Interpolated;
 use crate::algebra::product;
 
 /// The blocks of B, compressed by points.
@@ -65,15 +66,10 @@ impl GapOperator {
         self.offsets.push(self.nodes.len());
     }
 
-    /// Appends a node-to-surface point: `g = u_slave - sum_j N_j u_master_j`.
-    pub fn push_projection(&mut self, slave: u32, master: &[u32; 6], shape: &[f64; 6]) {
-        let mut nodes = [slave; 7];
-        nodes[1..].copy_from_slice(master);
-        let mut blocks = [diagonal(1.0); 7];
-        for j in 0..6 {
-            blocks[1 + j] = diagonal(-shape[j]);
-        }
-        self.push(&nodes, &blocks);
+    /// Appends a point of a slave surface: `g = sum_i N_i u_slave_i - sum_j N_j u_master_j`.
+    pub fn push_projection(&mut self, slave: &Interpolated, master: &Interpolated) {
+        let blocks = slave.shape.iter().map(|&n| diagonal(n)).chain(master.shape.iter().map(|&n| diagonal(-n)));
+        self.push(&[&slave.nodes[..], &master.nodes].concat(), &blocks.collect::<Vec<_>>());
     }
 
     /// Nodes and blocks of point `a`.

@@ -3,6 +3,7 @@
 use super::gap_operator::GapOperator;
 use super::law::{self, Friction, FrictionLaw, Response, Status};
 use super::search::Team;
+use super::surface_points::Place;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Model, NormalLaw, names};
@@ -24,7 +25,7 @@ pub struct Interface {
 pub struct ContactPair {
     /// Name in tables.
     pub name: String,
-    /// Surface whose midside nodes are the contact points.
+    /// Surface on which the contact points lie.
     pub slave: String,
     /// Surface they meet.
     pub master: String,
@@ -67,8 +68,8 @@ pub enum TangentialKind {
 /// What the search found for a pair.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Statistics {
-    /// Midside nodes of the slave that are too far from the master.
-    pub dropped: Vec<u32>,
+    /// Number of the slave's points that are too far from the master.
+    pub n_dropped: usize,
     /// Area of the slave surface, m2.
     pub area: f64,
     /// Sum of the points' weights, m2: the area in contact when all points are closed.
@@ -84,8 +85,9 @@ pub struct Statistics {
 pub struct ContactPoint {
     /// Index of its pair.
     pub pair: usize,
-    /// The slave's nodes that it stands for: its own, or the cell of a reference node. They come first in its
-    /// gap_operator.
+    /// The places on the slave surface that it stands for: its own, or the cell of a reference node.
+    pub places: Vec<Place>,
+    /// The slave's nodes that it moves with. They come first in its gap operator.
     pub nodes: Vec<u32>,
     /// Position of the point, m.
     pub position: [f64; 3],

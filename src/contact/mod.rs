@@ -6,14 +6,14 @@
 //!                            Model --> laws ----+
 //! ```
 //!
-//! A contact point `a` sits at a midside node of the slave, with the weight `w = sum A_facet/3`: a uniform pressure
-//! on a quadratic triangle loads only the midsides, so this is its exact quadrature, and no weight is negative. At
+//! A contact point `a` is a quadrature point of the slave's facets with the weight `w`, such that a uniform pressure is
+//! exact and no weight is negative ([`surface_points`]): on 6-node triangles these are the midside nodes. At
 //! the reference geometry the point is projected once on the master, which gives the unit normal n (outward from the
 //! master), the initial gap, and the shape values N_j of the master's facet ([`search`]). From then on contact sees
 //! the bodies only through the relative displacement of the two,
 //!
 //! ```text
-//! g_a = u_a - sum_j N_j u_j      that is    g = B u      B: the gap operator
+//! g_a = sum_i N_i u_i - sum_j N_j u_j      that is    g = B u      B: the gap operator
 //! ```
 //!
 //! and its answer is a force f(g) on the slave with `D = -df/dg` ([`law`]). To residual and tangent of the whole they
@@ -36,6 +36,7 @@ mod motion;
 mod pairing;
 mod projection;
 pub mod search;
+pub mod surface_points;
 mod tangent_change;
 #[cfg(test)]
 pub(crate) mod testing;

@@ -28,10 +28,11 @@ pub(super) fn add_pair(
     let rotation = model.sliding(contact, mesh);
     let first = interface.points.len();
     for point in &found.points {
-        interface.gap_operator.push_projection(point.node, &master.facets[point.facet], &point.shape);
+        interface.gap_operator.push_projection(&point.slave, &point.master);
         interface.points.push(ContactPoint {
             pair: interface.pairs.len(),
-            nodes: vec![point.node],
+            places: vec![point.place],
+            nodes: point.slave.nodes.clone(),
             position: point.position,
             law: surfaces.law(point, rotation),
         });
@@ -83,9 +84,9 @@ impl ContactSurfaces<'_> {
         if found.points.is_empty() {
             return Err(self.nothing_found(&found, &search(Some(f64::INFINITY))));
         }
-        let masters: BTreeSet<u32> = self.master.facets.iter().flatten().copied().collect();
-        let is_shared = |point: &&FoundPoint| masters.contains(&point.node);
-        match found.points.iter().filter(is_shared).count() {
+        let masters: BTreeSet<u32> = self.master.nodes().collect();
+        let slaves: BTreeSet<u32> = found.points.iter().flat_map(|point| point.slave.nodes.iter().copied()).collect();
+        match slaves.intersection(&masters).count() {
             0 => Ok(found),
             shared => Err(self.refuse(&format!(
                 "{shared} nodes belong to both surfaces, so nothing can move there. Mesh the two parts \
@@ -114,7 +115,7 @@ impl ContactSurfaces<'_> {
         self.refuse(&format!(
             "none of the {} points of \"{slave}\" lies within {limit} of \"{master}\"; the closest is {} away, in the mesh's \
              unit. Set search above that if the surfaces are to touch, else look at the names and the mesh",
-            found.dropped.len(),
+            found.n_dropped,
             length(closest)
         ))
     }
@@ -147,6 +148,6 @@ fn statistics(found: Found, points: &[ContactPoint]) -> Statistics {
         weight: found.points.iter().map(|p| p.weight).sum(),
         gap: [gaps.clone().fold(f64::INFINITY, f64::min), gaps.fold(f64::NEG_INFINITY, f64::max)],
         touching: points.iter().filter(|point| point.law.touching).count(),
-        dropped: found.dropped,
+        n_dropped: found.n_dropped,
     }
 }

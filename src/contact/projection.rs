@@ -1,24 +1,22 @@
-//! The closest point of one quadratic facet.
+//! The closest point of one facet.
 //!
-//! Wanted is the minimum of `f(r, s) = |x(r, s) - p|^2 / 2` over the closed triangle. It is found from the outside in:
+//! Wanted is the minimum of `f(r, s) = |x(r, s) - p|^2 / 2` over the closed facet. It is found from the outside in:
 //!
 //! 1. *Edges.* On an edge x is a quadratic in t, so f' is a cubic whose sign changes can be bracketed exactly: the
 //!    lowest point of the whole boundary is known without any starting guess.
 //! 2. *Inside.* Newton's method descends from that point and from a few inner samples; the lowest end wins. Steps that
-//!    leave the triangle or do not descend are halved, so the boundary's point moves only where f falls inwards.
+//!    leave the facet or do not descend are halved, so the boundary's point moves only where f falls inwards.
 //!
 //! What comes out is never farther than the closest point of the boundary, and where it lies inside it is a minimum.
 //! Several starts matter only beyond a facet's own radius of curvature, where f has more than one.
 
-use super::facet::Facet;
-use crate::element::quadrature::TRIANGLE_7;
-use crate::element::tri6::{EDGES, NODES};
+use super::facet::FacetGeometry;
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 /// The closest point of a facet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projection {
-    /// Natural coordinates (r, s), inside the triangle or on its edges.
+    /// Natural coordinates (r, s), inside the facet or on its edges.
     pub at: [f64; 2],
     /// `x(r, s)`.
     pub position: Vector3<f64>,
@@ -26,13 +24,13 @@ pub(super) struct Projection {
     pub distance: f64,
 }
 
-/// Projects `p` on a facet: the closest point of the closed triangle.
-pub(super) fn project(facet: &Facet, p: &Vector3<f64>) -> Projection {
+/// Projects `p` on a facet: the closest point of the closed facet.
+pub(super) fn project(facet: &FacetGeometry, p: &Vector3<f64>) -> Projection {
     // With p as the origin, f = |x|^2/2 keeps its digits far from the mesh's origin.
-    let local = Facet { nodes: facet.nodes.map(|x| x - p) };
-    let edges = (0..3).flat_map(|k| edge_candidates(&local, k));
+    let local = facet.about(p);
+    let edges = facet.shape.edges().enumerate().flat_map(|(k, edge)| edge_candidates(&local, k, edge));
     let boundary = lowest(&local, edges);
-    let inside = TRIANGLE_7.iter().map(|point| point.at);
+    let inside = facet.shape.rule().iter().map(|point| point.at);
     let ends = std::iter::once(boundary).chain(inside);
     let at = lowest(&local, ends.map(|start| descend(&local, start)));
     Projection::at(facet, p, at)
@@ -40,14 +38,13 @@ pub(super) fn project(facet: &Facet, p: &Vector3<f64>) -> Projection {
 
 impl Projection {
     /// The projection of `p` that lies at the coordinates `at` of a facet.
-    pub fn at(facet: &Facet, p: &Vector3<f64>, at: [f64; 2]) -> Projection {
-        let local = Facet { nodes: facet.nodes.map(|x| x - p) };
-        Projection { at, position: facet.position(at), distance: local.position(at).norm() }
+    pub fn at(facet: &FacetGeometry, p: &Vector3<f64>, at: [f64; 2]) -> Projection {
+        Projection { at, position: facet.position(at), distance: facet.about(p).position(at).norm() }
     }
 }
 
 /// The candidate with the smallest f; the first of equals.
-fn lowest(facet: &Facet, candidates: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+fn lowest(facet: &FacetGeometry, candidates: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     let mut best = ([0.0; 2], f64::INFINITY);
     for at in candidates {
         let f = objective(facet, at);
@@ -59,20 +56,20 @@ fn lowest(facet: &Facet, candidates: impl Iterator<Item = [f64; 2]>) -> [f64; 2]
 }
 
 /// `f = |x|^2 / 2`.
-fn objective(facet: &Facet, at: [f64; 2]) -> f64 {
+fn objective(facet: &FacetGeometry, at: [f64; 2]) -> f64 {
     0.5 * facet.position(at).norm_squared()
 }
 
 /// Both ends of edge `k` and the points between them where the distance is smallest.
-fn edge_candidates(facet: &Facet, k: usize) -> Vec<[f64; 2]> {
-    let [i, j] = EDGES[k];
-    let (xa, xb, xm) = (facet.nodes[i], facet.nodes[j], facet.nodes[3 + k]);
+fn edge_candidates(facet: &FacetGeometry, k: usize, [i, j]: [usize; 2]) -> Vec<[f64; 2]> {
+    let (xa, xb, xm) = (facet.nodes()[i], facet.nodes()[j], facet.midside(k, [i, j]));
     // x(t) = a + b t + c t^2 through xa, xm, xb at t = 0, 1/2, 1
     let (a, b, c) = (xa, 4.0 * xm - 3.0 * xa - xb, 2.0 * (xa + xb - 2.0 * xm));
     // f' = (a + b t + c t^2).(b + 2 c t)
     let slope = [a.dot(&b), b.dot(&b) + 2.0 * a.dot(&c), 3.0 * b.dot(&c), 2.0 * c.dot(&c)];
     let ends = [0.0, 1.0];
-    let on_edge = |t: f64| [0, 1].map(|m| NODES[i][m] + t * (NODES[j][m] - NODES[i][m]));
+    let nodes = facet.shape.interpolation().nodes();
+    let on_edge = |t: f64| [0, 1].map(|m| nodes[i][m] + t * (nodes[j][m] - nodes[i][m]));
     ends.into_iter().chain(minima_of_cubic_slope(slope)).map(on_edge).collect()
 }
 
@@ -116,9 +113,9 @@ fn bracketed_root(c: &[f64; 4], mut low: f64, mut high: f64) -> f64 {
     t
 }
 
-/// Newton's descent from `at` without leaving the triangle; stays where no step inside it descends.
-fn descend(facet: &Facet, mut at: [f64; 2]) -> [f64; 2] {
-    let scale = facet.nodes.iter().map(|x| x.norm()).fold(0.0, f64::max);
+/// Newton's descent from `at` without leaving the facet; stays where no step inside it descends.
+fn descend(facet: &FacetGeometry, mut at: [f64; 2]) -> [f64; 2] {
+    let scale = facet.nodes().iter().map(|x| x.norm()).fold(0.0, f64::max);
     for _ in 0..50 {
         let Some(next) = acceptable(facet, at, newton_step(facet, at), scale) else {
             return at;
@@ -133,10 +130,10 @@ fn descend(facet: &Facet, mut at: [f64; 2]) -> [f64; 2] {
 }
 
 /// `-H^-1 f'` with the full Hessian where it is positive definite, else with its Gauss-Newton part.
-fn newton_step(facet: &Facet, at: [f64; 2]) -> Vector2<f64> {
+fn newton_step(facet: &FacetGeometry, at: [f64; 2]) -> Vector2<f64> {
     let x = facet.position(at);
     let [xr, xs] = facet.tangents(at);
-    let [xrr, xrs, xss] = facet.curvatures();
+    let [xrr, xrs, xss] = facet.curvatures(at);
     // f' = [x.x_r, x.x_s]   H = [x_r.x_r, x_r.x_s; ., x_s.x_s] + [x.x_rr, x.x_rs; ., x.x_ss]
     let slope = Vector2::new(x.dot(&xr), x.dot(&xs));
     let gauss = Matrix2::new(xr.dot(&xr), xr.dot(&xs), xr.dot(&xs), xs.dot(&xs));
@@ -146,27 +143,29 @@ fn newton_step(facet: &Facet, at: [f64; 2]) -> Vector2<f64> {
     hessian.try_inverse().map_or(Vector2::zeros(), |inverse| -(inverse * slope))
 }
 
-/// The longest of the step's halvings that stays in the triangle and does not ascend, up to the rounding of f that
+/// The longest of the step's halvings that stays in the facet and does not ascend, up to the rounding of f that
 /// nodes at the distance `scale` cause.
-fn acceptable(facet: &Facet, at: [f64; 2], step: Vector2<f64>, scale: f64) -> Option<[f64; 2]> {
+fn acceptable(facet: &FacetGeometry, at: [f64; 2], step: Vector2<f64>, scale: f64) -> Option<[f64; 2]> {
     let f = objective(facet, at);
     // |x| is uncertain by eps scale, |x|^2/2 by |x| eps scale
     let ceiling = f + 4.0 * f64::EPSILON * scale * (2.0 * f).sqrt();
     (0..40)
         .map(|halvings| 0.5_f64.powi(halvings))
         .map(|factor| [at[0] + factor * step.x, at[1] + factor * step.y])
-        .filter(|next| next[0] >= 0.0 && next[1] >= 0.0 && next[0] + next[1] <= 1.0)
+        .filter(|&next| facet.shape.contains(next))
         .find(|next| objective(facet, *next) <= ceiling)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::testing::bent_facet;
+    use crate::contact::testing::{bent_facet, on_reference};
+    use crate::element::FacetShape;
     use proptest::prelude::*;
 
-    fn flat() -> Facet {
-        Facet { nodes: NODES.map(|[r, s]| Vector3::new(r, s, 0.0)) }
+    fn flat() -> FacetGeometry {
+        let nodes = FacetShape::Triangle6.interpolation().nodes();
+        FacetGeometry::new(&nodes.iter().map(|&[r, s]| Vector3::new(r, s, 0.0)).collect::<Vec<_>>())
     }
 
     #[test]
@@ -207,9 +206,9 @@ mod tests {
             let p = Vector3::from(p);
             let found = project(&facet, &p);
             let n = 60;
-            for i in 0..=n {
-                for j in 0..=n - i {
-                    let at = [i as f64 / n as f64, j as f64 / n as f64];
+            for (i, j) in (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+                let at = [i, j].map(|i| 2.0 * f64::from(i) / f64::from(n) - 1.0);
+                if facet.shape.contains(at) {
                     prop_assert!(found.distance <= (facet.position(at) - p).norm() + 1e-12);
                 }
             }
@@ -218,11 +217,10 @@ mod tests {
         #[test]
         fn a_point_on_a_normal_comes_back_to_its_foot(
             facet in bent_facet(),
-            a in 0.0..1.0,
-            b in 0.0..1.0,
+            at in on_reference(),
             height in -0.05..0.05,
         ) {
-            let at = [a * (1.0 - b), b];
+            let at = at.on(&facet);
             let foot: Vector3<f64> = facet.position(at);
             let found = project(&facet, &(foot + height * facet.normal(at)));
             prop_assert!((found.position - foot).norm() < 1e-12, "{found:?} {foot}");

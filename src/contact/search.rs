@@ -1,22 +1,20 @@
 //! The search: where the contact points of a slave surface meet the master.
 //!
-//! Contact points are the midside nodes of the slave's facets, each with the weight `w = sum A_facet/3` over the
-//! facets around it. Each is projected on the closest of the master's facets that *face* it,
+//! Contact points are quadrature points of the slave's facets ([`surface_points`](super::surface_points)). Each is projected on the closest of the master's facets that *face* it,
 //! `n_slave . n_master < -0.5`: without that condition points beside an edge grab the wrong wall.
 //!
 //! A tree of the facets' boxes yields candidates in the order of their boxes' distance, and the search of a point
 //! ends at the first box beyond the best facet found. The result does not depend on the order of the tree: among facets
 //! whose distances agree (a point that projects on a common edge) the lowest index is taken.
 
-use super::facet::Facet;
+use super::facet::FacetGeometry;
 use super::projection::{Projection, project};
-use crate::element::tri6::{NODES, shape};
+use super::surface_points::{Interpolated, Place, SurfacePoint, interpolated, surface_points};
 use crate::mesh::Surface;
 use nalgebra::Vector3;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Facets face each other where the product of their unit normals is below this.
@@ -38,20 +36,22 @@ pub struct Options {
 }
 
 /// A contact point and where it meets the master.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct FoundPoint {
-    /// The slave's midside node.
-    pub node: u32,
-    /// `w = sum A_facet/3`, m2.
+    /// Where it lies on the slave.
+    pub place: Place,
+    /// The slave's nodes with their shape functions at the point.
+    pub slave: Interpolated,
+    /// Area that it stands for, m2.
     pub weight: f64,
-    /// Position of the slave node, m.
+    /// Position of the point, m.
     pub position: [f64; 3],
-    /// Mean edge length of the slave's facets around the node, m.
+    /// Mean edge length of the slave's facets around the point, m.
     pub size: f64,
     /// Index of the master's facet in its surface.
     pub facet: usize,
-    /// Shape functions of the facet's six nodes at the projection.
-    pub shape: [f64; 6],
+    /// The facet's nodes with their shape functions at the projection.
+    pub master: Interpolated,
     /// The master's outward unit normal n at the projection.
     pub normal: [f64; 3],
     /// Initial gap `(x - x_projection).n`, m; negative where the surfaces overlap.
@@ -63,10 +63,10 @@ pub struct FoundPoint {
 /// What a search has found.
 #[derive(Debug, Clone, Default)]
 pub struct Found {
-    /// The points that meet the master, by rising node index.
+    /// The points that meet the master, by rising place.
     pub points: Vec<FoundPoint>,
-    /// The slave's midside nodes that do not, by rising index.
-    pub dropped: Vec<u32>,
+    /// Number of the slave's points that do not.
+    pub n_dropped: usize,
     /// Area of the slave surface, m2; the weights of all points, dropped ones included, add up to it.
     pub area: f64,
 }
@@ -106,22 +106,22 @@ impl Team for Alone {
 /// A degenerate facet of the master (no normal) faces nothing and is passed over.
 pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Options, team: &dyn Team) -> Found {
     let target = Target::new(master, nodes);
-    let (candidates, area) = midside_nodes(slave, nodes);
-    let candidates: Vec<(u32, Midside)> = candidates.into_iter().collect();
-    let position = |node: u32| Vector3::from(nodes[node as usize]);
-    let search = |&(node, point): &(u32, Midside)| {
+    let (candidates, area) = surface_points(slave, nodes);
+    let candidates: Vec<(Place, SurfacePoint)> = candidates.into_iter().collect();
+    let search = |(_, point): &(Place, SurfacePoint)| {
         let reach = options.search_distance.unwrap_or(0.5 * point.size());
-        let hit = target.closest(&position(node), &point, reach);
+        let hit = target.closest(point, reach);
         hit.map(|hit| Foot { facet: hit.facet, at: hit.projection.at })
     };
     let feet = team.join(candidates[team.share(candidates.len())].iter().map(search).collect());
     let mut found = Found { area, ..Found::default() };
-    for ((node, point), foot) in candidates.into_iter().zip(feet) {
+    for ((place, point), foot) in candidates.into_iter().zip(feet) {
         match foot {
-            None => found.dropped.push(node),
+            None => found.n_dropped += 1,
             Some(Foot { facet, at }) => {
-                let hit = target.hit(facet, Projection::at(&target.facets[facet], &position(node), at));
-                found.points.push(found_point(node, nodes, &point, &hit));
+                let hit = target.hit(facet, Projection::at(&target.facets[facet], &point.position, at));
+                let on_master = interpolated(&master.facets[facet], at);
+                found.points.push(found_point(place, point, on_master, &hit));
             }
         }
     }
@@ -129,12 +129,10 @@ pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Opt
 }
 
 /// Where a point of space comes down on a master.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Landing {
-    /// Index of the master's facet in its surface.
-    pub facet: usize,
-    /// Shape functions of the facet's six nodes at the projection.
-    pub shape: [f64; 6],
+    /// The nodes of the master's facet with their shape functions at the projection.
+    pub master: Interpolated,
     /// The master's outward unit normal n at the projection.
     pub normal: [f64; 3],
     /// `(x - x_projection).n`, m.
@@ -146,60 +144,18 @@ pub struct Landing {
 pub fn land(points: &[([f64; 3], [f64; 3])], master: &Surface, nodes: &[[f64; 3]]) -> Vec<Option<Landing>> {
     let target = Target::new(master, nodes);
     let of = |(x, outward): &([f64; 3], [f64; 3])| {
-        let x = Vector3::from(*x);
-        let point = Midside { weight: 0.0, normal: (*outward).into(), sizes: (0.0, 1.0) };
-        let Hit { facet, projection, normal } = target.closest(&x, &point, f64::INFINITY)?;
-        let gap = (x - projection.position).dot(&normal);
-        Some(Landing { facet, shape: shape(projection.at), normal: normal.into(), gap })
+        let point = SurfacePoint::alone((*x).into(), (*outward).into());
+        let Hit { facet, projection, normal } = target.closest(&point, f64::INFINITY)?;
+        let gap = (point.position - projection.position).dot(&normal);
+        let on_master = interpolated(&master.facets[facet], projection.at);
+        Some(Landing { master: on_master, normal: normal.into(), gap })
     };
     points.iter().map(of).collect()
 }
 
-/// What the slave's facets around a midside node add up to.
-#[derive(Debug, Clone, Copy, Default)]
-struct Midside {
-    /// `sum A/3`.
-    weight: f64,
-    /// `sum A n`, not normalised.
-    normal: Vector3<f64>,
-    /// Sum of the facets' sizes and their number.
-    sizes: (f64, f64),
-}
-
-impl Midside {
-    /// Mean edge length around the node.
-    fn size(&self) -> f64 {
-        self.sizes.0 / self.sizes.1
-    }
-}
-
-/// The midside nodes of a surface with their contact weights `w = sum A_facet/3`, m2, by rising index.
-pub fn weights(surface: &Surface, nodes: &[[f64; 3]]) -> Vec<(u32, f64)> {
-    midside_nodes(surface, nodes).0.into_iter().map(|(node, midside)| (node, midside.weight)).collect()
-}
-
-/// All midside nodes of a surface, by rising index, and the surface's area.
-fn midside_nodes(surface: &Surface, nodes: &[[f64; 3]]) -> (BTreeMap<u32, Midside>, f64) {
-    let mut found: BTreeMap<u32, Midside> = BTreeMap::new();
-    let mut total = 0.0;
-    for facet in &surface.facets {
-        let geometry = Facet::gather(nodes, facet);
-        let (area, size) = (geometry.area(), geometry.size());
-        total += area;
-        for k in 3..6 {
-            let point = found.entry(facet[k]).or_default();
-            point.weight += area / 3.0;
-            point.normal += area * geometry.normal(NODES[k]);
-            point.sizes.0 += size;
-            point.sizes.1 += 1.0;
-        }
-    }
-    (found, total)
-}
-
 /// The master's facets with a tree of their boxes.
 struct Target {
-    facets: Vec<Facet>,
+    facets: Vec<FacetGeometry>,
     tree: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>,
 }
 
@@ -212,7 +168,7 @@ struct Hit {
 
 impl Target {
     fn new(master: &Surface, nodes: &[[f64; 3]]) -> Self {
-        let facets: Vec<_> = master.facets.iter().map(|f| Facet::gather(nodes, f)).collect();
+        let facets: Vec<_> = master.facets.iter().map(|f| FacetGeometry::gather(nodes, f)).collect();
         let boxes = facets.iter().enumerate().map(|(index, facet)| {
             let [low, high] = facet.bounds();
             GeomWithData::new(Rectangle::from_corners(low.into(), high.into()), index)
@@ -221,9 +177,9 @@ impl Target {
         Target { facets, tree }
     }
 
-    /// The closest facing facet within `reach` of `x`; the lowest index of those equally close.
-    fn closest(&self, x: &Vector3<f64>, point: &Midside, reach: f64) -> Option<Hit> {
-        let tolerance = TIE * point.size();
+    /// The closest facing facet within `reach` of a point; the lowest index of those equally close.
+    fn closest(&self, point: &SurfacePoint, reach: f64) -> Option<Hit> {
+        let (x, tolerance) = (&point.position, TIE * point.size());
         let mut hits: Vec<Hit> = Vec::new();
         let mut nearest = reach;
         let boxes = self.tree.nearest_neighbor_iter_with_distance_2((*x).into());
@@ -252,17 +208,17 @@ impl Target {
 }
 
 /// Puts together what is known of a point that met the master.
-fn found_point(node: u32, nodes: &[[f64; 3]], point: &Midside, hit: &Hit) -> FoundPoint {
-    let position = nodes[node as usize];
+fn found_point(place: Place, point: SurfacePoint, master: Interpolated, hit: &Hit) -> FoundPoint {
     FoundPoint {
-        node,
+        place,
         weight: point.weight,
-        position,
+        position: point.position.into(),
         size: point.size(),
+        slave: point.slave,
         facet: hit.facet,
-        shape: shape(hit.projection.at),
+        master,
         normal: hit.normal.into(),
-        gap: (Vector3::from(position) - hit.projection.position).dot(&hit.normal),
+        gap: (point.position - hit.projection.position).dot(&hit.normal),
         distance: hit.projection.distance,
     }
 }

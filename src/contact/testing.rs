@@ -1,19 +1,37 @@
 //! Surfaces for the tests of this module.
 
-use super::facet::Facet;
-use crate::element::tri6::NODES;
-use crate::mesh::{self, Mesh, Surface};
+use super::facet::FacetGeometry;
+use crate::element::FacetShape;
+use crate::mesh::{self, Facet, Mesh, Surface};
 use crate::model::{Contact, Model, NormalLaw, Rotation};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// A triangle of about unit size whose six nodes all lie a little off their places.
-pub(in crate::contact) fn bent_facet() -> impl Strategy<Value = Facet> {
-    let offsets = prop::array::uniform6(prop::array::uniform3(-0.08..0.08));
-    offsets.prop_map(|offsets| Facet {
-        nodes: std::array::from_fn(|j| Vector3::new(NODES[j][0], NODES[j][1], 0.0) + Vector3::from(offsets[j])),
+/// A facet of any shape and of about unit size whose nodes all lie a little off their places.
+pub(in crate::contact) fn bent_facet() -> impl Strategy<Value = FacetGeometry> {
+    let offsets = prop::array::uniform8(prop::array::uniform3(-0.08..0.08));
+    (prop::sample::select(FacetShape::ALL.to_vec()), offsets).prop_map(|(shape, offsets)| {
+        let nodes = shape.interpolation().nodes().iter().zip(offsets);
+        let positions = nodes.map(|(&[r, s], offset)| Vector3::new(r, s, 0.0) + Vector3::from(offset));
+        FacetGeometry::new(&positions.collect::<Vec<_>>())
     })
+}
+
+/// A point of a facet's reference element, of whatever shape it is.
+pub(in crate::contact) fn on_reference() -> impl Strategy<Value = OnReference> {
+    (0.0..1.0, 0.0..1.0).prop_map(|(a, b): (f64, f64)| OnReference([a, b]))
+}
+
+/// A point of the unit square that stands for one of any facet.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::contact) struct OnReference([f64; 2]);
+
+impl OnReference {
+    pub fn on(&self, facet: &FacetGeometry) -> [f64; 2] {
+        let [a, b] = self.0;
+        if facet.shape.is_triangle() { [a * (1.0 - b), b] } else { [2.0 * a - 1.0, 2.0 * b - 1.0] }
+    }
 }
 
 /// A structured patch of `2 nu nv` quadratic facets: every node is `map(u, v)` with u, v in [0, 1], appended to
@@ -33,19 +51,22 @@ pub fn patch(nodes: &mut Vec<[f64; 3]>, [nu, nv]: [usize; 2], map: impl Fn(f64, 
         let middle = node(i + 1, j + 1);
         let (south, east) = (node(i + 1, j), node(i + 2, j + 1));
         let (north, west) = (node(i + 1, j + 2), node(i, j + 1));
-        surface.facets.push([a, b, c, south, east, middle]);
-        surface.facets.push([a, c, d, middle, north, west]);
+        surface.facets.push([a, b, c, south, east, middle].into());
+        surface.facets.push([a, c, d, middle, north, west].into());
     }
     surface.parts = vec![0; surface.facets.len()];
     surface
 }
 
+/// A facet seen from the other side: first corner, the others backwards, and the midsides from the last.
+fn turned(facet: &Facet) -> Facet {
+    let (first, others) = facet.corners().split_first().expect("a facet has corners");
+    [*first].into_iter().chain(others.iter().rev().copied()).chain(facet.midsides().iter().rev().copied()).collect()
+}
+
 /// The same facets seen from the other side.
 pub fn flipped(surface: &Surface) -> Surface {
-    Surface {
-        facets: surface.facets.iter().map(|&[a, b, c, ab, bc, ca]| [a, c, b, ca, bc, ab]).collect(),
-        ..surface.clone()
-    }
+    Surface { facets: surface.facets.iter().map(turned).collect(), ..surface.clone() }
 }
 
 /// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.

@@ -110,6 +110,15 @@ impl FacetShape {
         (0..n).map(move |k| [k, (k + 1) % n])
     }
 
+    /// Whether reference coordinates lie on the facet or its rim.
+    pub fn contains(self, [xi, eta]: [f64; 2]) -> bool {
+        if self.is_triangle() {
+            xi >= 0.0 && eta >= 0.0 && xi + eta <= 1.0
+        } else {
+            xi.abs() <= 1.0 && eta.abs() <= 1.0
+        }
+    }
+
     /// The points that integrate loads.
     pub fn rule(self) -> &'static [QuadraturePoint<2>] {
         if self.is_triangle() { &TRIANGLE_7 } else { &QUADRILATERAL_9 }

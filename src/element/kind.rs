@@ -115,6 +115,7 @@ mod tests {
     fn names_lead_back_to_their_kinds_and_defaults_to_their_shapes() {
         for kind in ElementKind::ALL {
             assert_eq!(ElementKind::from_name(kind.name()), Some(kind));
+            assert_eq!(ElementKind::ALL[kind as usize], kind);
             assert_eq!(ElementKind::default_for(kind.shape()).shape(), kind.shape());
         }
         assert_eq!(ElementKind::from_name("C3D5"), None);

@@ -86,7 +86,7 @@ pub fn belt(n: usize, tangential: Tangential) -> Interface {
             normal_law: NormalLaw::Linear { stiffness: CONTACT },
             tangential,
         };
-        interface.points.push(ContactPoint { pair: 0, nodes: vec![i as u32], position: [0.0; 3], law });
+        interface.points.push(ContactPoint { pair: 0, places: vec![], nodes: vec![i as u32], position: [0.0; 3], law });
     }
     interface.pairs.push(ContactPair {
         name: "belt".into(),

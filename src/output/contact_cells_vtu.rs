@@ -1,14 +1,16 @@
 //! The cells of reference nodes, drawn on the slave surfaces.
 //!
-//! A contact point stands for a third of each facet around it: the triangle of the facet's edge and centre. So the
-//! triangles of a cell have exactly its area (on plane facets).
+//! A contact point at a midside stands for the triangle of its edge and the facet's centre, any other for the
+//! quadrilateral between its corner, the middles of the two edges there, and the centre. So the triangles of a cell have
+//! exactly its area on plane 6-node and 3-node facets and on parallelograms.
 
 use std::collections::HashMap;
 
 use crate::contact::Interface;
 use crate::contact::interface::ContactPair;
-use crate::element::tri6::{self, EDGES};
-use crate::mesh::Mesh;
+use crate::contact::surface_points::{Place, places};
+use crate::element::FacetShape;
+use crate::mesh::{Facet, Mesh};
 
 use super::vtu::{Cells, Grid, Values};
 
@@ -33,19 +35,18 @@ impl ContactCells {
 
     fn add(&mut self, mesh: &Mesh, interface: &Interface, pair: &ContactPair) {
         let own = pair.points.clone().map(|a| (a, &interface.points[a]));
-        let cell_of: HashMap<u32, usize> =
-            own.flat_map(|(a, point)| point.nodes.iter().map(move |&n| (n, a))).collect();
-        for facet in &mesh.surfaces[&pair.slave].facets {
-            let x = facet.map(|n| mesh.nodes[n as usize]);
-            let n = tri6::shape([1.0 / 3.0; 2]);
+        let cell_of: HashMap<Place, usize> =
+            own.flat_map(|(a, point)| point.places.iter().map(move |&place| (place, a))).collect();
+        for (index, facet) in mesh.surfaces[&pair.slave].facets.iter().enumerate() {
             let first = self.points.len() as u32;
-            self.points.extend_from_slice(&x[..3]);
-            self.points.push([0, 1, 2].map(|i| (0..6).map(|j| n[j] * x[j][i]).sum()));
-            for (k, [a, b]) in EDGES.into_iter().enumerate() {
-                let cell = cell_of.get(&facet[3 + k]);
-                self.triangles.push([first + a as u32, first + b as u32, first + 3]);
-                self.cell.push(cell.map_or(-1, |&a| a as i32));
-                self.area.push(cell.map_or(0.0, |&a| 1e6 * interface.points[a].law.weight));
+            self.points.extend(outline(mesh, facet));
+            for (k, place) in places(index, facet).into_iter().enumerate() {
+                let cell = cell_of.get(&place);
+                for triangle in share(facet.shape(), k as u32) {
+                    self.triangles.push(triangle.map(|n| first + n));
+                    self.cell.push(cell.map_or(-1, |&a| a as i32));
+                    self.area.push(cell.map_or(0.0, |&a| 1e6 * interface.points[a].law.weight));
+                }
             }
         }
     }
@@ -57,6 +58,60 @@ impl ContactCells {
             cells: Cells::Patches(&self.triangles),
             point_data: vec![],
             cell_data: vec![("cell", Values::Integers(&self.cell)), ("area_mm2", Values::Scalars(&self.area))],
+        }
+    }
+}
+
+/// A facet's corners, its centre, and the middles of its edges where these bound shares.
+fn outline(mesh: &Mesh, facet: &Facet) -> Vec<[f64; 3]> {
+    let (shape, x) = (facet.shape(), facet.positions(&mesh.nodes));
+    let interpolation = shape.interpolation();
+    let at = |at: [f64; 2]| {
+        let n = interpolation.shape(at);
+        [0, 1, 2].map(|i| x.iter().zip(n).map(|(x, n)| n * x[i]).sum())
+    };
+    let nodes = interpolation.nodes();
+    let middle = |[a, b]: [usize; 2]| at([0, 1].map(|i| 0.5 * (nodes[a][i] + nodes[b][i])));
+    let centre = at(if shape.is_triangle() { [1.0 / 3.0; 2] } else { [0.0; 2] });
+    let mut points = x[..shape.n_corners()].to_vec();
+    points.push(centre);
+    if shape != FacetShape::Triangle6 {
+        points.extend(shape.edges().map(middle));
+    }
+    points
+}
+
+/// The triangles of contact point `k`'s share of a facet, between the points of its [`outline`].
+fn share(shape: FacetShape, k: u32) -> Vec<[u32; 3]> {
+    let n = shape.n_corners() as u32;
+    if shape == FacetShape::Triangle6 {
+        return vec![[k, (k + 1) % n, n]];
+    }
+    let (after, before) = (n + 1 + k, n + 1 + (k + n - 1) % n);
+    vec![[k, after, n], [k, n, before]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_tile_each_facet() {
+        let x = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let mesh = Mesh { nodes: x.to_vec(), ..Mesh::default() };
+        for facet in [Facet::from([0, 1, 2]), Facet::from([0, 1, 2, 3])] {
+            let (points, shape) = (outline(&mesh, &facet), facet.shape());
+            let area = |[a, b, c]: [u32; 3]| {
+                let [a, b, c] = [a, b, c].map(|n| points[n as usize]);
+                0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+            };
+            for k in 0..shape.n_corners() as u32 {
+                let own: f64 = share(shape, k).into_iter().map(area).sum();
+                assert!(
+                    (own - if shape.is_triangle() { 1.0 / 3.0 } else { 0.5 }).abs() < 1e-15,
+                    "{shape:?} {k}: {own}"
+                );
+            }
         }
     }
 }

@@ -38,8 +38,8 @@ pub struct ModelSummary {
 pub struct MeshSummary {
     /// Nodes.
     pub nodes: usize,
-    /// Tetrahedra.
-    pub tetrahedra: usize,
+    /// Number of its elements.
+    pub elements: usize,
     /// Edges of the box around it.
     pub size_m: [f64; 3],
 }
@@ -49,15 +49,15 @@ pub struct MeshSummary {
 pub struct PartRow {
     /// Its name.
     pub part: String,
-    /// Tetrahedra.
-    pub tetrahedra: usize,
+    /// Number of its elements.
+    pub elements: usize,
     /// Mass.
     pub mass_kg: f64,
     /// Centre of mass.
     pub centre_m: [f64; 3],
     /// Moments of inertia xx, yy, zz about the centre.
     pub inertia_kg_m2: [f64; 3],
-    /// Least scaled Jacobian of its tetrahedra.
+    /// Least scaled Jacobian of its elements.
     pub quality_min: f64,
     /// Median of them.
     pub quality_median: f64,
@@ -137,8 +137,8 @@ impl ModelSummary {
     }
 
     fn write(&self, out: &mut String) -> std::fmt::Result {
-        let MeshSummary { nodes, tetrahedra, size_m } = self.mesh;
-        writeln!(out, "mesh: {nodes} nodes, {tetrahedra} tetrahedra, {} mm", joined(size_m, 1e3, 1, " x "))?;
+        let MeshSummary { nodes, elements, size_m } = self.mesh;
+        writeln!(out, "mesh: {nodes} nodes, {elements} elements, {} mm", joined(size_m, 1e3, 1, " x "))?;
         self.write_parts(out)?;
         self.write_pairs(out)?;
         if let Some(layouts) = &self.layouts {
@@ -155,14 +155,14 @@ impl ModelSummary {
         writeln!(
             out,
             "{:width$}  {:>8}  {:>9}  {:>26}  {:>32}  {:>17}",
-            "part", "tets", "mass kg", "centre mm", "inertia kg mm2 (xx yy zz)", "quality min / med"
+            "part", "elements", "mass kg", "centre mm", "inertia kg mm2 (xx yy zz)", "quality min / med"
         )?;
         for row in &self.parts {
             let (centre, moments) = (joined(row.centre_m, 1e3, 2, " "), joined(row.inertia_kg_m2, 1e6, 2, " "));
-            let PartRow { part, tetrahedra, mass_kg, quality_min, quality_median, .. } = row;
+            let PartRow { part, elements, mass_kg, quality_min, quality_median, .. } = row;
             writeln!(
                 out,
-                "{part:width$}  {tetrahedra:>8}  {mass_kg:>9.4}  {centre:>26}  {moments:>32}  {quality_min:>8.3} {quality_median:>8.3}"
+                "{part:width$}  {elements:>8}  {mass_kg:>9.4}  {centre:>26}  {moments:>32}  {quality_min:>8.3} {quality_median:>8.3}"
             )?;
         }
         writeln!(out)
@@ -233,7 +233,7 @@ pub(super) mod tests {
     pub(in crate::output) fn summary() -> ModelSummary {
         let part = PartRow {
             part: "disc".into(),
-            tetrahedra: 54,
+            elements: 54,
             mass_kg: 0.0639,
             centre_m: [-1e-9, 0.015, 0.005],
             inertia_kg_m2: [1e-6; 3],
@@ -263,7 +263,7 @@ pub(super) mod tests {
         let load = LoadRow { load: "push".into(), on: "top".into(), what: "a pressure of 1 Pa".into() };
         ModelSummary {
             title: "blocks".into(),
-            mesh: MeshSummary { nodes: 100, tetrahedra: 54, size_m: [0.03, 0.03, 0.01] },
+            mesh: MeshSummary { nodes: 100, elements: 54, size_m: [0.03, 0.03, 0.01] },
             parts: vec![part],
             pairs: vec![pair],
             layouts: Some(vec![layout]),
@@ -280,7 +280,7 @@ pub(super) mod tests {
     fn units_are_those_of_the_headings_and_no_zero_is_negative() {
         let text = summary().text();
         let expected = [
-            "mesh: 100 nodes, 54 tetrahedra, 30.0 x 30.0 x 10.0 mm",
+            "mesh: 100 nodes, 54 elements, 30.0 x 30.0 x 10.0 mm",
             "disc        54     0.0639             0.00 15.00 5.00                    1.00 1.00 1.00     0.500    0.750",
             "disc / pad      sliding      16        0        16     400.00       0.00e0 1.00e-3       0.4",
             "cells of 90.0 to 110.0 mm2 (mean 100.0) with 3 to 5 contact points",

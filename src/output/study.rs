@@ -9,9 +9,9 @@ use crate::comparison::{CurvePoint, Errors, StudiedModel, Study};
 
 /// Sizes and times, errors, and the instabilities over friction.
 pub fn text(study: &Study) -> String {
-    let Study { title, band: [from, to], mesh: [n_nodes, n_tets], frictions, .. } = study;
+    let Study { title, band: [from, to], mesh: [n_nodes, n_elements], frictions, .. } = study;
     let head = format!(
-        "{title}: reduced models compared with full contact, modes of {from}-{to} Hz at {} friction value{}\nmesh: {n_nodes} nodes, {n_tets} tetrahedra\n",
+        "{title}: reduced models compared with full contact, modes of {from}-{to} Hz at {} friction value{}\nmesh: {n_nodes} nodes, {n_elements} elements\n",
         frictions.len(),
         if frictions.len() == 1 { "" } else { "s" }
     );

@@ -11,10 +11,11 @@
 //! so that reduced contact is another gap operator and nothing else. Source: Fazio, Nacivet, Sinou (ISMA 2014), section
 //! 3.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use pathfinding::undirected::connected_components::separate_components;
 
+use crate::algebra::product;
 use crate::contact::interface::ContactPair;
 use crate::contact::search::{Landing, land};
 use crate::contact::{ContactPoint, Interface, PointLaw, Statistics, sliding};
@@ -86,33 +87,44 @@ impl Site<'_> {
         let pieces = pieces(&self.mesh.surfaces[&self.pair.slave], own);
         let points = Points { positions: &positions, areas: &areas, pieces: &pieces };
         let cells = layout::cells(&points, n).map_err(|reason| self.refuse(&reason))?;
-        let cells: Vec<Vec<&ContactPoint>> = cells.iter().map(|cell| cell.iter().map(|&a| &own[a]).collect()).collect();
-        let centres: Vec<([f64; 3], [f64; 3])> = cells.iter().map(|cell| (centre(cell), outward(cell))).collect();
+        let points_of = |cell: &Vec<usize>| cell.iter().map(|&a| &own[a]).collect::<Vec<_>>();
+        let centre_of = |cell| (centre(&points_of(cell)), outward(&points_of(cell)));
+        let centres: Vec<([f64; 3], [f64; 3])> = cells.iter().map(centre_of).collect();
         let master = &self.mesh.surfaces[&self.pair.master];
         for ((cell, (position, _)), landing) in cells.iter().zip(&centres).zip(land(&centres, master, &self.mesh.nodes))
         {
             let landing =
                 landing.ok_or_else(|| self.refuse(&"a reference node has no facet of the master before it"))?;
-            self.push(reduced, cell, *position, &landing)?;
+            let cell: Vec<usize> = cell.iter().map(|a| self.pair.points.start + a).collect();
+            self.push(reduced, &cell, *position, &landing)?;
         }
         Ok(())
     }
 
-    /// Appends one reference node.
-    fn push(&self, reduced: &mut Interface, cell: &[&ContactPoint], x: [f64; 3], landing: &Landing) -> Result<()> {
-        let (nodes, weights) = cloud(cell);
+    /// Appends one reference node, which follows a cell of points: `g = sum_a U_a sum_i N_ai u_i - sum_j N_j u_j`.
+    fn push(&self, reduced: &mut Interface, cell: &[usize], x: [f64; 3], landing: &Landing) -> Result<()> {
+        let points: Vec<&ContactPoint> = cell.iter().map(|&a| &self.full.points[a]).collect();
+        let (positions, weights) = cloud(&points);
         let motion =
-            mean_motion(Cloud { nodes: &nodes, weights: &weights }, x).map_err(|reason| self.refuse(&reason))?;
-        let slaves: Vec<u32> = cell.iter().map(|point| point.nodes[0]).collect();
-        let facet = self.mesh.surfaces[&self.pair.master].facets[landing.facet];
-        let masters =
-            landing.shape.map(|n| std::array::from_fn(|i| std::array::from_fn(|j| if i == j { -n } else { 0.0 })));
-        reduced.gap_operator.push(&[&slaves[..], &facet].concat(), &[&motion.displacement[..], &masters].concat());
+            mean_motion(Cloud { nodes: &positions, weights: &weights }, x).map_err(|reason| self.refuse(&reason))?;
+        let (mut nodes, mut blocks) = (Vec::new(), Vec::new());
+        for (&a, mean) in cell.iter().zip(&motion.displacement) {
+            let (own, shapes) = self.full.gap_operator.point(a);
+            let n_slaves = self.full.points[a].nodes.len();
+            nodes.extend_from_slice(&own[..n_slaves]);
+            blocks.extend(shapes[..n_slaves].iter().map(|shape| product(mean, shape)));
+        }
+        let slaves = distinct(&nodes);
+        nodes.extend_from_slice(&landing.master.nodes);
+        let master = |n: &f64| std::array::from_fn(|i| std::array::from_fn(|j| if i == j { -n } else { 0.0 }));
+        blocks.extend(landing.master.shape.iter().map(master));
+        reduced.gap_operator.push(&nodes, &blocks);
         reduced.points.push(ContactPoint {
-            pair: cell[0].pair,
+            pair: points[0].pair,
+            places: points.iter().flat_map(|point| point.places.iter().copied()).collect(),
             nodes: slaves,
             position: x,
-            law: self.law(cell, x, landing),
+            law: self.law(&points, x, landing),
         });
         Ok(())
     }
@@ -133,6 +145,12 @@ impl Site<'_> {
     }
 }
 
+/// The nodes in the order in which they come first, each once.
+fn distinct(nodes: &[u32]) -> Vec<u32> {
+    let mut seen = HashSet::new();
+    nodes.iter().copied().filter(|&n| seen.insert(n)).collect()
+}
+
 /// Positions and weights of a cell.
 fn cloud(cell: &[&ContactPoint]) -> (Vec<[f64; 3]>, Vec<f64>) {
     cell.iter().map(|point| (point.position, point.law.weight)).unzip()
@@ -151,7 +169,7 @@ fn outward(cell: &[&ContactPoint]) -> [f64; 3] {
 
 /// The connected piece of the slave surface on which each point lies, numbered in the order of the points.
 fn pieces(surface: &Surface, points: &[ContactPoint]) -> Vec<usize> {
-    let facets: Vec<Vec<u32>> = surface.facets.iter().map(|facet| facet.to_vec()).collect();
+    let facets: Vec<Vec<u32>> = surface.facets.iter().map(|facet| facet.nodes().to_vec()).collect();
     let (component_of, _) = separate_components(&facets);
     let mut number: HashMap<usize, usize> = HashMap::new();
     let of = |point: &ContactPoint| {

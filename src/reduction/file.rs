@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::contact::interface::{ContactPair, Statistics, TangentialKind};
+use crate::contact::surface_points::Place;
 use crate::contact::{ContactPoint, FrictionLaw, PointLaw, Tangential};
 use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
 use crate::model::NormalLaw;
@@ -224,7 +225,13 @@ fn read_contacts(group: &Group, pairs: &[ContactPair]) -> hdf5::Result<Vec<NodeC
                 speed => Tangential::Sliding { direction: direction[i], speed },
             },
         };
-        let point = ContactPoint { pair: pair[i] as usize, nodes: vec![i as u32], position: position[i], law };
+        let point = ContactPoint {
+            pair: pair[i] as usize,
+            places: vec![Place::Node(i as u32)],
+            nodes: vec![i as u32],
+            position: position[i],
+            law,
+        };
         Ok(NodeContact { point, displacement: displacement[i], normal_force: force[i] })
     };
     (0..pair.len()).map(of).collect()

@@ -27,7 +27,7 @@ fn facts(about: &About) -> Markup {
         dt { "Model" } (file(&about.model, &about.model_digest))
         @if !about.mesh.is_empty() {
             dt { "Mesh" } (file(&about.mesh, &about.mesh_digest))
-            dt { "Size" } dd { (about.n_nodes) " nodes, " (about.n_tets) " tetrahedra" }
+            dt { "Size" } dd { (about.n_nodes) " nodes, " (about.n_elements) " elements" }
         }
         dt { "Solved" } dd { (about.n_equations) " dofs on " (about.n_ranks) " rank" (plural) }
         dt { "Command" } dd { code { "squeal " (about.command) } }

@@ -90,8 +90,8 @@ pub struct About {
     pub mesh_digest: String,
     /// Nodes of the mesh; none of a super-element.
     pub n_nodes: usize,
-    /// Tetrahedra of the mesh.
-    pub n_tets: usize,
+    /// Elements of the mesh.
+    pub n_elements: usize,
     /// Equations solved, i.e. free displacements or generalised coordinates.
     pub n_equations: usize,
     /// Ranks that solved them.

@@ -90,7 +90,7 @@ fn about(frictions: Vec<f64>) -> About {
         mesh: "disc.msh".into(),
         mesh_digest: "cd".repeat(32),
         n_nodes: 4000,
-        n_tets: 2000,
+        n_elements: 2000,
         n_equations: 12000,
         n_ranks: 2,
         band: [0.0, 6000.0],

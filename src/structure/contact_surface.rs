@@ -2,18 +2,20 @@
 
 use std::collections::HashMap;
 
+use crate::contact::surface_points::{Place, places};
 use crate::contact::{ContactPoint, Interface, Response, Status};
-use crate::mesh::Mesh;
+use crate::element::FacetShape;
+use crate::mesh::{Facet, Mesh};
 use crate::results::ContactFaces;
 
-/// The slave facets of all pairs, each pair with nodes of its own: exact values at the contact points (midside nodes),
-/// the mean of the neighbours at corners.
+/// The slave facets of all pairs, each pair with nodes of its own. A node at a contact point has its values, any other
+/// the mean over the contact points next to it.
 #[derive(Default)]
 pub struct ContactSurface {
     /// The mesh's node behind each node of the surface.
     pub nodes: Vec<u32>,
     /// Facets, in nodes of the surface.
-    pub facets: Vec<[u32; 6]>,
+    pub facets: Vec<Facet>,
     /// Pair of each facet, in the interface's order.
     pub pairs: Vec<i32>,
     /// Values at the nodes.
@@ -31,6 +33,34 @@ pub struct Fields {
     pub status: Vec<i32>,
 }
 
+/// Pressure, traction and status of a contact point.
+type Values = (f64, [f64; 3], i32);
+
+/// Of a place without a contact point.
+const NOTHING: Values = (0.0, [0.0; 3], -1);
+
+/// Pairs of a facet's node and the contact point that it is at, or next to, in the order of `places`.
+const fn next_to(shape: FacetShape) -> &'static [(usize, usize)] {
+    match shape {
+        FacetShape::Triangle3 => &[(0, 0), (1, 1), (2, 2)],
+        FacetShape::Triangle6 => &[(3, 0), (4, 1), (5, 2), (0, 0), (0, 2), (1, 0), (1, 1), (2, 1), (2, 2)],
+        FacetShape::Quadrilateral4 => &[(0, 0), (1, 1), (2, 2), (3, 3)],
+        FacetShape::Quadrilateral8 => {
+            &[(0, 0), (1, 1), (2, 2), (3, 3), (4, 0), (4, 1), (5, 1), (5, 2), (6, 2), (6, 3), (7, 3), (7, 0)]
+        }
+    }
+}
+
+/// The triangles between a facet's nodes.
+const fn triangles(shape: FacetShape) -> &'static [[usize; 3]] {
+    match shape {
+        FacetShape::Triangle3 => &[[0, 1, 2]],
+        FacetShape::Triangle6 => &[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
+        FacetShape::Quadrilateral4 => &[[0, 1, 2], [0, 2, 3]],
+        FacetShape::Quadrilateral8 => &[[0, 4, 7], [4, 1, 5], [5, 2, 6], [6, 3, 7], [4, 5, 6], [4, 6, 7]],
+    }
+}
+
 impl Fields {
     fn nothing(n: usize) -> Fields {
         Fields { pressure: vec![0.0; n], traction: vec![[0.0; 3]; n], status: vec![-1; n] }
@@ -40,6 +70,18 @@ impl Fields {
         self.pressure.push(pressure);
         self.traction.push(traction);
         self.status.push(status);
+    }
+
+    /// Adds the values of a point next to a node; the status is the greatest.
+    fn add(&mut self, node: usize, (pressure, traction, status): Values) {
+        self.pressure[node] += pressure;
+        (0..3).for_each(|i| self.traction[node][i] += traction[i]);
+        self.status[node] = self.status[node].max(status);
+    }
+
+    fn divide(&mut self, node: usize, n: f64) {
+        self.pressure[node] /= n;
+        self.traction[node] = self.traction[node].map(|t| t / n);
     }
 
     /// The values at some of the nodes.
@@ -60,67 +102,58 @@ impl ContactSurface {
         for (number, pair) in interface.pairs.iter().enumerate() {
             let own = interface.points[pair.points.clone()].iter();
             let own = own.zip(responses.get(pair.points.clone()).unwrap_or_default());
-            let of_nodes = |(point, response)| {
+            let of_places = |(point, response)| {
                 let values = at(point, response);
-                point.nodes.iter().map(move |&node| (node, values))
+                point.places.iter().map(move |&place| (place, values))
             };
-            let values: HashMap<u32, _> = own.flat_map(of_nodes).collect();
+            let values: HashMap<Place, Values> = own.flat_map(of_places).collect();
             surface.add(&mesh.surfaces[&pair.slave].facets, number as i32, &values);
         }
         surface
     }
 
-    fn add(&mut self, facets: &[[u32; 6]], pair: i32, values: &HashMap<u32, (f64, [f64; 3], i32)>) {
+    fn add(&mut self, facets: &[Facet], pair: i32, values: &HashMap<Place, Values>) {
         let mut local: HashMap<u32, u32> = HashMap::new();
-        let first = self.facets.len();
-        for facet in facets {
-            let place = |&n: &u32| {
+        let mut count = vec![0.0; self.nodes.len()];
+        for (index, facet) in facets.iter().enumerate() {
+            let own = facet.renumbered(|n| {
                 *local.entry(n).or_insert_with(|| {
-                    let (pressure, traction, status) = values.get(&n).copied().unwrap_or((0.0, [0.0; 3], -1));
                     self.nodes.push(n);
-                    self.fields.push(pressure, traction, status);
+                    self.fields.push(0.0, [0.0; 3], -1);
+                    count.push(0.0);
                     self.nodes.len() as u32 - 1
                 })
-            };
-            let facet = facet.each_ref().map(place);
-            self.facets.push(facet);
+            });
+            let places = places(index, facet);
+            for &(node, point) in next_to(facet.shape()) {
+                let values = values.get(&places[point]).copied().unwrap_or(NOTHING);
+                let node = own.nodes()[node] as usize;
+                count[node] += 1.0;
+                self.fields.add(node, values);
+            }
+            self.facets.push(own);
             self.pairs.push(pair);
         }
-        self.fill_corners(first);
-    }
-
-    /// Corners take the mean over the midsides next to them.
-    fn fill_corners(&mut self, first: usize) {
-        let fields = &mut self.fields;
-        let mut count = vec![0.0; self.nodes.len()];
-        for facet in &self.facets[first..] {
-            for (corner, sides) in [(0, [3, 5]), (1, [3, 4]), (2, [4, 5])] {
-                let corner = facet[corner] as usize;
-                for side in sides.map(|s| facet[s] as usize) {
-                    count[corner] += 1.0;
-                    fields.pressure[corner] += fields.pressure[side];
-                    (0..3).for_each(|i| fields.traction[corner][i] += fields.traction[side][i]);
-                    fields.status[corner] = fields.status[corner].max(fields.status[side]);
-                }
-            }
-        }
         for (node, &n) in count.iter().enumerate().filter(|(_, n)| **n > 0.0) {
-            fields.pressure[node] /= n;
-            fields.traction[node] = fields.traction[node].map(|t| t / n);
+            self.fields.divide(node, n);
         }
     }
 
-    /// The surfaces as results keep them, each facet in four triangles between its six nodes.
+    /// The surfaces as results keep them, each facet in triangles between its nodes.
     pub fn faces(&self, mesh: &Mesh) -> ContactFaces {
-        const PARTS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
         let mut pair_of_node = vec![0; self.nodes.len()];
         for (facet, &pair) in self.facets.iter().zip(&self.pairs) {
-            facet.iter().for_each(|&node| pair_of_node[node as usize] = pair);
+            facet.nodes().iter().for_each(|&node| pair_of_node[node as usize] = pair);
         }
+        let of_facet = |facet: &Facet| {
+            let nodes = facet.nodes().to_vec();
+            triangles(facet.shape()).iter().map(move |triangle| triangle.map(|i| nodes[i]))
+        };
+        let pair_of_facet = |(facet, &pair): (&Facet, &i32)| vec![pair; triangles(facet.shape()).len()];
         ContactFaces {
             nodes: self.nodes.iter().map(|&n| mesh.nodes[n as usize]).collect(),
-            triangles: self.facets.iter().flat_map(|facet| PARTS.map(|part| part.map(|i| facet[i]))).collect(),
-            pair: self.pairs.iter().flat_map(|&pair| [pair; 4]).collect(),
+            triangles: self.facets.iter().flat_map(of_facet).collect(),
+            pair: self.facets.iter().zip(&self.pairs).flat_map(pair_of_facet).collect(),
             pair_of_node,
         }
     }
@@ -141,7 +174,7 @@ impl ContactSurface {
 }
 
 /// Pressure, traction and status of a point.
-fn at(point: &ContactPoint, response: &Response) -> (f64, [f64; 3], i32) {
+fn at(point: &ContactPoint, response: &Response) -> Values {
     let weight = point.law.weight;
     (response.normal_force / weight, response.force.map(|f| f / weight), status(response))
 }
@@ -162,13 +195,24 @@ mod tests {
     #[test]
     fn corners_take_the_mean_of_the_midsides_next_to_them() {
         let mut surface = ContactSurface::default();
-        let values =
-            HashMap::from([(13, (2.0, [1.0, 0.0, 0.0], 1)), (14, (4.0, [0.0; 3], 2)), (15, (6.0, [0.0; 3], 0))]);
-        surface.add(&[[10, 11, 12, 13, 14, 15]], 7, &values);
+        let values = [(13, (2.0, [1.0, 0.0, 0.0], 1)), (14, (4.0, [0.0; 3], 2)), (15, (6.0, [0.0; 3], 0))];
+        let values: HashMap<Place, Values> = values.into_iter().map(|(n, v)| (Place::Node(n), v)).collect();
+        surface.add(&[[10, 11, 12, 13, 14, 15].into()], 7, &values);
         assert_eq!(surface.nodes, [10, 11, 12, 13, 14, 15]);
         assert_eq!(surface.fields.pressure, [4.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
         assert_eq!(surface.fields.status, [1, 2, 2, 1, 2, 0]);
         let all = surface.on_mesh(20);
         assert_eq!((all.pressure[14], all.status[14], all.status[0]), (4.0, 2, -1));
+    }
+
+    #[test]
+    fn nodes_of_quadrilaterals_take_the_mean_of_the_points_next_to_them() {
+        let mut surface = ContactSurface::default();
+        let place = |facet, point| Place::Inside { facet, point };
+        let values = [1.0, 2.0, 3.0, 4.0].map(|p| (p, [0.0; 3], 1));
+        let values: HashMap<Place, Values> = (0..4).map(|k| (place(0, k), values[usize::from(k)])).collect();
+        surface.add(&[[0, 1, 2, 3, 4, 5, 6, 7].into(), [1, 8, 9, 2].into()], 0, &values);
+        assert_eq!(surface.fields.pressure[..8], [1.0, 1.0, 1.5, 4.0, 1.5, 2.5, 3.5, 2.5]);
+        assert_eq!((surface.fields.pressure[8], surface.fields.status[8]), (0.0, -1));
     }
 }

@@ -243,7 +243,7 @@ impl FullModel {
             mass: self.part_properties(comm, i).mass,
         };
         let parts = self.mesh.parts.iter().enumerate().map(part).collect();
-        let n_tets = comm.sum(self.own_tets().count());
+        let n_elements = comm.sum(self.own_elements().count());
         let [model_digest, mesh_digest] = [&self.model.file, &self.model.mesh_file]
             .map(|file| comm.agree(if comm.is_root() { digest(file) } else { Ok(String::new()) }));
         let file = &self.model.file;
@@ -256,7 +256,7 @@ impl FullModel {
             mesh: self.model.mesh_file.display().to_string(),
             mesh_digest: mesh_digest?,
             n_nodes: self.nodes.n_global(),
-            n_tets,
+            n_elements,
             parts,
             unloaded: self.is_unloaded(),
             warnings: plausibility::warnings(self, comm),

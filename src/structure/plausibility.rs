@@ -6,6 +6,7 @@
 use nalgebra::Matrix6;
 
 use super::FullModel;
+use crate::element::ElementKind;
 use crate::model::{Material, NormalLaw};
 use crate::native::Comm;
 
@@ -106,7 +107,32 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
         let neighbour = softest[0].min(softest[1]) / full.facet_size(&contact.slave, pair.statistics.area);
         contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())
     });
-    stiffness.chain(mass).chain(contacts).chain(size(full.extent(comm), model.mesh_unit)).collect()
+    let size = size(full.extent(comm), model.mesh_unit);
+    stiffness.chain(mass).chain(contacts).chain(size).chain(stiff_elements(full, comm)).collect()
+}
+
+/// Parts that have elements too stiff for modes that bend. Collective.
+fn stiff_elements(full: &FullModel, comm: &Comm) -> Vec<String> {
+    let n_kinds = ElementKind::ALL.len();
+    let mut counts = vec![0.0; full.mesh.parts.len() * n_kinds];
+    for element in full.own_elements().map(|e| full.mesh.elements.get(e)) {
+        counts[element.part as usize * n_kinds + element.kind as usize] += 1.0;
+    }
+    comm.sum_all(&mut counts);
+    let parts = full.mesh.parts.iter().zip(counts.chunks_exact(n_kinds));
+    parts.flat_map(|(part, counts)| too_stiff(part, counts)).collect()
+}
+
+/// A part's elements that are too stiff, from its number of elements of each kind.
+fn too_stiff(part: &str, counts: &[f64]) -> Vec<String> {
+    let stiff = |(kind, &n): (ElementKind, &f64)| {
+        let why = kind.too_stiff().filter(|_| n > 0.0)?;
+        Some(format!(
+            "part {part:?} has {n} elements {}, too stiff for squeal: {why}. Mesh with second-order elements, or with C3D8I",
+            kind.name()
+        ))
+    };
+    ElementKind::ALL.into_iter().zip(counts).filter_map(stiff).collect()
 }
 
 impl FullModel {
@@ -134,6 +160,19 @@ impl FullModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn constant_strain_and_locking_elements_are_named_and_others_are_not() {
+        for kind in ElementKind::ALL {
+            let counts: Vec<f64> =
+                ElementKind::ALL.iter().map(|&other| if other == kind { 7.0 } else { 0.0 }).collect();
+            let warnings = too_stiff("disc", &counts);
+            let stiff = matches!(kind, ElementKind::C3D4 | ElementKind::C3D6 | ElementKind::C3D8);
+            assert_eq!(warnings.len(), usize::from(stiff), "{warnings:?}");
+            let start = format!("part \"disc\" has 7 elements {}, too stiff for squeal", kind.name());
+            assert!(warnings.iter().all(|warning| warning.starts_with(&start)), "{warnings:?}");
+        }
+    }
 
     /// Requires a warning that says this.
     #[track_caller]

@@ -45,8 +45,8 @@ fn equilibria_balance_at_every_friction() {
         let rotation = &brake.model.rotations[0];
         let disc = brake.mesh.parts.iter().position(|part| *part == rotation.part).unwrap();
         let mut on_disc = vec![false; points.len()];
-        for (tet, _) in brake.mesh.tets.iter().zip(&brake.mesh.tet_part).filter(|(_, p)| **p as usize == disc) {
-            tet.iter().for_each(|&n| on_disc[n as usize] = true);
+        for element in brake.mesh.elements.iter().filter(|element| element.part as usize == disc) {
+            element.nodes.iter().for_each(|&n| on_disc[n as usize] = true);
         }
         let held = balance.support_torque(&comm, points, |n| on_disc[n as usize], rotation.through, rotation.axis);
         let pairs = brake.interface.pairs.iter().zip(&balance.pairs).filter(|(pair, _)| pair.is_sliding());

@@ -27,10 +27,10 @@ use std::process::Command;
 use crate::support::data;
 use nalgebra::Matrix3;
 use squeal::analysis::Sweep;
-use squeal::assembly::{Connectivity, ElementMatrices, Elements, System, Tets};
+use squeal::assembly::{Connectivity, ElementMatrices, Elements, Solids, System};
 use squeal::contact::{Response, Status};
 use squeal::element::quadrature::TETRAHEDRON_4;
-use squeal::element::tet10;
+use squeal::element::{Shape, solid};
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
@@ -67,9 +67,9 @@ fn parts(out: &mut String, brake: &FullModel) {
     *out += "*NSET,NSET=FIRST\n1\n";
     for (p, name) in brake.mesh.parts.iter().enumerate() {
         writeln!(out, "*ELEMENT,TYPE=C3D10,ELSET=PART{p}").unwrap();
-        for (e, tet) in brake.mesh.tets.iter().enumerate().filter(|(e, _)| brake.mesh.tet_part[*e] as usize == p) {
-            let nodes = tet.map(|node| (node + 1).to_string()).join(",");
-            writeln!(out, "{},{nodes}", e + 1).unwrap();
+        for (e, element) in brake.mesh.elements.iter().enumerate().filter(|(_, element)| element.part as usize == p) {
+            let nodes: Vec<String> = element.nodes.iter().map(|node| (node + 1).to_string()).collect();
+            writeln!(out, "{},{}", e + 1, nodes.join(",")).unwrap();
         }
         let material = &brake.model.parts.iter().find(|part| part.name == *name).unwrap().material;
         // Upper triangle by columns, in the order xx yy zz xy xz yz; ours ends with yz zx.
@@ -87,7 +87,7 @@ fn parts(out: &mut String, brake: &FullModel) {
 fn contacts(out: &mut String, brake: &FullModel, responses: &[Response]) {
     let interface = &brake.interface;
     let closed: Vec<usize> = (0..responses.len()).filter(|&a| responses[a].status != Status::Open).collect();
-    let (n_nodes, n_tets) = (brake.mesh.nodes.len(), brake.mesh.tets.len());
+    let (n_nodes, n_elements) = (brake.mesh.nodes.len(), brake.mesh.elements.len());
     if closed.is_empty() {
         return;
     }
@@ -95,7 +95,7 @@ fn contacts(out: &mut String, brake: &FullModel, responses: &[Response]) {
     *out += "*NODE\n";
     (0..closed.len()).for_each(|k| writeln!(out, "{},0,0,0", number(k)).unwrap());
     *out += "*ELEMENT,TYPE=SPRING1,ELSET=SPRINGS\n";
-    (0..closed.len()).for_each(|k| writeln!(out, "{},{}", n_tets + k + 1, number(k)).unwrap());
+    (0..closed.len()).for_each(|k| writeln!(out, "{},{}", n_elements + k + 1, number(k)).unwrap());
     *out += "*SPRING,ELSET=SPRINGS\n1\n1.\n*BOUNDARY\n";
     (0..closed.len()).for_each(|k| writeln!(out, "{},2,3", number(k)).unwrap());
     for (k, &a) in closed.iter().enumerate() {
@@ -134,17 +134,17 @@ fn calculix(deck: &str) -> Vec<f64> {
 
 /// Tetrahedra whose mass is integrated by 4 points, `m_ab = sum_q rho w detJ N_a N_b`, as ccx does.
 struct FourPointMass<'a> {
-    tets: Tets<'a>,
+    solids: Solids<'a>,
     mesh: &'a Mesh,
 }
 
 impl Connectivity for FourPointMass<'_> {
     fn len(&self) -> usize {
-        self.tets.len()
+        self.solids.len()
     }
 
     fn nodes(&self, e: usize) -> &[u32] {
-        self.tets.nodes(e)
+        self.solids.nodes(e)
     }
 }
 
@@ -154,14 +154,17 @@ impl Elements for FourPointMass<'_> {
     }
 
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
-        self.tets.matrices(e, out);
+        self.solids.matrices(e, out);
         out.m.fill(0.0);
-        let x = self.mesh.tet_nodes(e);
+        let x = self.mesh.element_nodes(e);
+        let x: &[[f64; 3]; 10] = x.as_ref().try_into().unwrap();
+        let interpolation = Shape::Tetrahedron10.interpolation();
         for point in TETRAHEDRON_4 {
-            let n = tet10::shape(point.at);
-            let det = Matrix3::from(tet10::jacobian(&x, &tet10::gradients(point.at))).determinant();
+            let n = interpolation.shape(point.at);
+            let gradients = interpolation.gradients(point.at);
+            let det = Matrix3::from(solid::jacobian(x, gradients.first_chunk().unwrap())).determinant();
             for at in 0..100 {
-                out.m[at] += self.tets.part(e).material.density * point.weight * det * n[at / 10] * n[at % 10];
+                out.m[at] += self.solids.part(e).material.density * point.weight * det * n[at / 10] * n[at % 10];
             }
         }
     }
@@ -181,8 +184,8 @@ fn ours(brake: &FullModel, system: &System) -> (Vec<f64>, Vec<Response>) {
 fn compare(comm: &Comm, brake: &FullModel) {
     let families = brake.families().unwrap();
     let (exact, responses) = ours(brake, &brake.assemble(comm, &families).unwrap());
-    let tets = FourPointMass { tets: Tets::new(&brake.model, &brake.mesh).unwrap(), mesh: &brake.mesh };
-    let (same, _) = ours(brake, &brake.assemble_families(comm, &[&tets, families.links]).unwrap());
+    let solids = FourPointMass { solids: Solids::new(&brake.model, &brake.mesh).unwrap(), mesh: &brake.mesh };
+    let (same, _) = ours(brake, &brake.assemble_families(comm, &[&solids, families.links]).unwrap());
     let theirs = calculix(&deck(brake, &responses));
     assert_eq!(theirs.len(), N_MODES);
     println!("mode     CalculiX Hz       squeal Hz  difference  with 4 points for the mass");

@@ -81,7 +81,7 @@ fn belt(friction_law: FrictionLaw) -> Interface {
     };
     let mut gap_operator = GapOperator::new();
     gap_operator.push(&[0], &[[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]]);
-    let points = vec![ContactPoint { pair: 0, nodes: vec![0], position: [0.0; 3], law }];
+    let points = vec![ContactPoint { pair: 0, places: vec![], nodes: vec![0], position: [0.0; 3], law }];
     Interface { pairs: vec![pair], points, gap_operator }
 }
 

@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 use crate::support::block::Block;
 use crate::support::{brake, nodes_where};
 use squeal::element::quadrature::TETRAHEDRON_14;
-use squeal::element::tet10;
+use squeal::element::{Shape, solid};
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Factor, FactorKind, Session};
 
@@ -57,12 +57,15 @@ fn body_force(x: [f64; 3]) -> [f64; 3] {
 }
 
 /// Calls `visit(e, N, x, w detJ)` at each integration point.
-fn integrate(mesh: &Mesh, mut visit: impl FnMut(usize, [f64; 10], [f64; 3], f64)) {
-    for e in 0..mesh.tets.len() {
-        let x = mesh.tet_nodes(e);
-        let volume = tet10::volume(&x); // straight edges: detJ is constant
+fn integrate(mesh: &Mesh, mut visit: impl FnMut(usize, &[f64], [f64; 3], f64)) {
+    let shape = Shape::Tetrahedron10;
+    for e in 0..mesh.elements.len() {
+        let x = mesh.element_nodes(e);
+        let volume = solid::volume(shape, &x); // straight edges: detJ is constant
         for point in &TETRAHEDRON_14 {
-            visit(e, tet10::shape(point.at), tet10::position(&x, point.at), 6.0 * volume * point.weight);
+            let n = shape.interpolation().shape(point.at);
+            let position = [0, 1, 2].map(|i| x.iter().zip(n).map(|(x, n)| n * x[i]).sum());
+            visit(e, &n[..10], position, 6.0 * volume * point.weight);
         }
     }
 }
@@ -77,7 +80,8 @@ fn error(comm: &Comm, n: usize) -> f64 {
     let mut loads = Vec::new();
     integrate(&brake.mesh, |e, shape, x, weight| {
         let f = body_force(x);
-        loads.extend((0..10).map(|a| (brake.mesh.tets[e][a], f.map(|f| weight * shape[a] * f))));
+        let nodes = brake.mesh.elements.get(e).nodes.iter();
+        loads.extend(nodes.zip(shape).map(|(&n, shape)| (n, f.map(|f| weight * shape * f))));
     });
     brake.loads = loads;
     let families = brake.families().unwrap();
@@ -92,7 +96,8 @@ fn error(comm: &Comm, n: usize) -> f64 {
     integrate(&brake.mesh, |e, shape, x, weight| {
         let exact = solution(x);
         for i in 0..3 {
-            let value: f64 = (0..10).map(|a| shape[a] * u[brake.mesh.tets[e][a] as usize][i]).sum();
+            let nodes = brake.mesh.elements.get(e).nodes.iter();
+            let value: f64 = nodes.zip(shape).map(|(&n, shape)| shape * u[n as usize][i]).sum();
             off += weight * (value - exact[i]).powi(2);
             norm += weight * exact[i].powi(2);
         }

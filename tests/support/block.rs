@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use squeal::element::tet10::{self, FACES};
+use squeal::element::{ElementKind, Shape, solid};
 use squeal::mesh::{Mesh, Surface};
 
 /// A block of `cells` cells of six tetrahedra each (Kuhn's), the unit cube mapped by `map`.
@@ -42,15 +42,15 @@ impl Block<'_> {
         let mut sides: BTreeMap<String, Surface> = BTreeMap::new();
         for lattice in self.tets() {
             let tet = lattice.map(node);
-            let index = mesh.tets.len() as u32;
-            mesh.tets.push(tet);
-            mesh.tet_part.push(part);
-            let inverted = tet10::is_inverted(&mesh.tet_nodes(index as usize));
+            let index = mesh.elements.len();
+            mesh.elements.push(ElementKind::C3D10, part, &tet);
+            let inverted = solid::is_inverted(Shape::Tetrahedron10, &mesh.element_nodes(index));
             assert!(!inverted, "{}: the map turns the block inside out", self.part);
-            for face in FACES {
-                if let Some(side) = self.side(face.map(|a| lattice[a])) {
+            for face in Shape::Tetrahedron10.faces() {
+                let places: Vec<[usize; 3]> = face.iter().map(|&a| lattice[a]).collect();
+                if let Some(side) = self.side(&places) {
                     let surface = sides.entry(format!("{}_{side}", self.part)).or_default();
-                    surface.facets.push(face.map(|a| tet[a]));
+                    surface.facets.push(face.iter().map(|&a| tet[a]).collect());
                     surface.parts.push(part);
                 }
             }
@@ -71,8 +71,8 @@ impl Block<'_> {
         cells.flat_map(|cell| PATHS.map(|path| tet_of(cell, path)))
     }
 
-    /// The side on which all six places lie.
-    fn side(&self, face: [[usize; 3]; 6]) -> Option<String> {
+    /// The side on which all places lie.
+    fn side(&self, face: &[[usize; 3]]) -> Option<String> {
         let all = |axis: usize, value: usize| face.iter().all(|at| at[axis] == value);
         let axes = (0..3).filter(|&axis| !(self.wraps && axis == 1));
         axes.flat_map(|axis| [(axis, 0, 0), (axis, 1, 2 * self.cells[axis])])

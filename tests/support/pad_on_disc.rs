@@ -62,11 +62,13 @@ impl PadOnDisc {
 
     fn elements(&self, out: &mut String, mesh: &Mesh) {
         let (tet, triangle, tet_kind, triangle_kind) = if self.quadratic { (10, 6, 11, 9) } else { (4, 3, 4, 2) };
-        let facets = |name: &str| mesh.surfaces[name].facets.iter().map(|facet| facet[..triangle].to_vec()).collect();
+        let facets =
+            |name: &str| mesh.surfaces[name].facets.iter().map(|facet| facet.nodes()[..triangle].to_vec()).collect();
         let tets = |part: u32| {
-            let own = mesh.tets.iter().zip(&mesh.tet_part).filter(|(_, of)| **of == part);
+            let own = mesh.elements.iter().filter(|element| element.part == part);
             // Gmsh has the last two midsides the other way round.
-            own.map(|(&[a, b, c, d, e, f, g, h, i, j], _)| [a, b, c, d, e, f, g, h, j, i][..tet].to_vec()).collect()
+            own.map(|element| [0, 1, 2, 3, 4, 5, 6, 7, 9, 8][..tet].iter().map(|&a| element.nodes[a]).collect())
+                .collect()
         };
         let surfaces = SURFACES.iter().zip(1..).map(|(name, entity)| (2, entity, triangle_kind, facets(name)));
         let parts = [(3, 1, tet_kind, tets(0)), (3, 2, tet_kind, tets(1))];

@@ -26,7 +26,7 @@ use crate::support::{assert_close, data};
 use serde_json::Value;
 use squeal::analysis::Sweep;
 use squeal::assembly::System;
-use squeal::element::tet10;
+use squeal::element::solid;
 use squeal::equilibrium::{Balance, Equilibrium};
 use squeal::native::{Comm, Session};
 use squeal::stability::{Band, Mode};
@@ -93,11 +93,11 @@ fn an_independent_implementation_agrees_at_every_friction() {
 fn compare_model(brake: &FullModel, reference: &Value) {
     let mesh = &brake.mesh;
     assert_eq!(mesh.nodes.len() as u64, reference["nodes"].as_u64().unwrap());
-    assert_eq!(mesh.tets.len() as u64, reference["tets"].as_u64().unwrap());
+    assert_eq!(mesh.elements.len() as u64, reference["tets"].as_u64().unwrap());
     for (index, name) in mesh.parts.iter().enumerate() {
         let part = brake.model.parts.iter().find(|part| part.name == *name).unwrap();
-        let own = (0..mesh.tets.len()).filter(|&e| mesh.tet_part[e] as usize == index);
-        let volume: f64 = own.map(|e| tet10::volume(&mesh.tet_nodes(e))).sum();
+        let own = mesh.elements.iter().enumerate().filter(|(_, element)| element.part as usize == index);
+        let volume: f64 = own.map(|(e, element)| solid::volume(element.shape(), &mesh.element_nodes(e))).sum();
         assert_close(name, volume * part.material.density, number(&reference["mass_kg"][name]), 1e-12);
     }
     for (i, pair) in brake.interface.pairs.iter().enumerate() {

@@ -90,7 +90,9 @@ impl GmshType {
     pub fn advice(&self) -> &'static str {
         match self.number {
             10 | 12 | 13 => "Set Mesh.SecondOrderIncomplete = 1 and mesh again",
-            7 | 14 | 19 => "Pyramids are not analysed: mesh the part with hexahedra or tetrahedra alone, with surfaces of its own",
+            7 | 14 | 19 => {
+                "Pyramids are not analysed: mesh the part with hexahedra or tetrahedra alone, with surfaces of its own"
+            }
             _ => "Mesh with tetrahedra, hexahedra or wedges of first or second order (Mesh.ElementOrder = 2)",
         }
     }
@@ -105,9 +107,9 @@ mod tests {
         match shape {
             Shape::Tetrahedron10 => &[[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [1, 3]],
             Shape::Wedge15 => &[[0, 1], [0, 2], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [3, 5], [4, 5]],
-            Shape::Hexahedron20 => &[
-                [0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7],
-            ],
+            Shape::Hexahedron20 => {
+                &[[0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7]]
+            }
             _ => &[],
         }
     }

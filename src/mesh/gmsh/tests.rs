@@ -217,7 +217,11 @@ fn other_elements_are_named() {
     let pyramid = said(one_element(7, 5).as_bytes());
     assert!(pyramid.contains("the part \"block\" has 5-node pyramids, which are not analysed. Pyramids"), "{pyramid}");
     let full = said(one_element(12, 27).as_bytes());
-    assert!(full.ends_with("has 27-node hexahedra, which are not analysed. Set Mesh.SecondOrderIncomplete = 1 and mesh again"));
+    assert!(
+        full.ends_with(
+            "has 27-node hexahedra, which are not analysed. Set Mesh.SecondOrderIncomplete = 1 and mesh again"
+        )
+    );
     assert!(said(one_element(77, 4).as_bytes()).contains("unknown Gmsh element type 77"));
 }
 

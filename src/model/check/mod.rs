@@ -135,7 +135,7 @@ impl ModelCheck<'_> {
         if !mesh.surfaces[name].inner.is_empty() {
             let (inner, all) = (mesh.surfaces[name].inner.len(), mesh.surfaces[name].facets.len());
             let what =
-                format!("{inner} of {all} facets of {name:?} lie between two tetrahedra, not on the skin ({item})");
+                format!("{inner} of {all} facets of {name:?} lie between two elements, not on the skin ({item})");
             self.complain(line, format!("{what}. Mesh the two parts apart, without common nodes"));
             return None;
         }

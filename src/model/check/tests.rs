@@ -197,7 +197,7 @@ fn contact_surfaces_lie_on_the_skin() {
     assert_eq!(
         said(GOOD, &mesh),
         format!(
-            "brake.toml:26: 1 of {n_facets} facets of \"disc_inner_face\" lie between two tetrahedra, not on the skin \
+            "brake.toml:26: 1 of {n_facets} facets of \"disc_inner_face\" lie between two elements, not on the skin \
              (contact \"inner\"). Mesh the two parts apart, without common nodes"
         )
     );

@@ -51,7 +51,9 @@ pub fn partition(elements: Lists, n_nodes: usize, n_parts: usize, n_common: i32)
         )
     };
     if status != 1 {
-        return Err(Error::library("METIS")(format!("PartMeshDual failed with code {status} on {n_elements} elements")));
+        return Err(Error::library("METIS")(format!(
+            "PartMeshDual failed with code {status} on {n_elements} elements"
+        )));
     }
     Ok(of_nodes.into_iter().map(|part| part as u32).collect())
 }
