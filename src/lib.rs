@@ -1,7 +1,7 @@
 //! Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake, on PETSc, SLEPc and
 //! MUMPS.
 //!
-//! A brake squeals when friction couples two modes. The model: parts of 10-node tetrahedra, pads pressed against a
+//! A brake squeals when friction couples two modes. The model: parts of solid elements, pads pressed against a
 //! turning disc by penalty contact with Coulomb friction; its static equilibrium; the linearised, damped quadratic
 //! eigenproblem about it; and a sweep of the friction coefficient. Source of the formulation: Fazio, Nacivet and Sinou,
 //! *A finite element model reduction based on super-elements for brake squeal study*, ISMA 2014.
@@ -49,7 +49,7 @@
 //! | `algebra` | vectors of three and matrices of 3 x 3 | |
 //! | [`native`] | the only `unsafe`: MPI, LAPACK, PETSc, SLEPc, MUMPS, METIS | [`native::Session::start`] |
 //! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
-//! | [`element`] | tetrahedron, facet, quadrature, couplings: pure functions | [`element::tet10`] |
+//! | [`element`] | solid elements, facets, quadrature, couplings: pure functions | [`element::solid`] |
 //! | [`mesh`] | nodes, elements by part, surfaces; Gmsh meshes | [`mesh::read`] |
 //! | [`model`] | what is analysed, from the user's file, checked, in SI units | [`model::read`] |
 //! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
@@ -78,7 +78,7 @@
 //!
 //! The first rank reads the mesh and cuts it
 //! by METIS, numbers the nodes rank by rank, and sends each rank its piece: the nodes that the rank owns, all
-//! tetrahedra that touch them, and everything that has a name ([`mesh::Piece`]). So each rank owns a range of rows,
+//! elements that touch them, and everything that has a name ([`mesh::Piece`]). So each rank owns a range of rows,
 //! computes the elements that touch them without any communication, and writes its own piece of the results. Surfaces
 //! are on every rank, and so are the contact points and their state, which grow with the power 2/3 of the volume; ranks
 //! divide the search for them and exchange what they found.

@@ -6,6 +6,7 @@ use crate::mesh::{self, Facet, Mesh, Surface};
 use crate::model::{Contact, Model, NormalLaw, Rotation};
 use nalgebra::Vector3;
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A facet of any shape and of about unit size whose nodes all lie a little off their places.
@@ -55,6 +56,39 @@ pub fn patch(nodes: &mut Vec<[f64; 3]>, [nu, nv]: [usize; 2], map: impl Fn(f64, 
         surface.facets.push([a, c, d, middle, north, west].into());
     }
     surface.parts = vec![0; surface.facets.len()];
+    surface
+}
+
+/// As [`patch`] with facets of any shape: `nu nv` quadrilaterals, or twice as many triangles.
+pub fn patch_of(
+    shape: FacetShape,
+    nodes: &mut Vec<[f64; 3]>,
+    n: [usize; 2],
+    map: impl Fn(f64, f64) -> [f64; 3],
+) -> Surface {
+    let mut quadratic = Vec::new();
+    let mut surface = patch(&mut quadratic, n, map);
+    if !shape.is_triangle() {
+        let halves: Vec<[u32; 6]> =
+            surface.facets.iter().map(|facet| facet.nodes().try_into().expect("six nodes")).collect();
+        let whole = |pair: &[[u32; 6]]| {
+            let ([a, b, c, south, east, _], [_, _, d, _, north, west]) = (pair[0], pair[1]);
+            Facet::from([a, b, c, d, south, east, north, west])
+        };
+        surface.facets = halves.chunks_exact(2).map(whole).collect();
+        surface.parts.truncate(surface.facets.len());
+    }
+    let n_kept = shape.n_nodes();
+    surface.facets.iter_mut().for_each(|facet| *facet = facet.nodes()[..n_kept].iter().copied().collect());
+    let mut place = BTreeMap::new();
+    for facet in &mut surface.facets {
+        *facet = facet.renumbered(|n| {
+            *place.entry(n).or_insert_with(|| {
+                nodes.push(quadratic[n as usize]);
+                nodes.len() as u32 - 1
+            })
+        });
+    }
     surface
 }
 

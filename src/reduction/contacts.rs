@@ -184,7 +184,8 @@ mod tests {
     use super::*;
     use crate::algebra::{cross, norm, sub};
     use crate::contact::search::Alone;
-    use crate::contact::testing::{contact, model, pads_on_disc};
+    use crate::contact::testing::{contact, flipped, model, pads_on_disc, patch_of, skin};
+    use crate::element::FacetShape;
 
     fn pads(n: usize) -> Result<(Interface, Interface, Mesh)> {
         let mesh = pads_on_disc();
@@ -243,6 +244,33 @@ mod tests {
             });
             assert!(norm(sub(sums[0], force)) < 1e-13 && norm(sub(sums[2], force.map(|f| -f))) < 1e-13);
             assert!(norm(sums[1]) < 1e-15 && norm(sums[3]) < 1e-15, "{sums:?}");
+        }
+    }
+
+    /// Reference nodes on pads whose contact points lie inside of quadrilaterals, so that a cell shares nodes with others.
+    #[test]
+    fn quadrilaterals_give_rigid_motions_and_forces_exactly() {
+        let mut nodes = Vec::new();
+        let face = |x: f64, z: f64| move |u: f64, v: f64| [x + 0.05 * u, 0.1 + 0.04 * v, z];
+        let pad = flipped(&patch_of(FacetShape::Quadrilateral8, &mut nodes, [6, 5], face(0.0, 0.0)));
+        let disc = patch_of(FacetShape::Quadrilateral4, &mut nodes, [7, 7], face(0.0, 0.0));
+        let mesh = skin(nodes, vec![("pad_face", "pad", pad), ("disc_face", "disc", disc)]);
+        let model = model(vec![contact("pad", "pad_face", "disc_face")], true);
+        let full = Interface::build(&model, &mesh, &Alone).unwrap();
+        assert_eq!(full.points.len(), 120);
+        let reduced = reduce(&model, &mesh, &full, 9).unwrap();
+        let places: usize = reduced.points.iter().map(|point| point.places.len()).sum();
+        assert_eq!(places, 120);
+        let turn = [0.01, 0.02, -0.03];
+        for (a, point) in reduced.points.iter().enumerate() {
+            let rigid = |n: u32| if point.nodes.contains(&n) { cross(turn, mesh.nodes[n as usize]) } else { [0.0; 3] };
+            assert!(norm(sub(reduced.gap_operator.gap(a, rigid), cross(turn, point.position))) < 1e-15);
+            let mut moment = [0.0; 3];
+            reduced.gap_operator.spread(a, [3.0, -1.0, 2.0], |n, f| {
+                let own = cross(sub(mesh.nodes[n as usize], point.position), f);
+                (0..3).filter(|_| point.nodes.contains(&n)).for_each(|i| moment[i] += own[i]);
+            });
+            assert!(norm(moment) < 1e-15, "{moment:?}");
         }
     }
 

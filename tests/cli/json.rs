@@ -32,7 +32,7 @@ fn check_tells_what_a_model_is_on_two_ranks() {
     assert!((check["sum_of_loads_n"][2].as_f64().unwrap() + 1000.0).abs() < 1e-9);
     let two: Value =
         serde_json::from_str(&place.run_on(2, &["check", "brake.toml", "--json", "--contacts", "4"]).out).unwrap();
-    assert_eq!(two["parts"][1]["tetrahedra"], check["parts"][1]["tetrahedra"]);
+    assert_eq!(two["parts"][1]["elements"], check["parts"][1]["elements"]);
 }
 
 /// The columns of the tables are the keys.

@@ -26,13 +26,14 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
-use crate::support::data;
+use crate::support::block::Block;
+use crate::support::{self, data};
 use nalgebra::Matrix3;
 use squeal::analysis::Sweep;
 use squeal::assembly::{Connectivity, ElementMatrices, Elements, Solids, System};
 use squeal::contact::{Response, Status};
 use squeal::element::quadrature::TETRAHEDRON_4;
-use squeal::element::{Shape, solid};
+use squeal::element::{ElementKind, Shape, solid};
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
@@ -68,10 +69,12 @@ fn deck(brake: &FullModel, responses: &[Response]) -> String {
 fn parts(out: &mut String, brake: &FullModel) {
     *out += "*NSET,NSET=FIRST\n1\n";
     for (p, name) in brake.mesh.parts.iter().enumerate() {
-        writeln!(out, "*ELEMENT,TYPE=C3D10,ELSET=PART{p}").unwrap();
+        let kind = brake.mesh.elements.iter().find(|element| element.part as usize == p).unwrap().kind.name();
+        writeln!(out, "*ELEMENT,TYPE={kind},ELSET=PART{p}").unwrap();
         for (e, element) in brake.mesh.elements.iter().enumerate().filter(|(_, element)| element.part as usize == p) {
             let nodes: Vec<String> = element.nodes.iter().map(|node| (node + 1).to_string()).collect();
-            writeln!(out, "{},{}", e + 1, nodes.join(",")).unwrap();
+            let lines: Vec<String> = nodes.chunks(10).map(|line| line.join(",")).collect();
+            writeln!(out, "{},{}", e + 1, lines.join(",\n")).unwrap();
         }
         let material = &brake.model.parts.iter().find(|part| part.name == *name).unwrap().material;
         writeln!(out, "*MATERIAL,NAME=MATERIAL{p}\n{}", elastic(&material.elasticity)).unwrap();
@@ -239,4 +242,41 @@ fn calculix_finds_the_modes_of_parts_of_any_elasticity() {
     let mut brake = FullModel::read(&comm, Path::new(&file)).unwrap();
     brake.model.band = [0.0, 14000.0];
     compare(&comm, &brake);
+}
+
+const BEAMS: &str = r#"
+[material.iron]
+young = 110e9
+poisson = 0.27
+density = 7100
+[part.full]
+material = "iron"
+[part.linear]
+material = "iron"
+[[fix]]
+nodes = "full_x0"
+axes = "xyz"
+[[fix]]
+nodes = "linear_x0"
+axes = "xyz"
+[stability]
+band = [0, 60e3]
+"#;
+
+/// Two curved cantilevers, of C3D20 and of C3D8, in one mesh: kinds whose mass has the same points in CalculiX.
+#[test]
+fn calculix_finds_the_modes_of_mixed_hexahedra() {
+    let comm = Session::start(&[]).unwrap();
+    let mut mesh = Mesh::default();
+    let bent = |x: [f64; 3]| [0.1 * x[0], 0.02 * x[1] + 0.03 * x[0] * x[0], 0.015 * x[2] * (1.2 - 0.4 * x[0])];
+    let aside = |x: [f64; 3]| bent(x).map(|x| 1.3 * x + 0.3);
+    Block { part: "full", cells: [6, 2, 1], wraps: false, map: &bent }.add_solids_to(&mut mesh, ElementKind::C3D20);
+    Block { part: "linear", cells: [9, 2, 3], wraps: false, map: &aside }.add_solids_to(&mut mesh, ElementKind::C3D8);
+    let brake = support::brake(BEAMS, mesh);
+    let (found, responses) = ours(&brake, &brake.assemble(&comm, &brake.families().unwrap()).unwrap());
+    let theirs = calculix(&deck(&brake, &responses));
+    for (i, theirs) in theirs.iter().enumerate() {
+        println!("{:4}  {theirs:14.7}  {:14.7}  {:+10.1e}", i + 1, found[i], found[i] / theirs - 1.0);
+        assert!((found[i] / theirs - 1.0).abs() < SAME, "mode {}", i + 1);
+    }
 }

@@ -196,7 +196,7 @@ fn quoted_tables_have_the_headings_of_the_program() {
     let printed = words([place.run(&["check", "brake.toml"]).out, run("static"), run("stability")].concat());
     let quoting = [Page::read(&root().join("README.md")), manual("first-brake.md")];
     let quoted: Vec<String> = quoting.iter().flat_map(|page| page.text.lines()).map(words).collect();
-    for (heading, n) in [("part tets", 1), ("pair kind", 1), ("pair open", 1), ("friction modes", 2)] {
+    for (heading, n) in [("part elements", 1), ("pair kind", 1), ("pair open", 1), ("friction modes", 2)] {
         let lines: Vec<&String> = quoted.iter().filter(|line| line.starts_with(heading)).collect();
         assert_eq!(lines.len(), n, "{heading}");
         assert!(lines.iter().all(|line| printed.contains(*line)), "{lines:?} is not in: {printed}");

@@ -1,4 +1,4 @@
-//! Blocks of 10-node tetrahedra.
+//! Blocks of 10-node tetrahedra, or of any other kind of element.
 
 use std::collections::BTreeMap;
 
@@ -58,6 +58,49 @@ impl Block<'_> {
         mesh.surfaces.append(&mut sides);
     }
 
+    /// As [`Block::add_to`] with elements of any kind: each cell is one hexahedron, two wedges or six tetrahedra.
+    pub fn add_solids_to(&self, mesh: &mut Mesh, kind: ElementKind) {
+        let (part, shape, n) = (mesh.parts.len() as u32, kind.shape(), self.n_points());
+        mesh.parts.push(self.part.into());
+        let mut numbers: BTreeMap<[usize; 3], u32> = BTreeMap::new();
+        let mut sides: BTreeMap<String, Surface> = BTreeMap::new();
+        for lattice in self.solids(shape) {
+            let mut number = |at: [usize; 3]| {
+                *numbers.entry([0, 1, 2].map(|a| at[a] % n[a])).or_insert_with(|| {
+                    mesh.nodes.push((self.map)([0, 1, 2].map(|a| at[a] as f64 / (2 * self.cells[a]) as f64)));
+                    mesh.nodes.len() as u32 - 1
+                })
+            };
+            let nodes: Vec<u32> = lattice.iter().map(|&at| number(at)).collect();
+            mesh.elements.push(kind, part, &nodes);
+            let inverted = solid::is_inverted(shape, &mesh.element_nodes(mesh.elements.len() - 1));
+            assert!(!inverted, "{}: the map turns the block inside out", self.part);
+            for face in shape.faces() {
+                let places: Vec<[usize; 3]> = face.iter().map(|&a| lattice[a]).collect();
+                if let Some(side) = self.side(&places) {
+                    let surface = sides.entry(format!("{}_{side}", self.part)).or_default();
+                    surface.facets.push(face.iter().map(|&a| nodes[a]).collect());
+                    surface.parts.push(part);
+                }
+            }
+        }
+        mesh.surfaces.append(&mut sides);
+    }
+
+    /// Each element's places on the lattice.
+    fn solids(&self, shape: Shape) -> Vec<Vec<[usize; 3]>> {
+        let [nx, ny, nz] = self.cells;
+        let cells = (0..nx * ny * nz).map(|c| [c % nx, c / nx % ny, c / (nx * ny)]);
+        let of_cell = |cell: [usize; 3]| {
+            cuts(shape).iter().map(move |corners| {
+                let corner = |bits: usize| [0, 1, 2].map(|i| (2 * (cell[i] + (bits >> i & 1))) as f64);
+                let corners: Vec<[f64; 3]> = corners.iter().map(|&bits| corner(bits)).collect();
+                shape.straight(&corners).into_iter().map(|x| x.map(|x| x as usize)).collect()
+            })
+        };
+        cells.flat_map(of_cell).collect()
+    }
+
     /// Points of the lattice of corners and midsides along each axis.
     fn n_points(&self) -> [usize; 3] {
         let [x, y, z] = self.cells.map(|n| 2 * n + 1);
@@ -78,6 +121,15 @@ impl Block<'_> {
         axes.flat_map(|axis| [(axis, 0, 0), (axis, 1, 2 * self.cells[axis])])
             .find(|&(axis, _, value)| all(axis, value))
             .map(|(axis, end, _)| format!("{}{end}", ["x", "y", "z"][axis]))
+    }
+}
+
+/// Corners of the elements that a cell is cut into; the bits of a corner are x, y, z.
+fn cuts(shape: Shape) -> &'static [&'static [usize]] {
+    match shape.n_corners() {
+        4 => &[&[0, 1, 3, 7], &[0, 3, 2, 7], &[0, 2, 6, 7], &[0, 6, 4, 7], &[0, 4, 5, 7], &[0, 5, 1, 7]],
+        6 => &[&[0, 1, 3, 4, 5, 7], &[0, 3, 2, 4, 7, 6]],
+        _ => &[&[0, 1, 3, 2, 4, 5, 7, 6]],
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::contact::gap_operator::GapOperator;
-use crate::contact::testing::{flipped, pads_on_disc, patch};
+use crate::contact::testing::{flipped, pads_on_disc, patch, patch_of};
+use crate::element::FacetShape;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -35,6 +36,30 @@ fn plane_on_plane_is_exact() {
         assert!((point.gap - 1e-3).abs() < 1e-16 && (point.distance - 1e-3).abs() < 1e-15);
         assert_eq!(point.normal, [0.0, 0.0, 1.0]);
         assert!((point.master.shape.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+    }
+}
+
+/// Slave and master of any two shapes: gaps, areas and linear fields are exact.
+#[test]
+fn plane_on_plane_is_exact_for_all_facets() {
+    for (slave_shape, master_shape) in
+        FacetShape::ALL.iter().flat_map(|a| FacetShape::ALL.iter().map(move |b| (*a, *b)))
+    {
+        let mut nodes = Vec::new();
+        let plane = |z: f64| move |u: f64, v: f64| [u + 0.1 * v, v, z];
+        let slave = flipped(&patch_of(slave_shape, &mut nodes, [3, 2], plane(1e-3)));
+        let master = patch_of(master_shape, &mut nodes, [2, 4], plane(0.0));
+        let found = find(&slave, &master, &nodes, &ALL, &Alone);
+        assert!(found.n_dropped == 0 && (weights(&found) - 1.0).abs() < 1e-14 && (found.area - 1.0).abs() < 1e-14);
+        for point in &found.points {
+            assert!((point.gap - 1e-3).abs() < 1e-15 && point.weight > 0.0, "{slave_shape:?} {master_shape:?}");
+            let at = |side: &Interpolated| {
+                let terms = side.nodes.iter().zip(&side.shape);
+                terms.map(|(&n, shape)| *shape * Vector3::from(nodes[n as usize])).sum::<Vector3<f64>>()
+            };
+            assert!((at(&point.slave) - Vector3::from(point.position)).norm() < 1e-15);
+            assert!((at(&point.slave) - at(&point.master) - 1e-3 * Vector3::z()).norm() < 1e-14);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Meshes of tests/data read right, and every message about a bad one.
 
 use super::parse;
+use crate::element::{ElementKind, facet, solid};
 use crate::mesh::{Facet, Mesh, quality::scaled_jacobian};
 use std::path::{Path, PathBuf};
 
@@ -39,8 +40,9 @@ fn below(mesh: &Mesh, facet: &Facet) -> (f64, [f64; 3]) {
 fn normal_sum(mesh: &Mesh, surface: &str) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for facet in &mesh.surfaces[surface].facets {
-        let (_, normal) = below(mesh, facet);
-        (0..3).for_each(|i| sum[i] += normal[i]);
+        for force in facet::pressure_load(&facet.positions(&mesh.nodes), -1.0) {
+            (0..3).for_each(|i| sum[i] += force[i]);
+        }
     }
     sum
 }
@@ -97,6 +99,35 @@ fn midsides_lie_on_their_edges() {
         for (midside, (a, b)) in edges.into_iter().enumerate() {
             assert!((0..3).all(|i| (x[4 + midside][i] - 0.5 * (x[a][i] + x[b][i])).abs() < 1e-16));
         }
+    }
+}
+
+/// Four hexahedra of 0.5 x 1 x 0.35 and a wedge, as Gmsh writes them.
+#[test]
+fn hexahedra_and_wedges_come_with_midsides_on_their_edges_and_facets_outward() {
+    let files = [
+        ("hexahedra_wedges.msh", [ElementKind::C3D20, ElementKind::C3D15], 66),
+        ("hexahedra_wedges_linear.msh", [ElementKind::C3D8I, ElementKind::C3D6], 24),
+    ];
+    for (file, kinds, n_nodes) in files {
+        let mesh = read(file);
+        assert_eq!((mesh.nodes.len(), mesh.elements.len()), (n_nodes, 5));
+        let mut volumes = [0.0; 2];
+        for (e, element) in mesh.elements.iter().enumerate() {
+            assert_eq!(element.kind, kinds[element.part as usize]);
+            let (shape, x) = (element.shape(), mesh.element_nodes(e));
+            volumes[element.part as usize] += 1e9 * solid::volume(shape, &x);
+            for (x, straight) in x.iter().zip(shape.straight(&x[..shape.n_corners()])) {
+                assert!((0..3).all(|i| (x[i] - straight[i]).abs() < 1e-16), "{file}");
+            }
+        }
+        // Areas 1.05 and 0.5 of the bases, by the height.
+        assert!((volumes[0] - 0.7 * 1.05).abs() < 1e-9 && (volumes[1] - 0.35).abs() < 1e-9, "{volumes:?}");
+        for (name, n_facets, area) in [("hexahedra_top", 2, 1.05), ("wedges_top", 1, 0.5)] {
+            assert_eq!(mesh.surfaces[name].facets.len(), n_facets);
+            assert!((1e6 * normal_sum(&mesh, name)[2] - area).abs() < 1e-9, "{file} {name}");
+        }
+        assert_eq!(mesh.surfaces["wedges_side"].facets[0].corners().len(), 4);
     }
 }
 

@@ -1,0 +1,20 @@
+// A block of four hexahedra and a block of one wedge: gmsh -3, with Mesh.ElementOrder 2 and 1 (_linear).
+Mesh.ElementOrder = 2;
+Mesh.SecondOrderIncomplete = 1;
+Mesh.MshFileVersion = 4.1;
+Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1.1, 1, 0}; Point(4) = {0, 1, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Transfinite Curve {1, 3} = 3; Transfinite Curve {2, 4} = 2;
+Transfinite Surface {1}; Recombine Surface {1};
+hex[] = Extrude {0, 0.1, 0.7} { Surface{1}; Layers{2}; Recombine; };
+Point(101) = {3, 0, 0}; Point(102) = {4, 0, 0}; Point(103) = {3, 1, 0};
+Line(101) = {101, 102}; Line(102) = {102, 103}; Line(103) = {103, 101};
+Curve Loop(101) = {101, 102, 103}; Plane Surface(101) = {101};
+Transfinite Curve {101, 102, 103} = 2;
+wedge[] = Extrude {0.1, 0, 0.7} { Surface{101}; Layers{1}; Recombine; };
+Physical Volume("hexahedra") = {hex[1]};
+Physical Volume("wedges") = {wedge[1]};
+Physical Surface("hexahedra_top") = {hex[0]};
+Physical Surface("wedges_top") = {wedge[0]};
+Physical Surface("wedges_side") = {wedge[2]};
