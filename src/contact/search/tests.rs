@@ -53,12 +53,13 @@ fn plane_on_plane_is_exact_for_all_facets() {
         assert!(found.n_dropped == 0 && (weights(&found) - 1.0).abs() < 1e-14 && (found.area - 1.0).abs() < 1e-14);
         for point in &found.points {
             assert!((point.gap - 1e-3).abs() < 1e-15 && point.weight > 0.0, "{slave_shape:?} {master_shape:?}");
-            let at = |side: &Interpolated| {
+            let at = |side: &Interpolated| -> Vector3<f64> {
                 let terms = side.nodes.iter().zip(&side.shape);
-                terms.map(|(&n, shape)| *shape * Vector3::from(nodes[n as usize])).sum::<Vector3<f64>>()
+                terms.map(|(&n, shape)| *shape * Vector3::from(nodes[n as usize])).sum()
             };
             assert!((at(&point.slave) - Vector3::from(point.position)).norm() < 1e-15);
-            assert!((at(&point.slave) - at(&point.master) - 1e-3 * Vector3::z()).norm() < 1e-14);
+            let gap: Vector3<f64> = at(&point.slave) - at(&point.master);
+            assert!((gap - Vector3::new(0.0, 0.0, 1e-3)).norm() < 1e-14);
         }
     }
 }
