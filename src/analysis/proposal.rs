@@ -9,7 +9,7 @@ use std::path::Path;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::contact::search::{Alone, Options, find};
-use crate::element::tet10::{MassProperties, mass_properties};
+use crate::element::solid::{MassProperties, mass_properties};
 use crate::mesh::Mesh;
 
 /// Surfaces touch where at least this fraction of the smaller one has the other one opposite.
@@ -88,8 +88,8 @@ struct Turning {
 /// The solid of revolution with the largest moment of inertia; none where no part is one.
 fn turning(mesh: &Mesh) -> Option<Turning> {
     let mut bodies = vec![MassProperties::default(); mesh.parts.len()];
-    for (tet, &part) in mesh.tet_part.iter().enumerate() {
-        bodies[part as usize] += mass_properties(&mesh.tet_nodes(tet), 1.0);
+    for (e, element) in mesh.elements.iter().enumerate() {
+        bodies[element.part as usize] += mass_properties(element.shape(), &mesh.element_nodes(e), 1.0);
     }
     let of_revolution = |(part, body): (u32, &MassProperties)| {
         let inertia = Matrix3::from_fn(|i, j| body.inertia_about(body.centre())[i][j]).symmetric_eigen();

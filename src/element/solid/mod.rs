@@ -4,6 +4,16 @@
 //! the shape functions and gradients of a shape at the points of two rules; stiffness, mass, volume and mean strain are
 //! sums over these points. Two kinds have a stiffness of their own: `incompatible` (C3D8I) and `mean_strain` (C3D8R).
 //!
+//! ```
+//! use squeal::element::Shape;
+//! use squeal::element::solid::mass_properties;
+//!
+//! let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let shape = Shape::Tetrahedron10;
+//! let steel = mass_properties(shape, &shape.straight(&corners), 7800.0);
+//! assert!((steel.mass - 1300.0).abs() < 1e-9 && (steel.centre()[0] - 0.25).abs() < 1e-12);
+//! ```
+//!
 //! What the rules leave exact:
 //!
 //! | integral | constant `detJ` (straight tetrahedra, parallelepipeds) | distorted and curved |
