@@ -21,7 +21,7 @@ pub struct Interface {
 }
 
 /// A contact pair.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ContactPair {
     /// Name in tables.
     pub name: String,
@@ -172,7 +172,7 @@ impl Interface {
     /// # Errors
     /// [`Error::Input`] that names the pair.
     pub fn require_friction_laws(&self) -> Result<()> {
-        match self.pairs.iter().find(|pair| pair.friction_law == FrictionLaw::Missing) {
+        match self.pairs.iter().find(|pair| matches!(pair.friction_law, FrictionLaw::Missing)) {
             None => Ok(()),
             Some(pair) => Err(Error::input(format!(
                 "contact {:?}: its friction law was a program's own, which the file does not contain. \

@@ -4,7 +4,7 @@ use super::contacts::friction;
 use super::item::{Item, Number};
 use super::keys::{self, FrictionSweepTable, Text};
 use super::source::ModelText;
-use super::{Contact, Reduction, names};
+use super::{Contact, Reduction};
 use crate::Result;
 use toml::Spanned;
 
@@ -45,21 +45,13 @@ pub fn sweep(
 fn swept(item: &Item, wanted: Option<&[Text]>, contacts: &[Contact]) -> Result<Vec<String>> {
     let mut swept: Vec<String> = Vec::new();
     for name in wanted.unwrap_or_default() {
-        let text = name.get_ref();
-        if !contacts.iter().any(|contact| &contact.name == text) {
-            let advice = names::advice(text, contacts.iter().map(|contact| contact.name.as_str()));
-            return Err(item.error(&name.span(), format_args!("unknown contact {text:?}"), advice));
-        }
-        if swept.contains(text) {
-            let what = format_args!("contact {text:?} is named twice");
-            return Err(item.error(&name.span(), what, "Keep one of them"));
-        }
+        let text = &item.find("contact", name, contacts, |contact| &contact.name)?.name;
+        let what = format_args!("contact {text:?} is named twice");
+        item.require_at(&name.span(), !swept.contains(text), what, "Keep one of them")?;
         swept.push(text.clone());
     }
-    if wanted.is_some() && swept.is_empty() {
-        let advice = "Name some, or leave the key out to sweep all that slide";
-        return Err(item.error_here("contacts is an empty list", advice));
-    }
+    let advice = "Name some, or leave the key out to sweep all that slide";
+    item.require(wanted.is_none_or(|names| !names.is_empty()), "contacts is an empty list", advice)?;
     Ok(swept)
 }
 
@@ -69,13 +61,8 @@ fn values(item: &Item, raw: &FrictionSweepTable) -> Result<Vec<f64>> {
             let mut seen: Vec<f64> = Vec::new();
             for value in values {
                 let mu = friction(item, value)?;
-                if seen.contains(&mu) {
-                    return Err(item.error(
-                        &value.span(),
-                        format_args!("friction {mu} is given twice"),
-                        "Keep one of them",
-                    ));
-                }
+                let what = format_args!("friction {mu} is given twice");
+                item.require_at(&value.span(), !seen.contains(&mu), what, "Keep one of them")?;
                 seen.push(mu);
             }
             Ok(seen)
@@ -88,10 +75,7 @@ fn values(item: &Item, raw: &FrictionSweepTable) -> Result<Vec<f64>> {
 fn range(item: &Item, from: &Number, to: &Number, step: &Number) -> Result<Vec<f64>> {
     let (low, high) = (friction(item, from)?, friction(item, to)?);
     let step_value = item.positive(step, "step", RANGE)?;
-    if low > high {
-        let what = format_args!("the range is empty: from {low} to {high}");
-        return Err(item.error(&from.span(), what, RANGE));
-    }
+    item.require_at(&from.span(), low <= high, format_args!("the range is empty: from {low} to {high}"), RANGE)?;
     spaced(low, high, step_value).ok_or_else(|| {
         let what = format_args!("a step of {step_value} makes more than {LONGEST_SWEEP} values");
         item.error(&step.span(), what, "Give a larger step")
@@ -111,10 +95,8 @@ pub fn spaced(from: f64, to: f64, step: f64) -> Option<Vec<f64>> {
 /// The reduction.
 pub fn reduction(source: ModelText, raw: &Spanned<keys::ReductionTable>) -> Result<Reduction> {
     let item = Item::new(source, "reduction".to_owned(), raw.span());
-    let contacts = &raw.get_ref().contacts;
-    if *contacts.get_ref() == 0 {
-        let advice = "Give the number of reference pairs, such as 104";
-        return Err(item.error(&contacts.span(), "contacts must be above 0", advice));
-    }
-    Ok(Reduction { contacts: *contacts.get_ref(), band: item.band(&raw.get_ref().band)?, line: item.line() })
+    let (at, contacts) = (raw.get_ref().contacts.span(), *raw.get_ref().contacts.get_ref());
+    let advice = "Give the number of reference pairs, such as 104";
+    item.require_at(&at, contacts > 0, "contacts must be above 0", advice)?;
+    Ok(Reduction { contacts, band: item.band(&raw.get_ref().band)?, line: item.line() })
 }

@@ -17,25 +17,17 @@ pub fn parts(source: ModelText, raw: &keys::Named<keys::PartTable>, materials: &
 
 fn part(source: ModelText, name: &Text, raw: &keys::PartTable, materials: &[Material]) -> Result<Part> {
     let item = Item::new(source, format!("part {:?}", name.get_ref()), name.span());
-    let wanted = raw.material.get_ref();
-    let Some(material) = materials.iter().find(|m| &m.name == wanted) else {
-        let advice = names::advice(wanted, materials.iter().map(|m| m.name.as_str()));
-        let what = format_args!("unknown material {wanted:?}");
-        return Err(item.error(&raw.material.span(), what, advice));
-    };
     Ok(Part {
         name: name.get_ref().clone(),
-        material: material.clone(),
+        material: item.find("material", &raw.material, materials, |material| &material.name)?.clone(),
         rayleigh: rayleigh(&item, &raw.rayleigh)?,
         line: item.line(),
     })
 }
 
 fn rayleigh(item: &Item, raw: &keys::RayleighTable) -> Result<Rayleigh> {
-    let coefficient = |value: &Option<_>, key, advice| match value {
-        Some(value) => item.not_negative(value, key, advice),
-        None => Ok(0.0),
-    };
+    let coefficient =
+        |value: &Option<_>, key, advice| value.as_ref().map_or(Ok(0.0), |value| item.not_negative(value, key, advice));
     Ok(Rayleigh {
         alpha: coefficient(&raw.alpha, "rayleigh alpha", "Give 1/s, such as 10.0")?,
         beta: coefficient(&raw.beta, "rayleigh beta", "Give s, such as 1e-8")?,
@@ -54,19 +46,13 @@ pub fn fixes(source: ModelText, raw: &[Spanned<keys::FixTable>]) -> Result<Vec<F
 
 /// `"xz"` -> [true, false, true].
 fn axes(item: &Item, text: &Text) -> Result<[bool; 3]> {
-    let mut held = [false; 3];
-    for letter in text.get_ref().chars() {
-        match "xyz".find(letter) {
-            Some(axis) if !held[axis] => held[axis] = true,
-            _ => return Err(wrong_axes(item, text)),
-        }
-    }
-    if held.contains(&true) { Ok(held) } else { Err(wrong_axes(item, text)) }
-}
-
-fn wrong_axes(item: &Item, text: &Text) -> crate::Error {
-    let what = format_args!("axes = {:?} does not name directions", text.get_ref());
-    item.error(&text.span(), what, "Give one or more of x, y, z, each once, such as \"xyz\"")
+    let letters = text.get_ref();
+    let held = ['x', 'y', 'z'].map(|axis| letters.contains(axis));
+    let is_each_once = letters.chars().count() == held.iter().filter(|held| **held).count();
+    let what = format_args!("axes = {letters:?} does not name directions");
+    let advice = "Give one or more of x, y, z, each once, such as \"xyz\"";
+    item.require_at(&text.span(), is_each_once && !letters.is_empty(), what, advice)?;
+    Ok(held)
 }
 
 /// The imposed velocities; `unit` is metres per unit of the mesh.
@@ -77,38 +63,29 @@ pub fn rotations(
     unit: f64,
 ) -> Result<Vec<Rotation>> {
     let mut seen = HashSet::new();
-    let mut rotations = Vec::new();
-    for rotation in raw {
-        let name = rotation.get_ref().part.get_ref();
+    let read = |rotation: &Spanned<keys::RotationTable>| {
+        let part = &rotation.get_ref().part;
+        let (name, at) = (part.get_ref(), part.span());
         let item = Item::new(source, format!("rotation of {name:?}"), rotation.span());
-        let span = rotation.get_ref().part.span();
-        known_part(&item, name, &span, parts)?;
-        if !seen.insert(name) {
-            return Err(item.error(&span, "the part turns already", "Keep one [[rotation]] for each part"));
-        }
-        rotations.push(self::rotation(&item, rotation.get_ref(), unit)?);
-    }
-    Ok(rotations)
+        known_part(&item, name, &at, parts)?;
+        let is_first = seen.insert(name.clone());
+        item.require_at(&at, is_first, "the part turns already", "Keep one [[rotation]] for each part")?;
+        self::rotation(&item, rotation.get_ref(), unit)
+    };
+    raw.iter().map(read).collect()
 }
 
 fn known_part(item: &Item, name: &str, span: &Span, parts: &[Part]) -> Result<()> {
-    if parts.iter().any(|part| part.name == name) {
-        return Ok(());
-    }
-    let advice = names::advice(name, parts.iter().map(|part| part.name.as_str()));
-    let what = format_args!("there is no [part.{name}]");
-    Err(item.error(span, what, format_args!("{advice}; or add it")))
+    let names = || parts.iter().map(|part| part.name.as_str());
+    let advice = names::advice(name, names()) + "; or add it";
+    item.require_at(span, names().any(|part| part == name), format_args!("there is no [part.{name}]"), advice)
 }
 
 fn rotation(item: &Item, raw: &keys::RotationTable, unit: f64) -> Result<Rotation> {
-    let through = match &raw.through {
-        Some(point) => item.finite(point, "through")?,
-        None => [0.0; 3],
-    };
+    let through = raw.through.as_ref().map_or(Ok([0.0; 3]), |point| item.finite(point, "through"))?;
     let advice = "Give rad/s, such as 5.0; its sign is the sense of rotation";
-    if *raw.speed.get_ref() == 0.0 {
-        return Err(item.error(&raw.speed.span(), "speed is 0, so that nothing turns", advice));
-    }
+    let turns = *raw.speed.get_ref() != 0.0;
+    item.require_at(&raw.speed.span(), turns, "speed is 0, so that nothing turns", advice)?;
     Ok(Rotation {
         part: raw.part.get_ref().clone(),
         axis: item.direction(&raw.axis, "axis")?,

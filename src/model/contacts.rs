@@ -1,11 +1,10 @@
 //! Contact pairs and connectors: what ties the parts together.
 
-use super::item::{Item, Number, Vector};
+use super::item::{Item, Number, Vector, named};
 use super::keys;
 use super::source::ModelText;
 use super::{Connector, Contact, NormalLaw, SpeedDecay};
 use crate::Result;
-use std::collections::HashMap;
 use toml::Spanned;
 
 /// Friction above this is taken for a mistake.
@@ -13,40 +12,19 @@ pub const LARGEST_FRICTION: f64 = 2.0;
 
 /// The contact pairs; `unit` is metres per unit of the mesh.
 pub fn contacts(source: ModelText, raw: &[Spanned<keys::ContactTable>], unit: f64) -> Result<Vec<Contact>> {
-    let mut seen = HashMap::new();
-    let mut contacts = Vec::new();
-    for contact in raw {
-        let raw = contact.get_ref();
-        let name = raw.name.clone().unwrap_or_else(|| format!("{} / {}", raw.slave, raw.master));
-        let item = Item::new(source, format!("contact {name:?}"), contact.span());
-        unused(&item, &name, &mut seen)?;
-        contacts.push(self::contact(&item, name, raw, unit)?);
-    }
-    Ok(contacts)
-}
-
-/// Refuses a name that an item of the same kind has already.
-pub fn unused(item: &Item, name: &str, seen: &mut HashMap<String, usize>) -> Result<()> {
-    match seen.insert(name.to_owned(), item.line()) {
-        None => Ok(()),
-        Some(line) => {
-            let what = format_args!("the name is taken by line {line}");
-            Err(item.error_here(what, "Give each its own name"))
-        }
-    }
+    let called =
+        |raw: &keys::ContactTable| raw.name.clone().unwrap_or_else(|| format!("{} / {}", raw.slave, raw.master));
+    named(source, "contact", raw, called, |item, name, raw| contact(item, name, raw, unit))
 }
 
 fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Result<Contact> {
-    if raw.slave == raw.master {
-        let what = format_args!("slave and master are both {:?}", raw.slave);
-        return Err(item.error_here(what, "Name the two surfaces that meet"));
-    }
-    let stick = raw.stick.as_ref().map(|k| item.positive(k, "stick", "Give N/m3, such as 1e13"));
+    let what = format_args!("slave and master are both {:?}", raw.slave);
+    item.require(raw.slave != raw.master, what, "Name the two surfaces that meet")?;
+    let positive = |value: &Option<Number>, key: &str, advice: &str| {
+        value.as_ref().map(|value| item.positive(value, key, advice)).transpose()
+    };
     let (friction, decay) = contact_friction(item, &raw.friction)?;
-    let search = raw
-        .search
-        .as_ref()
-        .map(|d| item.positive(d, "search", "Give a distance in the mesh's unit, or leave it out for no limit"));
+    let distance = "Give a distance in the mesh's unit, or leave it out for no limit";
     Ok(Contact {
         name,
         slave: raw.slave.clone(),
@@ -54,9 +32,9 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         law: law(item, &raw.law)?,
         friction,
         decay,
-        stick: stick.transpose()?,
+        stick: positive(&raw.stick, "stick", "Give N/m3, such as 1e13")?,
         separation: raw.separation.unwrap_or(true),
-        search_distance: search.transpose()?.map(|d| d * unit),
+        search_distance: positive(&raw.search, "search", distance)?.map(|d| d * unit),
         line: item.line(),
     })
 }
@@ -74,12 +52,11 @@ fn contact_friction(item: &Item, raw: &Spanned<keys::Friction>) -> Result<(f64, 
         keys::Friction::Decay { at_rest, kinetic, decay } => (at_rest, kinetic, decay),
     };
     let is_coefficient = |mu: f64| (0.0..=LARGEST_FRICTION).contains(&mu);
-    if at_rest > 0.0 && is_coefficient(at_rest) && is_coefficient(kinetic) && decay > 0.0 && decay.is_finite() {
-        return Ok((at_rest, Some(SpeedDecay { kinetic_ratio: kinetic / at_rest, decay })));
-    }
-    let what = format!("friction has static = {at_rest}, kinetic = {kinetic}, decay = {decay}");
+    let holds = at_rest > 0.0 && is_coefficient(at_rest) && is_coefficient(kinetic) && decay > 0.0 && decay.is_finite();
+    let what = format_args!("friction has static = {at_rest}, kinetic = {kinetic}, decay = {decay}");
     let advice = "Give static above 0 and kinetic from 0, both up to 2, and a decay above 0 in s/m";
-    Err(item.error(&raw.span(), what, advice))
+    item.require_at(&raw.span(), holds, what, advice)?;
+    Ok((at_rest, Some(SpeedDecay { kinetic_ratio: kinetic / at_rest, decay })))
 }
 
 fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {
@@ -87,8 +64,7 @@ fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {
     match (&raw.get_ref().linear, &raw.get_ref().cubic) {
         (Some(k), None) => Ok(NormalLaw::Linear { stiffness: item.positive(k, "linear", example)? }),
         (None, Some(k)) => {
-            let [k1, k3] = item.each(k, |x| x > 0.0, "cubic", "must be above 0", example)?;
-            Ok(NormalLaw::Cubic { k1, k3 })
+            item.each(k, |x| x > 0.0, "cubic", "must be above 0", example).map(|[k1, k3]| NormalLaw::Cubic { k1, k3 })
         }
         (None, None) => Err(item.error(&raw.span(), "the law is empty", example)),
         (Some(_), Some(_)) => Err(item.error(&raw.span(), "there are two laws", example)),
@@ -97,30 +73,18 @@ fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {
 
 /// The connectors; `unit` is metres per unit of the mesh.
 pub fn connectors(source: ModelText, raw: &[Spanned<keys::ConnectorTable>], unit: f64) -> Result<Vec<Connector>> {
-    let mut seen = HashMap::new();
-    let mut connectors = Vec::new();
-    for connector in raw {
-        let raw = connector.get_ref();
-        let [a, b] = raw.between.get_ref();
-        let name = raw.name.clone().unwrap_or_else(|| format!("{a} / {b}"));
-        let item = Item::new(source, format!("connector {name:?}"), connector.span());
-        unused(&item, &name, &mut seen)?;
-        connectors.push(self::connector(&item, name, raw, unit)?);
-    }
-    Ok(connectors)
+    let called = |raw: &keys::ConnectorTable| raw.name.clone().unwrap_or_else(|| raw.between.get_ref().join(" / "));
+    named(source, "connector", raw, called, |item, name, raw| connector(item, name, raw, unit))
 }
 
 fn connector(item: &Item, name: String, raw: &keys::ConnectorTable, unit: f64) -> Result<Connector> {
     let [a, b] = raw.between.get_ref();
-    if a == b {
-        let what = format_args!("both ends are {a:?}");
-        return Err(item.error(&raw.between.span(), what, "Name two different node sets"));
-    }
+    let what = format_args!("both ends are {a:?}");
+    item.require_at(&raw.between.span(), a != b, what, "Name two different node sets")?;
     let constants =
         |values: &Vector, key: &str, advice: &str| item.each(values, |x| x >= 0.0, key, "must be 0 or above", advice);
-    let optional = |values: &Option<Vector>, key, advice| match values {
-        Some(values) => constants(values, key, advice),
-        None => Ok([0.0; 3]),
+    let optional = |values: &Option<Vector>, key, advice| {
+        values.as_ref().map_or(Ok([0.0; 3]), |values| constants(values, key, advice))
     };
     let rotational = "Give [x, y, z] in N m/rad";
     let connector = Connector {
@@ -133,8 +97,7 @@ fn connector(item: &Item, name: String, raw: &keys::ConnectorTable, unit: f64) -
         line: item.line(),
     };
     let all = [connector.stiffness, connector.rotational_stiffness, connector.damping];
-    if all.as_flattened().iter().all(|&x| x == 0.0) {
-        return Err(item.error_here("all its constants are 0", "Give it a stiffness, or leave it out"));
-    }
+    let acts = all.as_flattened().iter().any(|&x| x != 0.0);
+    item.require(acts, "all its constants are 0", "Give it a stiffness, or leave it out")?;
     Ok(connector)
 }

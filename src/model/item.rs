@@ -1,8 +1,11 @@
 //! One table of the model file while its values are checked: what it is called in messages, and the checks of single
 //! values.
 
+use super::keys::Text;
+use super::names;
 use super::source::{ModelText, Span};
 use crate::{Error, Result};
+use std::collections::HashMap;
 use std::fmt::Display;
 use toml::Spanned;
 
@@ -10,6 +13,26 @@ use toml::Spanned;
 pub type Number = Spanned<f64>;
 /// Three numbers and where they stand.
 pub type Vector = Spanned<[f64; 3]>;
+
+/// Reads the tables of one kind, each of which has a name that no other has: `called` gives it, `read` takes it.
+pub fn named<T, R>(
+    source: ModelText,
+    kind: &str,
+    tables: &[Spanned<T>],
+    called: impl Fn(&T) -> String,
+    read: impl Fn(&Item, String, &T) -> Result<R>,
+) -> Result<Vec<R>> {
+    let mut lines: HashMap<String, usize> = HashMap::new();
+    let read = |table: &Spanned<T>| {
+        let name = called(table.get_ref());
+        let item = Item::new(source, format!("{kind} {name:?}"), table.span());
+        if let Some(line) = lines.insert(name.clone(), item.line()) {
+            return Err(item.error_here(format_args!("the name is taken by line {line}"), "Give each its own name"));
+        }
+        read(&item, name, table.get_ref())
+    };
+    tables.iter().map(read).collect()
+}
 
 /// A table of the file.
 pub struct Item<'a> {
@@ -41,6 +64,31 @@ impl<'a> Item<'a> {
         self.error(&self.span, what, advice)
     }
 
+    /// Refuses the table where something does not hold.
+    pub fn require(&self, holds: bool, what: impl Display, advice: impl Display) -> Result<()> {
+        self.require_at(&self.span, holds, what, advice)
+    }
+
+    /// The same, at a value of the table.
+    pub fn require_at(&self, at: &Span, holds: bool, what: impl Display, advice: impl Display) -> Result<()> {
+        if holds { Ok(()) } else { Err(self.error(at, what, advice)) }
+    }
+
+    /// One of the things that have names, by its name; `kind` is what messages call it.
+    pub fn find<'k, T>(
+        &self,
+        kind: &str,
+        wanted: &Text,
+        known: &'k [T],
+        name: impl Fn(&'k T) -> &'k str,
+    ) -> Result<&'k T> {
+        let text = wanted.get_ref();
+        known.iter().find(|item| name(item) == text).ok_or_else(|| {
+            let advice = names::advice(text, known.iter().map(name));
+            self.error(&wanted.span(), format_args!("unknown {kind} {text:?}"), advice)
+        })
+    }
+
     /// The value of a key that this table must have.
     pub fn required<'v, T>(&self, value: &'v Option<T>, key: &str, advice: &str) -> Result<&'v T> {
         value.as_ref().ok_or_else(|| self.error_here(format_args!("{key} is missing"), advice))
@@ -58,11 +106,10 @@ impl<'a> Item<'a> {
 
     /// A number for which `holds` (and which is finite).
     pub fn check(&self, value: &Number, holds: bool, key: &str, must: &str, advice: &str) -> Result<f64> {
-        let number = *value.get_ref();
-        if number.is_finite() && holds {
-            return Ok(number);
-        }
-        Err(self.error(&value.span(), format_args!("{key} {must}, not {}", self.source.text_at(&value.span())), advice))
+        let (at, number) = (value.span(), *value.get_ref());
+        let what = format_args!("{key} {must}, not {}", self.source.text_at(&at));
+        self.require_at(&at, number.is_finite() && holds, what, advice)?;
+        Ok(number)
     }
 
     /// Numbers that are finite.
@@ -90,10 +137,8 @@ impl<'a> Item<'a> {
         let v = self.finite(value, key)?;
         // Scaled before it is squared, so that no length over- or underflows.
         let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        if largest == 0.0 {
-            let what = format_args!("{key} has no direction: it is zero");
-            return Err(self.error(&value.span(), what, "Give a vector such as [0, 0, 1]"));
-        }
+        let what = format_args!("{key} has no direction: it is zero");
+        self.require_at(&value.span(), largest > 0.0, what, "Give a vector such as [0, 0, 1]")?;
         let v = v.map(|x| x / largest);
         let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
         Ok(v.map(|x| x / length))
@@ -102,14 +147,10 @@ impl<'a> Item<'a> {
     /// A band of frequencies in Hz: not negative, not empty.
     pub fn band(&self, value: &Spanned<[f64; 2]>) -> Result<[f64; 2]> {
         let [low, high] = self.finite(value, "band")?;
-        if 0.0 <= low && low < high {
-            return Ok([low, high]);
-        }
-        let what = if low < 0.0 {
-            format!("band begins below 0: [{low}, {high}]")
-        } else {
-            format!("band is empty: [{low}, {high}]")
-        };
-        Err(self.error(&value.span(), what, "Give [lowest, highest] in Hz, 0 <= lowest < highest"))
+        let wrong = if low < 0.0 { "begins below 0" } else { "is empty" };
+        let what = format_args!("band {wrong}: [{low}, {high}]");
+        let holds = 0.0 <= low && low < high;
+        self.require_at(&value.span(), holds, what, "Give [lowest, highest] in Hz, 0 <= lowest < highest")?;
+        Ok([low, high])
     }
 }

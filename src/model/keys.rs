@@ -11,105 +11,12 @@ pub type Text = Spanned<String>;
 /// Tables `[kind.<name>]`; sorted by name, so the order of the file is that of the spans.
 pub type Named<T> = BTreeMap<Text, T>;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct File {
-    pub title: Option<String>,
-    pub mesh: Spanned<MeshTable>,
-    #[serde(default)]
-    pub material: Named<MaterialTable>,
-    #[serde(default)]
-    pub part: Named<PartTable>,
-    #[serde(default)]
-    pub fix: Vec<Spanned<FixTable>>,
-    #[serde(default)]
-    pub rotation: Vec<Spanned<RotationTable>>,
-    #[serde(default)]
-    pub contact: Vec<Spanned<ContactTable>>,
-    #[serde(default)]
-    pub connector: Vec<Spanned<ConnectorTable>>,
-    #[serde(default)]
-    pub load: Vec<Spanned<LoadTable>>,
-    pub stability: Spanned<StabilityTable>,
-    pub sweep: Option<Spanned<SweepTable>>,
-    pub reduction: Option<Spanned<ReductionTable>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct MeshTable {
-    pub file: Text,
-    pub unit: Text,
-}
-
 /// A number, or one for each axis or plane.
 #[derive(Deserialize, Clone, Copy)]
 #[serde(untagged, expecting = "expected a number, or three of them in brackets")]
 pub enum OneOrThree {
     One(f64),
     Three([f64; 3]),
-}
-
-/// All kinds of material together; `materials` knows which keys belong to which kind.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct MaterialTable {
-    pub kind: Option<Text>,
-    pub density: Number,
-    pub young: Option<Spanned<OneOrThree>>,
-    pub poisson: Option<Spanned<OneOrThree>>,
-    pub axis: Option<Vector>,
-    pub young_axial: Option<Number>,
-    pub poisson_axial: Option<Number>,
-    pub shear_axial: Option<Number>,
-    pub shear: Option<Vector>,
-    pub x_axis: Option<Vector>,
-    pub y_axis: Option<Vector>,
-    pub elasticity: Option<Spanned<[[f64; 6]; 6]>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct PartTable {
-    pub material: Text,
-    #[serde(default)]
-    pub rayleigh: RayleighTable,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct RayleighTable {
-    pub alpha: Option<Number>,
-    pub beta: Option<Number>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct FixTable {
-    pub nodes: String,
-    pub axes: Text,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct RotationTable {
-    pub part: Text,
-    pub axis: Vector,
-    pub through: Option<Vector>,
-    pub speed: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct ContactTable {
-    pub name: Option<String>,
-    pub slave: String,
-    pub master: String,
-    pub law: Spanned<LawTable>,
-    pub friction: Spanned<Friction>,
-    pub stick: Option<Number>,
-    pub separation: Option<bool>,
-    pub search: Option<Number>,
 }
 
 /// A coefficient, or one that falls with the sliding speed.
@@ -129,61 +36,136 @@ pub enum Friction {
     },
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct LawTable {
-    pub linear: Option<Number>,
-    pub cubic: Option<Spanned<[f64; 2]>>,
+/// Tables of the file, in which every key must be known.
+macro_rules! tables {
+    ($($table:item)*) => {
+        $(#[derive(Deserialize)]
+        #[serde(deny_unknown_fields, expecting = "a table")]
+        $table)*
+    };
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct ConnectorTable {
-    pub name: Option<String>,
-    pub between: Spanned<[String; 2]>,
-    pub at: Option<Vector>,
-    pub stiffness: Vector,
-    pub rotational_stiffness: Option<Vector>,
-    pub damping: Option<Vector>,
-}
+tables! {
+    pub struct File {
+        pub title: Option<String>,
+        pub mesh: Spanned<MeshTable>,
+        #[serde(default)]
+        pub material: Named<MaterialTable>,
+        #[serde(default)]
+        pub part: Named<PartTable>,
+        #[serde(default)]
+        pub fix: Vec<Spanned<FixTable>>,
+        #[serde(default)]
+        pub rotation: Vec<Spanned<RotationTable>>,
+        #[serde(default)]
+        pub contact: Vec<Spanned<ContactTable>>,
+        #[serde(default)]
+        pub connector: Vec<Spanned<ConnectorTable>>,
+        #[serde(default)]
+        pub load: Vec<Spanned<LoadTable>>,
+        pub stability: Spanned<StabilityTable>,
+        pub sweep: Option<Spanned<SweepTable>>,
+        pub reduction: Option<Spanned<ReductionTable>>,
+    }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct LoadTable {
-    pub name: Option<String>,
-    pub on: String,
-    pub force: Option<Vector>,
-    pub spread: Option<Text>,
-    pub pressure: Option<Number>,
-}
+    pub struct MeshTable {
+        pub file: Text,
+        pub unit: Text,
+    }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct StabilityTable {
-    pub band: Spanned<[f64; 2]>,
-    #[serde(default)]
-    pub friction_damping: bool,
-}
+    /// All kinds of material together; `materials` knows which keys belong to which kind.
+    pub struct MaterialTable {
+        pub kind: Option<Text>,
+        pub density: Number,
+        pub young: Option<Spanned<OneOrThree>>,
+        pub poisson: Option<Spanned<OneOrThree>>,
+        pub axis: Option<Vector>,
+        pub young_axial: Option<Number>,
+        pub poisson_axial: Option<Number>,
+        pub shear_axial: Option<Number>,
+        pub shear: Option<Vector>,
+        pub x_axis: Option<Vector>,
+        pub y_axis: Option<Vector>,
+        pub elasticity: Option<Spanned<[[f64; 6]; 6]>>,
+    }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct SweepTable {
-    pub friction: Spanned<FrictionSweepTable>,
-}
+    pub struct PartTable {
+        pub material: Text,
+        #[serde(default)]
+        pub rayleigh: RayleighTable,
+    }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct FrictionSweepTable {
-    pub contacts: Option<Vec<Text>>,
-    pub values: Option<Vec<Number>>,
-    pub from: Option<Number>,
-    pub to: Option<Number>,
-    pub step: Option<Number>,
-}
+    #[derive(Default)]
+    pub struct RayleighTable {
+        pub alpha: Option<Number>,
+        pub beta: Option<Number>,
+    }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-pub struct ReductionTable {
-    pub contacts: Spanned<usize>,
-    pub band: Spanned<[f64; 2]>,
+    pub struct FixTable {
+        pub nodes: String,
+        pub axes: Text,
+    }
+
+    pub struct RotationTable {
+        pub part: Text,
+        pub axis: Vector,
+        pub through: Option<Vector>,
+        pub speed: Number,
+    }
+
+    pub struct ContactTable {
+        pub name: Option<String>,
+        pub slave: String,
+        pub master: String,
+        pub law: Spanned<LawTable>,
+        pub friction: Spanned<Friction>,
+        pub stick: Option<Number>,
+        pub separation: Option<bool>,
+        pub search: Option<Number>,
+    }
+
+    pub struct LawTable {
+        pub linear: Option<Number>,
+        pub cubic: Option<Spanned<[f64; 2]>>,
+    }
+
+    pub struct ConnectorTable {
+        pub name: Option<String>,
+        pub between: Spanned<[String; 2]>,
+        pub at: Option<Vector>,
+        pub stiffness: Vector,
+        pub rotational_stiffness: Option<Vector>,
+        pub damping: Option<Vector>,
+    }
+
+    pub struct LoadTable {
+        pub name: Option<String>,
+        pub on: String,
+        pub force: Option<Vector>,
+        pub spread: Option<Text>,
+        pub pressure: Option<Number>,
+    }
+
+    pub struct StabilityTable {
+        pub band: Spanned<[f64; 2]>,
+        #[serde(default)]
+        pub friction_damping: bool,
+    }
+
+    pub struct SweepTable {
+        pub friction: Spanned<FrictionSweepTable>,
+    }
+
+    pub struct FrictionSweepTable {
+        pub contacts: Option<Vec<Text>>,
+        pub values: Option<Vec<Number>>,
+        pub from: Option<Number>,
+        pub to: Option<Number>,
+        pub step: Option<Number>,
+    }
+
+    pub struct ReductionTable {
+        pub contacts: Spanned<usize>,
+        pub band: Spanned<[f64; 2]>,
+    }
 }

@@ -1,26 +1,18 @@
 //! External loads.
 
-use super::contacts::unused;
-use super::item::{Item, Vector};
+use super::item::{Item, Vector, named};
 use super::keys::{self, Text};
 use super::source::ModelText;
-use super::{Load, LoadKind, names};
+use super::{Load, LoadKind};
 use crate::Result;
-use std::collections::HashMap;
 use toml::Spanned;
 
 /// The loads.
 pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>]) -> Result<Vec<Load>> {
-    let mut seen = HashMap::new();
-    let mut loads = Vec::new();
-    for load in raw {
-        let raw = load.get_ref();
-        let name = raw.name.clone().unwrap_or_else(|| raw.on.clone());
-        let item = Item::new(source, format!("load {name:?}"), load.span());
-        unused(&item, &name, &mut seen)?;
-        loads.push(Load { name, on: raw.on.clone(), kind: kind(&item, raw)?, line: item.line() });
-    }
-    Ok(loads)
+    let called = |raw: &keys::LoadTable| raw.name.clone().unwrap_or_else(|| raw.on.clone());
+    named(source, "load", raw, called, |item, name, raw| {
+        Ok(Load { name, on: raw.on.clone(), kind: kind(item, raw)?, line: item.line() })
+    })
 }
 
 fn kind(item: &Item, raw: &keys::LoadTable) -> Result<LoadKind> {
@@ -28,32 +20,24 @@ fn kind(item: &Item, raw: &keys::LoadTable) -> Result<LoadKind> {
     match (&raw.force, &raw.pressure, &raw.spread) {
         (Some(force), None, spread) => spread_force(item, force, spread.as_ref()),
         (None, Some(pressure), None) => {
-            let pressure = item.check(pressure, true, "pressure", "must be finite", advice)?;
-            Ok(LoadKind::Pressure(pressure))
+            Ok(LoadKind::Pressure(item.check(pressure, true, "pressure", "must be finite", advice)?))
         }
         (None, Some(_), Some(spread)) => {
-            let what = "spread says how a force acts, but this is a pressure";
-            Err(item.error(&spread.span(), what, "Leave it out"))
+            Err(item.error(&spread.span(), "spread says how a force acts, but this is a pressure", "Leave it out"))
         }
         (Some(_), Some(pressure), _) => {
-            let what = "there are a force and a pressure";
-            Err(item.error(&pressure.span(), what, "Write two [[load]] tables"))
+            Err(item.error(&pressure.span(), "there are a force and a pressure", "Write two [[load]] tables"))
         }
         (None, None, _) => Err(item.error_here("nothing acts", advice)),
     }
 }
 
 fn spread_force(item: &Item, force: &Vector, spread: Option<&Text>) -> Result<LoadKind> {
+    type Spread = fn([f64; 3]) -> LoadKind;
+    const SPREADS: [(&str, Spread); 2] = [("nodes", LoadKind::ForceByNode), ("area", LoadKind::ForceByArea)];
     let force = item.finite(force, "force")?;
-    let Some(spread) = spread else {
-        return Ok(LoadKind::ForceByNode(force));
-    };
-    match spread.get_ref().as_str() {
-        "nodes" => Ok(LoadKind::ForceByNode(force)),
-        "area" => Ok(LoadKind::ForceByArea(force)),
-        other => {
-            let what = format_args!("unknown spread {other:?}");
-            Err(item.error(&spread.span(), what, names::advice(other, ["nodes", "area"])))
-        }
+    match spread {
+        None => Ok(LoadKind::ForceByNode(force)),
+        Some(spread) => item.find("spread", spread, &SPREADS, |(name, _)| name).map(|(_, kind)| kind(force)),
     }
 }

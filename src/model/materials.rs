@@ -58,12 +58,9 @@ impl<'a> MaterialReader<'a> {
 
     /// The material's kind, once all keys given belong to it.
     fn kind(&self) -> Result<&'static str> {
-        let kinds = KINDS.map(|(kind, _)| kind);
-        let wanted = self.raw.kind.as_ref().map_or("isotropic", |kind| kind.get_ref());
-        let Some(&(kind, known)) = KINDS.iter().find(|(kind, _)| *kind == wanted) else {
-            let span = self.raw.kind.as_ref().map_or(0..0, Spanned::span);
-            let what = format_args!("unknown kind of material {wanted:?}");
-            return Err(self.item.error(&span, what, names::advice(wanted, kinds)));
+        let &(kind, known) = match &self.raw.kind {
+            None => &KINDS[0],
+            Some(wanted) => self.item.find("kind of material", wanted, &KINDS, |(kind, _)| kind)?,
         };
         match self.given().into_iter().find(|(key, _)| !known.contains(key)) {
             None => Ok(kind),
@@ -97,25 +94,28 @@ impl<'a> MaterialReader<'a> {
     }
 
     fn isotropic(&self) -> Result<Matrix6<f64>> {
-        let young = self.item.positive(&self.one(&self.raw.young, "young", YOUNG)?, "young", YOUNG)?;
-        let poisson = self.poisson()?;
-        self.invert(&elasticity::isotropic_compliance(young, poisson))
+        let young = self.young()?;
+        self.invert(&elasticity::isotropic_compliance(young, self.poisson(0.5, "Give Poisson's ratio, such as 0.3")?))
+    }
+
+    fn young(&self) -> Result<f64> {
+        self.item.positive(&self.one(&self.raw.young, "young", YOUNG)?, "young", YOUNG)
     }
 
     fn transverse(&self) -> Result<Matrix6<f64>> {
         let (item, raw) = (&self.item, self.raw);
         let axis = item.required(&raw.axis, "axis", "Give the axis, such as [0, 0, 1]")?;
         let axis = item.direction(axis, "axis")?;
-        let axial = item.required(&raw.young_axial, "young_axial", YOUNG)?;
         let advice = "Give the contraction across the axis over the stretch along it";
         let ratio = item.required(&raw.poisson_axial, "poisson_axial", advice)?;
-        let shear = item.required(&raw.shear_axial, "shear_axial", SHEAR)?;
+        let modulus = |value, key, advice| item.positive(item.required(value, key, advice)?, key, advice);
         let constants = Transverse {
-            young: item.positive(&self.one(&raw.young, "young", YOUNG)?, "young", YOUNG)?,
-            young_axial: item.positive(axial, "young_axial", YOUNG)?,
-            poisson: self.in_plane_poisson()?,
+            young: self.young()?,
+            young_axial: modulus(&raw.young_axial, "young_axial", YOUNG)?,
+            // Within a plane the ratio may come up to 1.
+            poisson: self.poisson(1.0, "Give Poisson's ratio within the plane, such as 0.3")?,
             poisson_axial: item.check(ratio, true, "poisson_axial", "must be finite", advice)?,
-            shear_axial: item.positive(shear, "shear_axial", SHEAR)?,
+            shear_axial: modulus(&raw.shear_axial, "shear_axial", SHEAR)?,
         };
         let local = self.invert(&elasticity::transverse_compliance(&constants))?;
         Ok(elasticity::rotate(&local, &elasticity::axes_about(axis)))
@@ -136,9 +136,8 @@ impl<'a> MaterialReader<'a> {
         let advice = "Give six rows of six numbers in Pa, in the order xx yy zz xy yz zx";
         let rows = self.item.required(&self.raw.elasticity, "elasticity", advice)?;
         let C = Matrix6::from_fn(|i, j| rows.get_ref()[i][j]);
-        if !C.iter().all(|c| c.is_finite()) {
-            return Err(self.item.error(&rows.span(), "elasticity is not finite", advice));
-        }
+        let require = |holds, what: &str, advice: &str| self.item.require_at(&rows.span(), holds, what, advice);
+        require(C.iter().all(|c| c.is_finite()), "elasticity is not finite", advice)?;
         let differs = |&(i, j): &(usize, usize)| (C[(i, j)] - C[(j, i)]).abs() > 1e-6 * C.amax();
         if let Some((i, j)) = (0..6).flat_map(|i| (0..i).map(move |j| (j, i))).find(differs) {
             let (row, column) = (i + 1, j + 1);
@@ -150,11 +149,9 @@ impl<'a> MaterialReader<'a> {
             return Err(self.item.error(&rows.span(), what, advice));
         }
         let C = elasticity::symmetric(&C);
-        if !elasticity::is_positive_definite(&C) {
-            let what = "elasticity is not positive definite: some strain would have no or negative energy";
-            let advice = "Look at signs, powers of ten and the order xx yy zz xy yz zx";
-            return Err(self.item.error(&rows.span(), what, advice));
-        }
+        let what = "elasticity is not positive definite: some strain would have no or negative energy";
+        let advice = "Look at signs, powers of ten and the order xx yy zz xy yz zx";
+        require(elasticity::is_positive_definite(&C), what, advice)?;
         Ok(elasticity::rotate(&C, &self.axes()?))
     }
 
@@ -168,19 +165,12 @@ impl<'a> MaterialReader<'a> {
         })
     }
 
-    fn poisson(&self) -> Result<f64> {
-        let advice = "Give Poisson's ratio, such as 0.3";
+    /// Poisson's ratio, between -1 and a limit.
+    fn poisson(&self, limit: f64, advice: &str) -> Result<f64> {
         let poisson = self.one(&self.raw.poisson, "poisson", advice)?;
         let nu = *poisson.get_ref();
-        self.item.check(&poisson, -1.0 < nu && nu < 0.5, "poisson", "must be above -1 and below 0.5", advice)
-    }
-
-    /// Within a plane the ratio may come up to 1.
-    fn in_plane_poisson(&self) -> Result<f64> {
-        let advice = "Give Poisson's ratio within the plane, such as 0.3";
-        let poisson = self.one(&self.raw.poisson, "poisson", advice)?;
-        let nu = *poisson.get_ref();
-        self.item.check(&poisson, -1.0 < nu && nu < 1.0, "poisson", "must be above -1 and below 1", advice)
+        let must = format!("must be above -1 and below {limit}");
+        self.item.check(&poisson, -1.0 < nu && nu < limit, "poisson", &must, advice)
     }
 
     /// The single number that this kind of material has under a key.

@@ -2,7 +2,7 @@
 
 use super::item::Item;
 use super::source::{ModelText, located};
-use super::{Model, analysis, bodies, contacts, keys, loads, materials, names};
+use super::{Model, analysis, bodies, contacts, keys, loads, materials};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -74,13 +74,8 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
 
 /// Metres per unit of the mesh.
 fn unit(source: ModelText, mesh: &keys::MeshTable) -> Result<f64> {
-    let wanted = mesh.unit.get_ref();
-    if let Some((_, metres)) = UNITS.iter().find(|(name, _)| name == wanted) {
-        return Ok(*metres);
-    }
     let item = Item::new(source, "mesh".to_owned(), mesh.unit.span());
-    let what = format_args!("unknown unit of length {wanted:?}");
-    Err(item.error_here(what, names::advice(wanted, UNITS.map(|(name, _)| name))))
+    item.find("unit of length", &mesh.unit, &UNITS, |(name, _)| name).map(|(_, metres)| *metres)
 }
 
 /// A path of the file, seen from the current directory.

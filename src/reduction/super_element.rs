@@ -60,7 +60,7 @@ pub struct NodeContact {
 }
 
 /// The reduced brake.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct SuperElement {
     /// Where it comes from.
     pub origin: Origin,
