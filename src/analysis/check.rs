@@ -16,7 +16,11 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
     let sliding = || full.interface.pairs.iter().filter(|pair| pair.is_sliding());
     ModelSummary {
         title: full.model.title.clone(),
-        mesh: mesh(comm, full),
+        mesh: MeshSummary {
+            nodes: full.nodes.n_global(),
+            elements: comm.sum(full.own_elements().count()),
+            size_m: full.extents(comm),
+        },
         parts: (0..full.mesh.parts.len()).map(|i| part(comm, full, i)).collect(),
         pairs: full.interface.pairs.iter().map(pair).collect(),
         layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
@@ -26,21 +30,6 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
         sum_of_loads_n: full.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i])),
         warnings: plausibility::warnings(full, comm),
         matrix: None,
-    }
-}
-
-fn mesh(comm: &Comm, full: &FullModel) -> MeshSummary {
-    let ends = |sign: f64| {
-        let most = |i: usize| full.mesh.nodes.iter().map(|x| sign * x[i]).fold(f64::MIN, f64::max);
-        let mut ends = [0, 1, 2].map(most);
-        comm.max_all(&mut ends);
-        ends
-    };
-    let (high, low) = (ends(1.0), ends(-1.0));
-    MeshSummary {
-        nodes: full.nodes.n_global(),
-        elements: comm.sum(full.own_elements().count()),
-        size_m: [0, 1, 2].map(|i| high[i] + low[i]),
     }
 }
 

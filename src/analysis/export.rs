@@ -91,8 +91,7 @@ pub fn export(
         }
     }
     export.rows(structure, &system)?;
-    let title = structure.about(comm)?.title;
-    Ok(Exported { title, friction, n_dofs: system.dofs.n_global(), files: export.files })
+    Ok(Exported { title: structure.title().to_owned(), friction, n_dofs: system.dofs.n_global(), files: export.files })
 }
 
 /// The friction coefficient of the equilibrium.

@@ -54,27 +54,13 @@ pub(super) struct Run<'r> {
     pub system: &'r System,
     pub results: Results,
     pub observer: &'r mut dyn Observer,
-    fields: FieldWriter<'r>,
-    sweep: Sweep<'r>,
-    motion: SurfaceMotion<'r>,
+    pub fields: FieldWriter<'r>,
+    pub sweep: Sweep<'r>,
+    pub motion: SurfaceMotion<'r>,
     place: Option<PathBuf>,
     checkpoint: Option<Checkpoint>,
     /// What an earlier run has finished and this one has not come to yet.
     earlier: VecDeque<EarlierValue>,
-}
-
-/// One value whose equilibrium is found.
-pub(super) struct AtValue<'v, 'r> {
-    pub system: &'v System,
-    pub structure: &'v Structure,
-    pub sweep: &'v mut Sweep<'r>,
-    pub motion: &'v mut SurfaceMotion<'r>,
-    pub fields: FieldWriter<'r>,
-    pub observer: &'v mut dyn Observer,
-    pub equilibrium: &'v Equilibrium,
-    pub band: [f64; 2],
-    /// Whether the value is one of those asked for, whose modes are drawn and explained.
-    pub asked: bool,
 }
 
 /// What an analysis makes of an equilibrium.
@@ -203,18 +189,28 @@ impl Run<'_> {
         self.results.about.frictions.clone()
     }
 
-    /// Finds the equilibrium at a value; `each` makes of it what the analysis is for. Fields are written at values
-    /// asked for. Gives the snapshot that was made. Collective.
+    /// Whether a value is one of those asked for, whose fields are written and whose modes are drawn and explained.
+    pub fn is_asked(&self, friction: f64) -> bool {
+        self.results.about.frictions.contains(&friction)
+    }
+
+    /// Visits the values asked for, one by one.
+    pub fn each(&mut self, find: fn(&mut Self, &Equilibrium) -> Result<ValueResult>) -> Result<()> {
+        self.values().into_iter().try_for_each(|friction| self.visit(friction, find).map(|_| ()))
+    }
+
+    /// Finds the equilibrium at a value; `find` makes of it what the analysis is for. Gives the snapshot that was made.
+    /// Collective.
     pub fn visit(
         &mut self,
         friction: f64,
-        each: impl FnOnce(AtValue) -> Result<ValueResult>,
+        find: impl FnOnce(&mut Self, &Equilibrium) -> Result<ValueResult>,
     ) -> Result<Option<Snapshot>> {
         if let Some(earlier) = self.earlier.pop_front() {
             return self.replay(friction, earlier);
         }
         let start = Instant::now();
-        let asked = self.results.about.frictions.contains(&friction);
+        let asked = self.is_asked(friction);
         if !asked {
             self.observer.event(Event::Inserted);
         }
@@ -226,17 +222,7 @@ impl Run<'_> {
         if asked {
             self.fields.equilibrium(&equilibrium)?;
         }
-        let ValueResult { modes, count, mut snapshot } = each(AtValue {
-            system: self.system,
-            structure: self.structure,
-            sweep: &mut self.sweep,
-            motion: &mut self.motion,
-            fields: self.fields,
-            observer: self.observer,
-            equilibrium: &equilibrium,
-            band: self.results.about.band,
-            asked,
-        })?;
+        let ValueResult { modes, count, mut snapshot } = find(self, &equilibrium)?;
         let (pressure, status) = self.structure.contact_fields(&equilibrium.responses);
         let (pairs, checks) = (checks.pairs, checks.text);
         let (steps, seconds) = (equilibrium.steps, start.elapsed().as_secs_f64());

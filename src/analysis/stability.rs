@@ -17,7 +17,7 @@ use super::explain::explain;
 use super::family::{FrictionFamily, Snapshot, Solutions, Vectors, tracking_options, widened};
 use super::mode_data::{UnstableMode, mode_data};
 use super::observer::Observer;
-use super::run::{self, AtValue, Job, Output, Run, ValueResult};
+use super::run::{self, Job, Output, Run, ValueResult};
 use super::sweep::Sweep;
 
 /// What [`stability`] is asked for.
@@ -74,8 +74,8 @@ pub fn stability(
         let follows = options.follows(job.values.len());
         run::run(comm, structure, &job, options.output.as_ref(), observer, |run| match (options.reduce_each, follows) {
             (false, true) => follow(run),
-            (false, false) => each(run, modes_at),
-            (true, _) => each(run, reduced_modes_at),
+            (false, false) => run.each(modes_at),
+            (true, _) => run.each(reduced_modes_at),
         })
     })?;
     Ok(results.unwrap_or_default())
@@ -109,11 +109,6 @@ fn order(mut values: Vec<f64>, follows: bool) -> Vec<f64> {
     values
 }
 
-/// Only the values asked for, one by one.
-fn each(run: &mut Run, find: fn(AtValue) -> Result<ValueResult>) -> Result<()> {
-    run.values().into_iter().try_for_each(|friction| run.visit(friction, find).map(|_| ()))
-}
-
 /// Modes at all values, followed as branches, and at those in between that this needs.
 fn follow(run: &mut Run) -> Result<()> {
     let (system, values) = (run.system, run.values());
@@ -127,12 +122,13 @@ fn follow(run: &mut Run) -> Result<()> {
 /// The modes at each value that tracking asks for.
 impl Solutions for Run<'_> {
     fn solve(&mut self, friction: f64) -> Result<Snapshot> {
-        let snapshot = self.visit(friction, |at| {
-            let AtValue { sweep, motion, fields, equilibrium, band, .. } = at;
-            let modes = sweep.modes(equilibrium, widened(band), at.observer)?;
+        let snapshot = self.visit(friction, |run, equilibrium| {
+            let (band, asked) = (run.results.about.band, run.is_asked(friction));
+            let Run { sweep, motion, fields, observer, .. } = run;
+            let modes = sweep.modes(equilibrium, widened(band), *observer)?;
             let snapshot = Snapshot::new(sweep, &modes, band[1])?;
-            let found = mode_data(motion, &modes, band, at.asked, |unstable| {
-                write_and_explain(sweep, &fields, equilibrium, &unstable, snapshot.left(unstable.index)?)
+            let found = mode_data(motion, &modes, band, asked, |unstable| {
+                write_and_explain(sweep, fields, equilibrium, &unstable, snapshot.left(unstable.index)?)
             })?;
             Ok(ValueResult { snapshot: Some(snapshot), ..found })
         })?;
@@ -153,27 +149,29 @@ impl Solutions for Run<'_> {
 }
 
 /// The modes at one value; left vectors of unstable ones alone.
-fn modes_at(at: AtValue) -> Result<ValueResult> {
-    let AtValue { sweep, motion, fields, equilibrium, band, .. } = at;
-    let modes = sweep.modes(equilibrium, band, at.observer)?;
+fn modes_at(run: &mut Run, equilibrium: &Equilibrium) -> Result<ValueResult> {
+    let (band, asked) = (run.results.about.band, run.is_asked(equilibrium.friction));
+    let Run { sweep, motion, fields, observer, .. } = run;
+    let modes = sweep.modes(equilibrium, band, *observer)?;
     let any_unstable = modes.modes.iter().any(Mode::is_unstable);
     let snapshot = any_unstable.then(|| Snapshot::of_unstable(sweep, &modes, band[1])).transpose()?;
-    mode_data(motion, &modes, band, at.asked, |unstable| match &snapshot {
-        Some(snapshot) => write_and_explain(sweep, &fields, equilibrium, &unstable, snapshot.left(unstable.index)?),
+    mode_data(motion, &modes, band, asked, |unstable| match &snapshot {
+        Some(snapshot) => write_and_explain(sweep, fields, equilibrium, &unstable, snapshot.left(unstable.index)?),
         None => Ok(Vec::new()),
     })
 }
 
 /// The modes of the super-element that the model is about the equilibrium.
-fn reduced_modes_at(at: AtValue) -> Result<ValueResult> {
-    let (comm, friction) = (at.system.k.comm(), at.equilibrium.friction);
-    let structure = at.structure.reduced_about(at.system, at.equilibrium)?;
-    let (band, system) = (structure.band(Some(at.band))?, structure.assemble(comm)?);
+fn reduced_modes_at(run: &mut Run, full: &Equilibrium) -> Result<ValueResult> {
+    let (friction, band, asked) = (full.friction, run.results.about.band, run.is_asked(full.friction));
+    let structure = run.structure.reduced_about(run.system, full)?;
+    structure.band(Some(band))?;
+    let system = structure.assemble(run.system.k.comm())?;
     let mut sweep = Sweep::new(&system, structure.interface(), structure.friction_damping())?;
-    let equilibrium = sweep.equilibrium(friction, at.observer)?;
-    let modes = sweep.modes(&equilibrium, band, at.observer)?;
-    let fields = FieldWriter { structure: &structure, system: &system, folder: at.fields.folder };
-    mode_data(&mut structure.surface_motion(&system)?, &modes, at.band, at.asked, |unstable| {
+    let equilibrium = sweep.equilibrium(friction, run.observer)?;
+    let modes = sweep.modes(&equilibrium, band, run.observer)?;
+    let fields = FieldWriter { structure: &structure, system: &system, folder: run.fields.folder };
+    mode_data(&mut structure.surface_motion(&system)?, &modes, band, asked, |unstable| {
         fields.mode(friction, unstable.number, unstable.mode, unstable.shape)?;
         Ok(Vec::new())
     })

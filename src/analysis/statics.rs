@@ -1,6 +1,7 @@
 //! Static equilibria over the friction coefficient.
 
 use crate::Result;
+use crate::equilibrium::Equilibrium;
 use crate::native::Comm;
 use crate::output::summary;
 use crate::results::Results;
@@ -34,11 +35,8 @@ pub fn statics(
     let results = structure.on_its_ranks(comm, |comm| {
         let values = structure.friction_values(options.friction_values.as_deref())?;
         let job = Job { name: "static", options: String::new(), values, band: [0.0; 2], summary: summary::statics };
-        super::run::run(comm, structure, &job, options.output.as_ref(), observer, each)
+        let none = |_: &mut Run, _: &Equilibrium| Ok(ValueResult::default());
+        super::run::run(comm, structure, &job, options.output.as_ref(), observer, |run| run.each(none))
     })?;
     Ok(results.unwrap_or_default())
-}
-
-fn each(run: &mut Run) -> Result<()> {
-    run.values().into_iter().try_for_each(|friction| run.visit(friction, |_| Ok(ValueResult::default())).map(|_| ()))
 }

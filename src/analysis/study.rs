@@ -104,14 +104,11 @@ impl<'a> Plan<'a> {
             full.require_constrained(comm)?;
             full.interface = all;
         }
-        let mut loaded: Vec<&str> = full.model.loads.iter().map(|load| load.on.as_str()).collect();
-        loaded.sort_unstable();
-        loaded.dedup();
-        let (n_loaded, own) = (loaded.len(), full.own_friction());
-        let about = Structure::Full(Box::new(full)).about(comm)?;
+        let reduced_at = options.reduced_at.unwrap_or_else(|| full.own_friction());
+        let [model, mesh] = full.digests(comm)?;
         let (program, more) = (env!("CARGO_PKG_VERSION"), &options.identity);
-        let identity = format!("squeal {program} {more}, model {}, mesh {}", about.model_digest, about.mesh_digest);
-        Ok(Plan { options, friction_values, reduced_at: options.reduced_at.unwrap_or(own), n_loaded, identity })
+        let identity = format!("squeal {program} {more}, model {model}, mesh {mesh}");
+        Ok(Plan { options, friction_values, reduced_at, n_loaded: full.loaded_names().len(), identity })
     }
 
     /// All parts, each after those that it needs.

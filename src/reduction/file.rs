@@ -139,20 +139,33 @@ fn pair_texts(element: &SuperElement) -> Vec<PairText> {
 /// # Errors
 /// [`crate::Error::Input`] where the file is none, is incomplete, or of another version.
 pub fn read(path: &Path) -> Result<(SuperElement, OuterSurface)> {
-    let file = hdf::open(path, &FORMAT)?;
-    let (element, surface) = read_body(&file).map_err(|reason| hdf::damaged(path, &FORMAT, reason))?;
-    match inconsistency(&element, &surface) {
-        None => Ok((element, surface)),
-        Some(what) => Err(hdf::damaged(path, &FORMAT, what)),
+    let element = read_element(path)?;
+    let damaged = |reason: hdf5::Error| hdf::damaged(path, &FORMAT, reason);
+    let surface = read_surface(&hdf::open(path, &FORMAT)?).map_err(damaged)?;
+    if surface.basis.len() != 3 * surface.nodes.len() * element.n_coordinates() {
+        return Err(hdf::damaged(path, &FORMAT, "the basis of the surface has another size"));
     }
+    Ok((element, surface))
 }
 
-fn read_body(file: &File) -> hdf5::Result<(SuperElement, OuterSurface)> {
-    let about: About =
-        toml::from_str(&read_text(file, "about")?).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
+/// Reads a super-element without its surface, whose basis is most of the file. Not collective.
+///
+/// # Errors
+/// See [`read`].
+pub fn read_element(path: &Path) -> Result<SuperElement> {
+    let file = hdf::open(path, &FORMAT)?;
+    let element = read_body(&file).map_err(|reason| hdf::damaged(path, &FORMAT, reason))?;
+    inconsistency(&element).map_or(Ok(element), |what| Err(hdf::damaged(path, &FORMAT, what)))
+}
+
+fn read_about(file: &File) -> hdf5::Result<About> {
+    toml::from_str(&read_text(file, "about")?).map_err(|reason| hdf5::Error::from(reason.to_string()))
+}
+
+fn read_body(file: &File) -> hdf5::Result<SuperElement> {
+    let about = read_about(file)?;
     let pairs = pairs(&about.pair);
-    let surface = file.group("surface")?;
-    let element = SuperElement {
+    Ok(SuperElement {
         origin: about.origin,
         points: triples(file, "points")?,
         frequencies: values(file, "frequencies")?,
@@ -163,15 +176,18 @@ fn read_body(file: &File) -> hdf5::Result<(SuperElement, OuterSurface)> {
         preload: values(file, "preload")?,
         contacts: read_contacts(&file.group("contacts")?, &pairs)?,
         pairs,
-    };
-    let surface = OuterSurface {
+    })
+}
+
+fn read_surface(file: &File) -> hdf5::Result<OuterSurface> {
+    let surface = file.group("surface")?;
+    Ok(OuterSurface {
         nodes: triples(&surface, "nodes")?,
         triangles: triples(&surface, "triangles")?,
         part: values(&surface, "part")?,
-        parts: about.parts,
+        parts: read_about(file)?.parts,
         basis: values(&surface, "basis")?,
-    };
-    Ok((element, surface))
+    })
 }
 
 fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
@@ -238,7 +254,7 @@ fn read_contacts(group: &Group, pairs: &[ContactPair]) -> hdf5::Result<Vec<NodeC
 }
 
 /// What does not fit together.
-fn inconsistency(element: &SuperElement, surface: &OuterSurface) -> Option<String> {
+fn inconsistency(element: &SuperElement) -> Option<String> {
     let (n, least) = (element.n_coordinates(), 3 * element.points.len() + element.frequencies.len());
     if n < least {
         return Some(format!("{n} coordinates for {least} retained displacements and modes"));
@@ -255,8 +271,6 @@ fn inconsistency(element: &SuperElement, surface: &OuterSurface) -> Option<Strin
         }
     }
     let n_contacts: usize = element.pairs.iter().map(|pair| pair.points.len()).sum();
-    if n_contacts != element.contacts.len() || 2 * n_contacts > element.points.len() {
-        return Some(format!("{} contacts, {n_contacts} in its pairs", element.contacts.len()));
-    }
-    (surface.basis.len() != 3 * surface.nodes.len() * n).then(|| "the basis of the surface has another size".into())
+    let differ = n_contacts != element.contacts.len() || 2 * n_contacts > element.points.len();
+    differ.then(|| format!("{} contacts, {n_contacts} in its pairs", element.contacts.len()))
 }

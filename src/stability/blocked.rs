@@ -27,11 +27,10 @@ use std::rc::Rc;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::eigensolver::{EigenProgress, Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
+use super::eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
 use super::mode::backward_errors;
 use super::space::{Basis, FactoredProblem, Ritz, SKETCH, Side, Space, Start};
 use super::{EigenOptions, QuadraticProblem};
-use crate::equilibrium::LabelledFactor;
 use crate::native::petsc::eigen::{self, Found, Pair, Quadratic};
 use crate::native::{Factor, FactorKind, Matrix};
 use crate::{ErrorKind, Result};
@@ -168,14 +167,9 @@ impl Blocked {
 }
 
 impl Eigensolver for Blocked {
-    fn search(
-        &mut self,
-        problem: &QuadraticProblem,
-        factor: &mut LabelledFactor,
-        request: &SearchRequest,
-        progress: &mut OnProgress,
-    ) -> Result<Option<SearchResult>> {
-        let Some(reach) = self.reach(problem, request) else { return Ok(None) };
+    fn search(&mut self, search: Search) -> Result<Option<SearchResult>> {
+        let Search { problem, factor, request, progress } = search;
+        let Some(reach) = self.reach(problem, &request) else { return Ok(None) };
         let (factor, labels) = (problem.factorise(request.shift, factor)?, self.labels.clone());
         let searched = FactoredProblem { problem, factor, labels: &labels };
         let target = Target { radius: TAU * reach, n_expected: request.n_modes };

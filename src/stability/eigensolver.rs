@@ -20,6 +20,18 @@ pub struct SearchRequest {
     pub attempt: usize,
 }
 
+/// What a search works on.
+pub struct Search<'s> {
+    /// The problem.
+    pub problem: &'s QuadraticProblem<'s>,
+    /// Becomes the factor of the problem at the shift, where the solver needs one.
+    pub factor: &'s mut LabelledFactor,
+    /// What is sought.
+    pub request: SearchRequest,
+    /// Is called while the search runs.
+    pub progress: &'s mut OnProgress<'s>,
+}
+
 /// How far an eigensolver has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EigenProgress {
@@ -74,11 +86,5 @@ pub trait Eigensolver {
     ///
     /// # Errors
     /// PETSc's and MUMPS's.
-    fn search(
-        &mut self,
-        problem: &QuadraticProblem,
-        factor: &mut LabelledFactor,
-        request: &SearchRequest,
-        progress: &mut OnProgress,
-    ) -> Result<Option<SearchResult>>;
+    fn search(&mut self, search: Search) -> Result<Option<SearchResult>>;
 }

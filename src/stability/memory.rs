@@ -89,7 +89,7 @@ mod tests {
     use super::*;
     use crate::native::{Precision, Session};
     use crate::stability::testing::Blocks;
-    use crate::stability::{EigenOptions, Eigensolver, SearchRequest};
+    use crate::stability::{EigenOptions, Eigensolver, Search, SearchRequest};
 
     /// Answers one question after the other, and keeps what was asked for, MB.
     fn budget(answers: &[bool]) -> (MemoryBudget, Rc<RefCell<Vec<f64>>>) {
@@ -116,7 +116,8 @@ mod tests {
         let mut blocked = Blocked::new(options, blocks.system.dofs.labels());
         blocks.with(0.5, &[], |problem| {
             let request = SearchRequest { n_modes: 8, end: 5.0, shift: 0.0, attempt: 0 };
-            blocked.search(problem, &mut factor, &request, &mut |_| ()).unwrap().unwrap();
+            let search = Search { problem, factor: &mut factor, request, progress: &mut |_| () };
+            blocked.search(search).unwrap().unwrap();
             sturm.n_below(problem, 5.0).unwrap();
             let made = Made { factor, sturm, blocked };
             assert_eq!(state(&made), [true; 3]);

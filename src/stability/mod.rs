@@ -36,7 +36,7 @@ mod toar;
 pub use band::{Band, BandReport, BandRequest, BandSolver};
 pub use condition::{condition, condition_at};
 pub use count::Count;
-pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
+pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::right_vectors;
 pub use linearise::{Linearised, with_friction_damping};

@@ -18,13 +18,13 @@
 
 use nalgebra::{DMatrix, Matrix2};
 
-use super::eigensolver::{Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
+use super::eigensolver::{Eigensolver, Search, SearchRequest, SearchResult, SolverKind};
 use super::space::Side;
 use super::toar::{complete, pep_options, with_wanted};
 use super::{EigenOptions, FrozenPoints, Mode, QuadraticProblem};
 use crate::Result;
 use crate::contact::{Dyad, Tangent, TangentChange};
-use crate::equilibrium::{LabelledFactor, Woodbury};
+use crate::equilibrium::Woodbury;
 use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
 use crate::native::{Block, Matrix, Mck, Vector, lapack};
 
@@ -113,17 +113,12 @@ impl Modal {
 }
 
 impl Eigensolver for Modal {
-    fn search(
-        &mut self,
-        problem: &QuadraticProblem,
-        _: &mut LabelledFactor,
-        request: &SearchRequest,
-        progress: &mut OnProgress,
-    ) -> Result<Option<SearchResult>> {
+    fn search(&mut self, search: Search) -> Result<Option<SearchResult>> {
+        let Search { problem, request, progress, .. } = search;
         if self.coordinates.is_none() {
             self.coordinates = Coordinates::new(problem)?;
         }
-        let options = self.pep_options(problem, request);
+        let options = self.pep_options(problem, &request);
         self.last = Some(options);
         let Some(coordinates) = &mut self.coordinates else { return Ok(None) };
         let mut progress = with_wanted(options.n_wanted, progress);
@@ -263,6 +258,7 @@ mod tests {
     use num_complex::Complex64;
 
     use super::*;
+    use crate::equilibrium::LabelledFactor;
     use crate::native::{Precision, Session};
     use crate::stability::testing::Blocks;
 
@@ -275,7 +271,8 @@ mod tests {
             let mut modal = Modal::new(EigenOptions::default());
             let request = SearchRequest { n_modes: 10, end: BAND_END, shift: 0.0, attempt: 0 };
             let mut factor = LabelledFactor::new(Precision::Double);
-            let found = modal.search(problem, &mut factor, &request, &mut |_| ()).unwrap().unwrap();
+            let search = Search { problem, factor: &mut factor, request, progress: &mut |_| () };
+            let found = modal.search(search).unwrap().unwrap();
             let mode = |(Pair { lambda, re, im }, backward_error)| Mode { lambda, backward_error, re, im };
             let modes: Vec<Mode> = found.pairs.into_iter().zip(found.backward_errors).map(mode).collect();
             look(problem, &mut modal, &modes);

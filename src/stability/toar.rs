@@ -4,11 +4,10 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use super::eigensolver::{EigenProgress, Eigensolver, OnProgress, SearchRequest, SearchResult, SolverKind};
+use super::eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
 use super::mode::backward_errors;
 use super::{EigenOptions, QuadraticProblem};
 use crate::Result;
-use crate::equilibrium::LabelledFactor;
 use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
 use crate::native::{Block, Precision, Vector};
 
@@ -21,18 +20,13 @@ pub(super) struct Toar {
 }
 
 impl Eigensolver for Toar {
-    fn search(
-        &mut self,
-        problem: &QuadraticProblem,
-        factor: &mut LabelledFactor,
-        request: &SearchRequest,
-        progress: &mut OnProgress,
-    ) -> Result<Option<SearchResult>> {
+    fn search(&mut self, search: Search) -> Result<Option<SearchResult>> {
+        let Search { problem, factor, request, progress } = search;
         if problem.factorise(request.shift, factor).map(|factor| !factor.is_exact())? {
             factor.set_precision(Precision::Double);
         }
         let lu = problem.factorise(request.shift, factor)?;
-        let options = pep_options(problem, request, self.options.toar_tolerance);
+        let options = pep_options(problem, &request, self.options.toar_tolerance);
         let inverse = |b: &Vector, x: &mut Vector| lu.solve(b, x);
         let quadratic = Quadratic { matrices: problem.matrices, shift: request.shift, inverse: &inverse };
         let found = eigen::solve(&quadratic, &options, &mut with_wanted(options.n_wanted, progress))?;

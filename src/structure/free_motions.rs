@@ -5,7 +5,7 @@
 //! are free. They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a body along an
 //! axis, a contact pair, a connector) has the same say whatever its number of points and the model's unit of length.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use pathfinding::undirected::connected_components::separate_components;
 
 use crate::algebra::cross;
@@ -143,49 +143,63 @@ pub fn free_motions(
 ) -> Vec<FreeMotion> {
     let bodies = Bodies::new(comm, mesh, nodes);
     let width = 6 * bodies.parts.len();
-    let mut gram = DMatrix::<f64>::zeros(width, width);
-    let mut row = vec![0.0; width];
-    let mut resist = |weight: f64, fill: &mut dyn FnMut(&mut [f64])| {
-        row.fill(0.0);
-        fill(&mut row);
-        for (i, a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
-            for (j, b) in row.iter().enumerate() {
-                gram[(i, j)] += weight * a * b;
-            }
-        }
-    };
-    let mut n_held = vec![[0.0; 3]; bodies.parts.len()];
-    for (held, &body) in held.iter().zip(&bodies.of_node) {
-        (0..3).filter(|&i| held[i]).for_each(|i| n_held[body][i] += 1.0);
+    let mut resistance = Resistance { bodies: &bodies, mesh, gram: DMatrix::zeros(width, width) };
+    resistance.add_supports(held);
+    resistance.add_contacts(interface);
+    resistance.add_connectors(links);
+    null_space(resistance.gram, &bodies)
+}
+
+/// What resists the motions of the bodies.
+struct Resistance<'a> {
+    bodies: &'a Bodies,
+    mesh: &'a Mesh,
+    /// `sum_s weight_s R_s^T R_s`
+    gram: DMatrix<f64>,
+}
+
+impl Resistance<'_> {
+    /// Adds a functional `sum_n v_n . u_n`.
+    fn add(&mut self, weight: f64, functional: &[(u32, [f64; 3])]) {
+        let mut row = DVector::zeros(self.gram.nrows());
+        functional.iter().for_each(|&(node, v)| self.bodies.accumulate(row.as_mut_slice(), self.mesh, node, v));
+        self.gram.ger(weight, &row, &row, 1.0);
     }
-    for (node, held) in held.iter().enumerate() {
-        for i in (0..3).filter(|&i| held[i]) {
-            let weight = 1.0 / n_held[bodies.of_node[node]][i];
-            resist(weight, &mut |row| bodies.accumulate(row, mesh, node as u32, unit(i)));
+
+    fn add_supports(&mut self, held: &[[bool; 3]]) {
+        let body = |node: usize| self.bodies.of_node[node];
+        let axes = |node: usize| (0..3).filter(move |&i| held[node][i]).map(move |i| (node, i));
+        let supports: Vec<(usize, usize)> = (0..held.len()).flat_map(axes).collect();
+        let mut n_held = vec![[0.0; 3]; self.bodies.parts.len()];
+        supports.iter().for_each(|&(node, i)| n_held[body(node)][i] += 1.0);
+        for (node, i) in supports {
+            self.add(1.0 / n_held[self.bodies.of_node[node]][i], &[(node as u32, unit(i))]);
         }
     }
-    for pair in &interface.pairs {
-        for a in pair.points.clone() {
-            for direction in resisted_directions(interface, a) {
-                resist(1.0 / pair.points.len() as f64, &mut |row| {
-                    interface.gap_operator.spread(a, direction, |node, v| bodies.accumulate(row, mesh, node, v));
-                });
-            }
-        }
-    }
-    for link in links {
-        for (values, _) in link.motion.rows.iter().zip(link.stiffness).filter(|(_, k)| *k > 0.0) {
-            // A rotation has the unit 1/m: taken times the size of the node set, it is a displacement as all others
-            // are.
-            let size = values.iter().map(|v| v.abs()).sum::<f64>();
-            resist(size.powi(-2), &mut |row| {
-                for (&node, v) in link.nodes.iter().zip(values.chunks_exact(3)) {
-                    bodies.accumulate(row, mesh, node, [v[0], v[1], v[2]]);
+
+    fn add_contacts(&mut self, interface: &Interface) {
+        for pair in &interface.pairs {
+            for a in pair.points.clone() {
+                for direction in resisted_directions(interface, a) {
+                    let mut functional = Vec::new();
+                    interface.gap_operator.spread(a, direction, |node, v| functional.push((node, v)));
+                    self.add(1.0 / pair.points.len() as f64, &functional);
                 }
-            });
+            }
         }
     }
-    null_space(gram, &bodies)
+
+    fn add_connectors(&mut self, links: &[ConnectorElement]) {
+        for link in links {
+            for (values, _) in link.motion.rows.iter().zip(link.stiffness).filter(|(_, k)| *k > 0.0) {
+                // A rotation has the unit 1/m: taken times the size of the node set, it is a displacement as all
+                // others are.
+                let size = values.iter().map(|v| v.abs()).sum::<f64>();
+                let at_nodes = link.nodes.iter().copied().zip(values.as_chunks().0.iter().copied());
+                self.add(size.powi(-2), &at_nodes.collect::<Vec<_>>());
+            }
+        }
+    }
 }
 
 fn unit(i: usize) -> [f64; 3] {

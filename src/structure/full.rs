@@ -106,11 +106,10 @@ impl FullModel {
     /// # Errors
     /// [`Error::Input`] that names the parts and their free motions.
     pub fn require_constrained(&self, comm: &Comm) -> Result<()> {
-        let free = free_motions(comm, &self.mesh, &self.nodes, &self.interface, &self.held, &self.links);
+        let free = self.free_motions(comm, &self.interface);
         if free.is_empty() {
             return self.require_load(comm);
         }
-        let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
         let open = self.interface.pairs.iter().filter(|pair| pair.separation && pair.statistics.touching == 0);
         let open: Vec<&str> = open.map(|pair| pair.name.as_str()).collect();
         let gaps = match open[..] {
@@ -121,10 +120,15 @@ impl FullModel {
             ),
         };
         Err(Error::input(format!(
-            "{}: held by nothing:\n{}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
-            self.model.file.display(),
-            list.join("\n")
+            "{}: held by nothing:\n{free}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
+            self.model.file.display()
         )))
+    }
+
+    /// The motions that nothing resists, a line each, with the contacts of an interface. Collective.
+    fn free_motions(&self, comm: &Comm, interface: &Interface) -> String {
+        let free = free_motions(comm, &self.mesh, &self.nodes, interface, &self.held, &self.links);
+        free.iter().map(|motion| format!("  {motion}")).collect::<Vec<_>>().join("\n")
     }
 
     /// Whether nothing presses the contacts together: there is no load, and no overlap that is meant.
@@ -148,16 +152,14 @@ impl FullModel {
         }
         let mut open = self.interface.clone();
         open.points.iter_mut().for_each(|point| point.law.touching = false);
-        let free = free_motions(comm, &self.mesh, &self.nodes, &open, &self.held, &self.links);
+        let free = self.free_motions(comm, &open);
         if free.is_empty() {
             return Ok(());
         }
-        let list: Vec<String> = free.iter().map(|motion| format!("  {motion}")).collect();
         Err(Error::input(format!(
-            "{}: no load presses the contacts together, which alone stop these motions:\n{}\n\
+            "{}: no load presses the contacts together, which alone stop these motions:\n{free}\n\
              Give a [[load]] with a force or a pressure other than zero: without pressure there is no friction and no squeal",
-            self.model.file.display(),
-            list.join("\n")
+            self.model.file.display()
         )))
     }
 
@@ -233,6 +235,15 @@ impl FullModel {
         self.interface.pairs.iter().find(|pair| pair.swept).map_or(0.0, |pair| pair.friction)
     }
 
+    /// SHA-256 of the model's file and of the mesh's; the root has them. Collective.
+    ///
+    /// # Errors
+    /// The system's, with the path.
+    pub fn digests(&self, comm: &Comm) -> Result<[String; 2]> {
+        let both = || Ok([digest(&self.model.file)?, digest(&self.model.mesh_file)?]);
+        comm.agree(if comm.is_root() { both() } else { Ok([String::new(), String::new()]) })
+    }
+
     /// Title, files with their digests, sizes, parts and pairs. Collective.
     pub(super) fn about(&self, comm: &Comm) -> Result<About> {
         let material =
@@ -244,17 +255,16 @@ impl FullModel {
         };
         let parts = self.mesh.parts.iter().enumerate().map(part).collect();
         let n_elements = comm.sum(self.own_elements().count());
-        let [model_digest, mesh_digest] = [&self.model.file, &self.model.mesh_file]
-            .map(|file| comm.agree(if comm.is_root() { digest(file) } else { Ok(String::new()) }));
+        let [model_digest, mesh_digest] = self.digests(comm)?;
         let file = &self.model.file;
         let text = comm.agree(std::fs::read_to_string(file).map_err(Error::io(file)))?;
         Ok(About {
             title: self.model.title.clone(),
             model: self.model.file.display().to_string(),
-            model_digest: model_digest?,
+            model_digest,
             model_text: text,
             mesh: self.model.mesh_file.display().to_string(),
-            mesh_digest: mesh_digest?,
+            mesh_digest,
             n_nodes: self.nodes.n_global(),
             n_elements,
             parts,

@@ -98,6 +98,14 @@ impl Structure {
         Ok(Structure::Full(Box::new(full)))
     }
 
+    /// The title.
+    pub fn title(&self) -> &str {
+        match self {
+            Structure::Full(full) => &full.model.title,
+            Structure::Reduced(reduced) => &reduced.element.origin.title,
+        }
+    }
+
     /// What is known before anything is computed: title, files, sizes, parts and contact pairs. Collective.
     ///
     /// # Errors

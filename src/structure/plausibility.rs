@@ -107,7 +107,8 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
         let neighbour = softest[0].min(softest[1]) / full.facet_size(&contact.slave, pair.statistics.area);
         contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())
     });
-    let size = size(full.extent(comm), model.mesh_unit);
+    let extent = full.extents(comm).into_iter().fold(0.0, f64::max);
+    let size = size(extent, model.mesh_unit);
     stiffness.chain(mass).chain(contacts).chain(size).chain(stiff_elements(full, comm)).collect()
 }
 
@@ -136,12 +137,12 @@ fn too_stiff(part: &str, counts: &[f64]) -> Vec<String> {
 }
 
 impl FullModel {
-    /// The largest extent along an axis, m. Collective.
-    fn extent(&self, comm: &Comm) -> f64 {
+    /// The extents along the axes, m. Collective.
+    pub fn extents(&self, comm: &Comm) -> [f64; 3] {
         let most = |sign: f64, i: usize| self.mesh.nodes.iter().map(|x| sign * x[i]).fold(f64::MIN, f64::max);
         let mut ends = [1.0, -1.0].map(|sign| [0, 1, 2].map(|i| most(sign, i)));
         comm.max_all(ends.as_flattened_mut());
-        (0..3).map(|i| ends[0][i] + ends[1][i]).fold(0.0, f64::max)
+        [0, 1, 2].map(|i| ends[0][i] + ends[1][i])
     }
 
     /// Young's moduli of the part that a surface lies on, Pa; none where it lies on several.

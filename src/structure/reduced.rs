@@ -19,7 +19,7 @@ pub struct ReducedModel {
     place: PathBuf,
     /// The super-element.
     pub element: SuperElement,
-    /// The outer surface and how the coordinates move it.
+    /// The outer surface and how the coordinates move it; of a file, on the root alone.
     pub surface: OuterSurface,
     /// Contact points under the law.
     pub interface: Interface,
@@ -36,7 +36,9 @@ impl ReducedModel {
             let what = "a super-element has its contacts already; --contacts is for models";
             return Err(Error::input(format!("{}: {what}", path.display())));
         }
-        let (element, surface) = comm.agree(file::read(path))?;
+        // The first rank alone draws the surface.
+        let bare = || Ok((file::read_element(path)?, OuterSurface::default()));
+        let (element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
         Ok(ReducedModel::new(path, element, surface, options.law, options.load_factor))
     }
 

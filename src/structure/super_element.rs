@@ -1,5 +1,7 @@
 //! From a brake at its equilibrium to a super-element.
 
+use std::collections::BTreeSet;
+
 use crate::Result;
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
@@ -24,7 +26,7 @@ impl FullModel {
         limit: f64,
         progress: &mut dyn FnMut(Event),
     ) -> Result<(SuperElement, OuterSurface, Costs)> {
-        let loaded = self.loaded();
+        let loaded: Vec<_> = self.loaded_names().into_iter().filter_map(|name| self.mesh.node_set(name)).collect();
         let structure = Structure { system, interface: &self.interface, equilibrium, loaded: &loaded };
         let reduced = craig_bampton::reduce(&structure, limit, progress)?;
         let centres: Vec<[f64; 3]> = loaded.iter().map(|nodes| self.centre(nodes)).collect();
@@ -40,12 +42,9 @@ impl FullModel {
         self.model.reduction.as_ref().map_or(2.0 * self.model.band[1], |reduction| reduction.band[1])
     }
 
-    /// The nodes of each loaded set, sets that carry several loads once.
-    fn loaded(&self) -> Vec<Vec<u32>> {
-        let mut names: Vec<&str> = self.model.loads.iter().map(|load| load.on.as_str()).collect();
-        names.sort_unstable();
-        names.dedup();
-        names.into_iter().filter_map(|name| self.mesh.node_set(name)).collect()
+    /// The loaded sets, those that carry several loads once.
+    pub fn loaded_names(&self) -> BTreeSet<&str> {
+        self.model.loads.iter().map(|load| load.on.as_str()).collect()
     }
 
     fn centre(&self, nodes: &[u32]) -> [f64; 3] {

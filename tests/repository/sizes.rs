@@ -9,9 +9,6 @@ const LONGEST_FUNCTION: usize = 45;
 /// Lines of a file.
 const LONGEST_FILE: usize = 400;
 
-/// Files that are longer still, to be divided.
-const TOO_LONG: &[&str] = &["stability/band.rs", "stability/space.rs"];
-
 /// Folders with comments that are wider still, to be wrapped.
 const TOO_WIDE: &[&str] = &[];
 
@@ -43,31 +40,26 @@ fn is_test(source: &Source) -> bool {
     source.path.iter().any(name)
 }
 
-/// Functions that are longer still, to be divided.
-const TOO_LONG_FUNCTIONS: &[[&str; 2]] = &[["structure/free_motions.rs", "free_motions"]];
-
 #[test]
 fn functions_are_short() {
     let mut wrong = Vec::new();
     for source in sources("src").iter().filter(|source| !is_test(source)) {
         for (name, line, n) in functions(&production(&code(&source.text))) {
-            let is_known = TOO_LONG_FUNCTIONS.iter().any(|[file, known]| source.path.ends_with(file) && name == *known);
-            if (n > LONGEST_FUNCTION) != is_known {
+            if n > LONGEST_FUNCTION {
                 wrong.push(format!("{}:{line}: {name} has {n} lines", source.path.display()));
             }
         }
     }
-    assert!(wrong.is_empty(), "longer than {LONGEST_FUNCTION} lines, or listed and not longer:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "longer than {LONGEST_FUNCTION} lines:\n{}", wrong.join("\n"));
 }
 
 #[test]
 fn files_are_short() {
-    let is_known = |source: &Source| TOO_LONG.iter().any(|known| source.path.ends_with(known));
     let is_long = |source: &Source| source.text.lines().count() > LONGEST_FILE;
     let wrong: Vec<String> = sources("src")
         .iter()
-        .filter(|source| is_long(source) != is_known(source))
+        .filter(|source| is_long(source))
         .map(|source| format!("{}: {} lines", source.path.display(), source.text.lines().count()))
         .collect();
-    assert!(wrong.is_empty(), "longer than {LONGEST_FILE} lines, or listed and not longer:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "longer than {LONGEST_FILE} lines:\n{}", wrong.join("\n"));
 }

@@ -229,7 +229,8 @@ impl Comm {
         assert_eq!(parts.len(), self.size);
         let lengths: Vec<usize> = parts.iter().map(Vec::len).collect();
         let ([starts, counts], _) = self.counted(layout(&lengths));
-        let their_lengths = self.exchanged_lengths(&lengths);
+        let their_lengths: Vec<usize> =
+            self.join(&lengths).chunks(self.size).map(|lengths| lengths[self.rank]).collect();
         let ([their_starts, their_counts], n_theirs) = self.counted(layout(&their_lengths));
         let (own, mut theirs, datatype) = (parts.concat(), vec![T::default(); n_theirs], T::datatype());
         // SAFETY: lengths and starts were exchanged above.
@@ -249,16 +250,6 @@ impl Comm {
         self.check("MPI_Alltoallv", code);
         let part = |(&start, &n): (&c_int, &usize)| theirs[start as usize..][..n].to_vec();
         their_starts.iter().zip(&their_lengths).map(part).collect()
-    }
-
-    /// One length from each rank, from one for each.
-    fn exchanged_lengths(&self, lengths: &[usize]) -> Vec<usize> {
-        let (mut theirs, datatype) = (vec![0_usize; self.size], <usize as super::datum::sealed::Named>::datatype());
-        let (from, to) = (lengths.as_ptr().cast(), theirs.as_mut_ptr().cast());
-        // SAFETY: one number for and from each rank.
-        let code = unsafe { sys::MPI_Alltoall(from, 1, datatype, to, 1, datatype, self.own) };
-        self.check("MPI_Alltoall", code);
-        theirs
     }
 
     /// The values of one rank, on every rank; what the others pass is not looked at.
