@@ -1,6 +1,5 @@
 //! The consistent mass matrix and the integrals that describe a rigid body.
 
-use super::stiffness::mirror;
 use super::table::Table;
 use crate::algebra::sub;
 use std::ops::AddAssign;
@@ -9,8 +8,8 @@ impl<const N: usize, const P: usize> Table<N, P> {
     /// As [`super::scalar_mass`].
     #[inline]
     pub(super) fn scalar_mass(&self, x: &[[f64; 3]; N], density: f64, m: &mut [f64]) {
-        assert_eq!(m.len(), N * N, "a scalar mass has one entry a pair of nodes");
-        m.fill(0.0);
+        let rows: &mut [[f64; N]; N] = m.as_chunks_mut().0.try_into().expect("one entry a pair of nodes");
+        rows.fill([0.0; N]);
         for q in 0..P {
             let n = &self.shapes[q];
             let weight = density * self.weighted_det(x, q);
@@ -18,11 +17,15 @@ impl<const N: usize, const P: usize> Table<N, P> {
                 // m_ab += density w detJ N_a N_b
                 let factor = weight * n[a];
                 for b in a..N {
-                    m[N * a + b] += factor * n[b];
+                    rows[a][b] += factor * n[b];
                 }
             }
         }
-        mirror(m, N);
+        for a in 1..N {
+            for b in 0..a {
+                rows[a][b] = rows[b][a];
+            }
+        }
     }
 
     /// As [`super::mass_properties`].

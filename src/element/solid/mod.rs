@@ -44,8 +44,8 @@ use super::quadrature::{
 use super::{ElementKind, Shape, shape};
 pub use mass::MassProperties;
 pub use recovery::von_mises;
+use table::Family;
 pub use table::jacobian;
-use table::{Family, Solid};
 
 static TETRAHEDRON_4_NODES: Family<4, 12, 1, 4> = Family::new(&shape::TETRAHEDRON_4, &TETRAHEDRON_1, &TETRAHEDRON_4);
 static TETRAHEDRON_10_NODES: Family<10, 30, 4, 14> =
@@ -56,22 +56,26 @@ static HEXAHEDRON_8_NODES: Family<8, 24, 8, 8> = Family::new(&shape::HEXAHEDRON_
 static HEXAHEDRON_20_NODES: Family<20, 60, 27, 27> = Family::new(&shape::HEXAHEDRON_20, &HEXAHEDRON_27, &HEXAHEDRON_27);
 static HEXAHEDRON_20_REDUCED: Family<20, 60, 8, 27> = Family::new(&shape::HEXAHEDRON_20, &HEXAHEDRON_8, &HEXAHEDRON_27);
 
-/// The family of a kind.
-fn solid(kind: ElementKind) -> &'static dyn Solid {
-    match kind {
-        ElementKind::C3D4 => &TETRAHEDRON_4_NODES,
-        ElementKind::C3D6 => &WEDGE_6_NODES,
-        ElementKind::C3D8 | ElementKind::C3D8I | ElementKind::C3D8R => &HEXAHEDRON_8_NODES,
-        ElementKind::C3D10 => &TETRAHEDRON_10_NODES,
-        ElementKind::C3D15 => &WEDGE_15_NODES,
-        ElementKind::C3D20 => &HEXAHEDRON_20_NODES,
-        ElementKind::C3D20R => &HEXAHEDRON_20_REDUCED,
-    }
-}
-
-/// The family of a shape, for what does not depend on the stiffness.
-fn of_shape(shape: Shape) -> &'static dyn Solid {
-    solid(ElementKind::default_for(shape))
+/// Evaluates an expression with the family of a kind. The family is a constant there, so that the compiler can see its
+/// tables: through a pointer the mass of a 10-node tetrahedron takes half as long again.
+macro_rules! with_family {
+    ($kind:expr, $family:ident => $value:expr) => {
+        match $kind {
+            ElementKind::C3D4 => with_family!(@ TETRAHEDRON_4_NODES, $family => $value),
+            ElementKind::C3D6 => with_family!(@ WEDGE_6_NODES, $family => $value),
+            ElementKind::C3D8 | ElementKind::C3D8I | ElementKind::C3D8R => {
+                with_family!(@ HEXAHEDRON_8_NODES, $family => $value)
+            }
+            ElementKind::C3D10 => with_family!(@ TETRAHEDRON_10_NODES, $family => $value),
+            ElementKind::C3D15 => with_family!(@ WEDGE_15_NODES, $family => $value),
+            ElementKind::C3D20 => with_family!(@ HEXAHEDRON_20_NODES, $family => $value),
+            ElementKind::C3D20R => with_family!(@ HEXAHEDRON_20_REDUCED, $family => $value),
+        }
+    };
+    (@ $static:ident, $family:ident => $value:expr) => {{
+        let $family = &$static;
+        $value
+    }};
 }
 
 /// Fills `k` (row-major, `(3n)^2`, dof `3a + i`, N/m) with the stiffness of an element, `integral of B^T D B`.
@@ -86,7 +90,7 @@ pub fn stiffness(kind: ElementKind, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], 
     match kind {
         ElementKind::C3D8I => incompatible::stiffness(x, elasticity, k),
         ElementKind::C3D8R => mean_strain::stiffness(x, elasticity, k),
-        _ => solid(kind).stiffness(x, elasticity, k),
+        _ => with_family!(kind, family => family.stiffness(x, elasticity, k)),
     }
 }
 
@@ -95,12 +99,12 @@ pub fn stiffness(kind: ElementKind, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], 
 /// `m_ab = integral of density N_a N_b`; `x` in m, `density` in kg/m3. The full matrix is `m_ab delta_ij` at dofs
 /// `(3a + i, 3b + j)`. Exactly symmetric, and positive definite wherever `detJ > 0`.
 pub fn scalar_mass(shape: Shape, x: &[[f64; 3]], density: f64, m: &mut [f64]) {
-    of_shape(shape).scalar_mass(x, density, m);
+    with_family!(ElementKind::default_for(shape), family => family.scalar_mass(x, density, m));
 }
 
 /// Volume, m3: `sum_q w detJ`, exact.
 pub fn volume(shape: Shape, x: &[[f64; 3]]) -> f64 {
-    of_shape(shape).volume(x)
+    with_family!(ElementKind::default_for(shape), family => family.volume(x))
 }
 
 /// Mass, first and second moments of an element, by the points of the mass matrix.
@@ -108,7 +112,7 @@ pub fn volume(shape: Shape, x: &[[f64; 3]]) -> f64 {
 /// So they are what `u^T M u` gives for rigid motions, to round-off. Moments are summed about node 0 and then shifted to
 /// the origin, so that a small element far from it loses no digits to the sum.
 pub fn mass_properties(shape: Shape, x: &[[f64; 3]], density: f64) -> MassProperties {
-    of_shape(shape).mass_properties(x, density)
+    with_family!(ElementKind::default_for(shape), family => family.mass_properties(x, density))
 }
 
 /// Stress, Pa, of the mean strain over the points of the stiffness rule, `D sum_q w B_q u / sum_q w`.
@@ -116,7 +120,7 @@ pub fn mass_properties(shape: Shape, x: &[[f64; 3]], density: f64) -> MassProper
 /// `x` and the nodal displacements `u` in m. Voigt order xx yy zz xy yz zx. Incompatible modes add no mean strain where
 /// `detJ` is constant, and are left out.
 pub fn mean_stress(kind: ElementKind, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], u: &[[f64; 3]]) -> [f64; 6] {
-    let strain = solid(kind).mean_strain(x, u);
+    let strain = with_family!(kind, family => family.mean_strain(x, u));
     elasticity.map(|d| (0..6).map(|c| d[c] * strain[c]).sum())
 }
 
@@ -129,5 +133,5 @@ pub fn is_inverted(shape: Shape, x: &[[f64; 3]]) -> bool {
 
 /// The least `detJ` over the nodes and the points of the stiffness rule; NaN where one is.
 pub(super) fn smallest_determinant(shape: Shape, x: &[[f64; 3]]) -> f64 {
-    of_shape(shape).smallest_determinant(x)
+    with_family!(ElementKind::default_for(shape), family => family.smallest_determinant(x))
 }

@@ -88,7 +88,7 @@ fn weighted_db_into<const N: usize, const M: usize>(
 
 /// Copies the upper triangle of an `n` x `n` matrix to the lower one.
 #[inline]
-pub fn mirror(k: &mut [f64], n: usize) {
+fn mirror(k: &mut [f64], n: usize) {
     for row in 1..n {
         for column in 0..row {
             k[n * row + column] = k[n * column + row];

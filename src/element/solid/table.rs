@@ -1,4 +1,4 @@
-//! A shape's tables at the points of its rules, and what can be asked of any of them.
+//! A shape's tables at the points of its rules, and what is computed with them.
 
 use super::MassProperties;
 use crate::algebra::{cofactor_columns, dot};
@@ -74,39 +74,32 @@ pub fn positions<const N: usize>(x: &[[f64; 3]]) -> &[[f64; 3]; N] {
 }
 
 /// What any family computes; the functions of the parent module say what each is.
-pub trait Solid: Sync {
-    fn stiffness(&self, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], k: &mut [f64]);
-    fn scalar_mass(&self, x: &[[f64; 3]], density: f64, m: &mut [f64]);
-    fn volume(&self, x: &[[f64; 3]]) -> f64;
-    fn mass_properties(&self, x: &[[f64; 3]], density: f64) -> MassProperties;
-    fn mean_strain(&self, x: &[[f64; 3]], u: &[[f64; 3]]) -> [f64; 6];
-    /// The least `detJ` over the nodes and the points of the stiffness rule; NaN where one is.
-    fn smallest_determinant(&self, x: &[[f64; 3]]) -> f64;
-}
-
-impl<const N: usize, const M: usize, const Q: usize, const P: usize> Solid for Family<N, M, Q, P> {
-    fn stiffness(&self, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], k: &mut [f64]) {
+impl<const N: usize, const M: usize, const Q: usize, const P: usize> Family<N, M, Q, P> {
+    #[inline]
+    pub(super) fn stiffness(&self, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], k: &mut [f64]) {
         super::stiffness::integrate::<N, M, Q>(positions(x), elasticity, &self.stiffness, k);
     }
 
-    fn scalar_mass(&self, x: &[[f64; 3]], density: f64, m: &mut [f64]) {
+    #[inline]
+    pub(super) fn scalar_mass(&self, x: &[[f64; 3]], density: f64, m: &mut [f64]) {
         self.mass.scalar_mass(positions(x), density, m);
     }
 
-    fn volume(&self, x: &[[f64; 3]]) -> f64 {
+    pub(super) fn volume(&self, x: &[[f64; 3]]) -> f64 {
         let x = positions(x);
         (0..P).map(|q| self.mass.weighted_det(x, q)).sum()
     }
 
-    fn mass_properties(&self, x: &[[f64; 3]], density: f64) -> MassProperties {
+    pub(super) fn mass_properties(&self, x: &[[f64; 3]], density: f64) -> MassProperties {
         self.mass.mass_properties(positions(x), density)
     }
 
-    fn mean_strain(&self, x: &[[f64; 3]], u: &[[f64; 3]]) -> [f64; 6] {
+    pub(super) fn mean_strain(&self, x: &[[f64; 3]], u: &[[f64; 3]]) -> [f64; 6] {
         self.stiffness.mean_strain(positions(x), positions(u))
     }
 
-    fn smallest_determinant(&self, x: &[[f64; 3]]) -> f64 {
+    /// The least `detJ` over the nodes and the points of the stiffness rule; NaN where one is.
+    pub(super) fn smallest_determinant(&self, x: &[[f64; 3]]) -> f64 {
         let x = positions::<N>(x);
         let gradients = self.at_nodes.gradients.iter().chain(&self.stiffness.gradients);
         let determinants = gradients.map(|gradients| cofactor_columns(&jacobian(x, gradients)).1);
