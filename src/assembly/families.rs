@@ -1,4 +1,5 @@
-//! The families of elements of a model on its mesh, solid elements by part and connectors, its constraints and its loads.
+//! The families of elements of a model on its mesh, solid elements by part and connectors, its constraints and its
+//! loads.
 
 use crate::contact::GapOperator;
 use crate::contact::surface_points::nodal_weights;
@@ -86,7 +87,8 @@ impl Elements for Solids<'_> {
 
 /// A connector on its mesh: a spring and damper between the mean motions of two clouds of nodes.
 ///
-/// A surface's cloud is its midsides (its corners where it is linear) with their shares of the area, any other set's all nodes with equal weights.
+/// A surface's cloud is its midsides (its corners where it is linear) with their shares of the area, any other set's
+/// all nodes with equal weights.
 pub struct ConnectorElement {
     /// The nodes of both clouds, one after the other.
     pub nodes: Vec<u32>,

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! A point of a slave surface has `+N_i I` at the nodes that it moves with and `-N_j I` at the nodes of the master's
-//! facet. A reference node that follows a cloud of nodes needs full blocks, a super-element has retained points for nodes:
-//! other gap operators, the same contact code.
+//! facet. A reference node that follows a cloud of nodes needs full blocks, a super-element has retained points for
+//! nodes: other gap operators, the same contact code.
 
 use super::surface_points::Interpolated;
 use crate::algebra::product;

@@ -1,7 +1,8 @@
 //! The search: where the contact points of a slave surface meet the master.
 //!
-//! Contact points are quadrature points of the slave's facets ([`surface_points`](super::surface_points)). Each is projected on the closest of the master's facets that *face* it,
-//! `n_slave . n_master < -0.5`: without that condition points beside an edge grab the wrong wall.
+//! Contact points are quadrature points of the slave's facets ([`surface_points`](super::surface_points)). Each is
+//! projected on the closest of the master's facets that *face* it, `n_slave . n_master < -0.5`: without that condition
+//! points beside an edge grab the wrong wall.
 //!
 //! A tree of the facets' boxes yields candidates in the order of their boxes' distance, and the search of a point
 //! ends at the first box beyond the best facet found. The result does not depend on the order of the tree: among facets

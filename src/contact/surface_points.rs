@@ -6,9 +6,9 @@
 //! | 6-node triangle | its midsides | A/3 |
 //! | 4-node, 8-node quadrilateral | 2 x 2 points of Gauss, in the order of the corners | A J_q / sum J |
 //!
-//! with the facet's area A and the area of a unit of dr ds, J. On plane facets these rules integrate the shape functions
-//! exactly, so that a uniform pressure gives the consistent nodal forces; and no weight is negative. Points at nodes are
-//! shared by the facets around them, and their weights added up.
+//! with the facet's area A and the area of a unit of dr ds, J. On plane facets these rules integrate the shape
+//! functions exactly, so that a uniform pressure gives the consistent nodal forces; and no weight is negative. Points
+//! at nodes are shared by the facets around them, and their weights added up.
 
 use super::facet::FacetGeometry;
 use crate::element::FacetShape;
@@ -128,8 +128,8 @@ pub(super) fn interpolated(facet: &Facet, at: [f64; 2]) -> Interpolated {
     Interpolated { nodes: facet.nodes().to_vec(), shape: shape[..facet.nodes().len()].to_vec() }
 }
 
-/// The midsides of a surface, or the corners where it is linear, by rising index, each with its share of the area of the
-/// facets around it, m2.
+/// The midsides of a surface, or the corners where it is linear, by rising index, each with its share of the area of
+/// the facets around it, m2.
 pub fn nodal_weights(surface: &Surface, nodes: &[[f64; 3]]) -> Vec<(u32, f64)> {
     let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
     for facet in &surface.facets {

@@ -14,8 +14,8 @@
 //!
 //! The area normal is a polynomial, so area vectors and pressure loads are exact on curved facets with 7 points on
 //! triangles and 3 x 3 on quadrilaterals; areas and traction loads, which take its length, are exact on plane facets
-//! only and otherwise as good as the facet's shape (a quarter of a cylinder in 2, 4, 8 facets along the arc: 4e-4, 2e-5,
-//! 2e-6 of its area).
+//! only and otherwise as good as the facet's shape (a quarter of a cylinder in 2, 4, 8 facets along the arc: 4e-4,
+//! 2e-5, 2e-6 of its area).
 
 use super::interpolation::Interpolation;
 use super::quadrature::{QUADRILATERAL_9, QuadraturePoint, TRIANGLE_7};
@@ -151,8 +151,8 @@ pub fn traction_load(x: &[[f64; 3]], traction: [f64; 3]) -> Vec<[f64; 3]> {
     forces
 }
 
-/// Nodal forces, N, of a uniform pressure (Pa, positive into the body): `f_a = -pressure integral of N_a n dA`, exact on
-/// curved facets.
+/// Nodal forces, N, of a uniform pressure (Pa, positive into the body): `f_a = -pressure integral of N_a n dA`, exact
+/// on curved facets.
 pub fn pressure_load(x: &[[f64; 3]], pressure: f64) -> Vec<[f64; 3]> {
     let mut forces = vec![[0.0; 3]; x.len()];
     for (shape, normal) in area_normals(x) {

@@ -12,8 +12,8 @@
 //! | C3D20 | 20 | 3 x 3 x 3 points | 3 x 3 x 3 points |
 //! | C3D20R | 20 | 2 x 2 x 2 points | as C3D20 |
 //!
-//! Names are those of Abaqus and CalculiX. Stiffnesses are CalculiX's (`e_c3d.f`); its C3D8 is integrated in full, without
-//! selective reduction of the volumetric strain. Masses are consistent and exact where `detJ` is constant.
+//! Names are those of Abaqus and CalculiX. Stiffnesses are CalculiX's (`e_c3d.f`); its C3D8 is integrated in full,
+//! without selective reduction of the volumetric strain. Masses are consistent and exact where `detJ` is constant.
 
 use super::Shape;
 use serde::{Deserialize, Serialize};

@@ -136,7 +136,7 @@ pub struct Rotation {
 pub struct Contact {
     /// Name in tables.
     pub name: String,
-    /// Physical surface whose midside nodes are the contact points.
+    /// Surface on which the contact points lie.
     pub slave: String,
     /// Physical surface that they meet.
     pub master: String,

@@ -1,8 +1,8 @@
 //! The cells of reference nodes, drawn on the slave surfaces.
 //!
 //! A contact point at a midside stands for the triangle of its edge and the facet's centre, any other for the
-//! quadrilateral between its corner, the middles of the two edges there, and the centre. So the triangles of a cell have
-//! exactly its area on plane 6-node and 3-node facets and on parallelograms.
+//! quadrilateral between its corner, the middles of the two edges there, and the centre. So the triangles of a cell
+//! have exactly its area on plane 6-node and 3-node facets and on parallelograms.
 
 use std::collections::HashMap;
 

@@ -247,7 +247,8 @@ mod tests {
         }
     }
 
-    /// Reference nodes on pads whose contact points lie inside of quadrilaterals, so that a cell shares nodes with others.
+    /// Reference nodes on pads whose contact points lie inside of quadrilaterals, so that a cell shares nodes with
+    /// others.
     #[test]
     fn quadrilaterals_give_rigid_motions_and_forces_exactly() {
         let mut nodes = Vec::new();

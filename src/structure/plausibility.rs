@@ -152,9 +152,10 @@ impl FullModel {
         material.map_or([f64::INFINITY; 2], youngs)
     }
 
-    /// Edge of an average facet of a surface with this area (m2), as if it were half a square, m.
+    /// Edge of an average facet of a surface with this area (m2), as if it were a square or half of one, m.
     fn facet_size(&self, surface: &str, area: f64) -> f64 {
-        (2.0 * area / self.mesh.surfaces[surface].facets.len() as f64).sqrt()
+        let halves = self.mesh.surfaces[surface].facets.iter().map(|facet| facet.corners().len() - 2);
+        (2.0 * area / halves.sum::<usize>() as f64).sqrt()
     }
 }
 

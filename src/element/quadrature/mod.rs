@@ -19,10 +19,10 @@
 //! | [`TRIANGLE_7`] | 7 | 5 |
 //! | [`QUADRILATERAL_4`], [`HEXAHEDRON_8`] | 2 along each axis | 3 in each coordinate |
 //! | [`QUADRILATERAL_9`], [`HEXAHEDRON_27`] | 3 along each axis | 5 in each coordinate |
-//! | [`WEDGE_2`], [`WEDGE_9`], [`WEDGE_21`] | 1, 3, 7 on the triangle by 2, 3, 3 | 1, 2, 5 on the triangle; 3, 5, 5 along |
+//! | [`WEDGE_2`], [`WEDGE_9`], [`WEDGE_21`] | 1 x 2, 3 x 3, 7 x 3 | 1, 2, 5 on the triangle; 3, 5, 5 along |
 //!
-//! Rules of triangles and tetrahedra are stored as orbits of the symmetry group in barycentric coordinates (`tables`), all
-//! others are products of these and of Gauss's rules. All are unrolled at compile time.
+//! Rules of triangles and tetrahedra are stored as orbits of the symmetry group in barycentric coordinates (`tables`),
+//! all others are products of these and of Gauss's rules. All are unrolled at compile time.
 
 mod tables;
 

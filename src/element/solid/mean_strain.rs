@@ -9,8 +9,8 @@
 //!
 //! The mean strain alone leaves twelve hourglass modes without stiffness. The vectors `gamma_h` are orthogonal to all
 //! linear fields, so that the patch test is passed: Flanagan and Belytschko, *A uniform strain hexahedron and
-//! quadrilateral with orthogonal hourglass control*, IJNME 17 (1981), 679, equations 16 and 49 and the stiffness form of
-//! section 5. The factor 0.005 is Abaqus's, and CalculiX's from version 2.23 on; before, it has a tenth of this, and
+//! quadrilateral with orthogonal hourglass control*, IJNME 17 (1981), 679, equations 16 and 49 and the stiffness form
+//! of section 5. The factor 0.005 is Abaqus's, and CalculiX's from version 2.23 on; before, it has a tenth of this, and
 //! vectors that are orthogonal on parallelepipeds alone. E is Young's modulus of the isotropic material nearest to D
 //! (Voigt's mean), so that the element does not depend on the axes.
 

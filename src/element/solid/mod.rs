@@ -18,7 +18,7 @@
 //!
 //! | integral | constant `detJ` (straight tetrahedra, parallelepipeds) | distorted and curved |
 //! |---|---|---|
-//! | stiffness | exact; C3D20R and C3D8R reduced on purpose | rigid modes without force, and no others but one of C3D6 (torsion) and six of C3D20R |
+//! | stiffness | exact; C3D20R and C3D8R reduced on purpose | six modes without energy; C3D6 has 7, C3D20R 12 |
 //! | linear field (patch test) | exact | exact on straight edges, all kinds |
 //! | mass | exact | total and row sums exact; C3D10's entries to degree 5 |
 //! | volume, first moment | exact | exact on straight edges, volume on curved ones too |
@@ -109,8 +109,8 @@ pub fn volume(shape: Shape, x: &[[f64; 3]]) -> f64 {
 
 /// Mass, first and second moments of an element, by the points of the mass matrix.
 ///
-/// So they are what `u^T M u` gives for rigid motions, to round-off. Moments are summed about node 0 and then shifted to
-/// the origin, so that a small element far from it loses no digits to the sum.
+/// So they are what `u^T M u` gives for rigid motions, to round-off. Moments are summed about node 0 and then shifted
+/// to the origin, so that a small element far from it loses no digits to the sum.
 pub fn mass_properties(shape: Shape, x: &[[f64; 3]], density: f64) -> MassProperties {
     with_family!(ElementKind::default_for(shape), family => family.mass_properties(x, density))
 }

@@ -123,8 +123,8 @@ fn rigid_motions_need_no_force_and_linear_fields_have_their_exact_energy() {
     }
 }
 
-/// A cantilever's end rotated by a moment: u = (-x y, x^2/2, 0) with poisson = 0 is pure bending. C3D8I has its energy, a
-/// fully integrated C3D8 of aspect ratio 4 has nine times as much.
+/// A cantilever's end rotated by a moment: u = (-x y, x^2/2, 0) with poisson = 0 is pure bending. C3D8I has its energy,
+/// a fully integrated C3D8 of aspect ratio 4 has nine times as much.
 #[test]
 fn incompatible_modes_bend_without_shear() {
     let d = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { [200.0, 100.0][i / 3] } else { 0.0 }));

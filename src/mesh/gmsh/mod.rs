@@ -1,8 +1,8 @@
 //! Gmsh's mesh format 4.1, ASCII and binary (<https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format>).
 //!
 //! [`scan`] reads numbers in either encoding, [`sections`] reads the file's tables, [`convert`] relates them: tags to
-//! indices, groups to parts, facets to elements. Gmsh has other orders of midsides than we do (`kinds`); this is put right on
-//! reading, and nothing after this module depends on it.
+//! indices, groups to parts, facets to elements. Gmsh has other orders of midsides than we do (`kinds`); this is put
+//! right on reading, and nothing after this module depends on it.
 
 mod convert;
 mod groups;
@@ -19,8 +19,9 @@ use std::path::Path;
 /// Reads a mesh of tetrahedra, hexahedra and wedges of first or second order; `unit` is metres per unit of the file.
 ///
 /// Physical volumes become parts (in the order of `$PhysicalNames`), physical surfaces become surfaces with facets that
-/// look out of their part, physical curves and points become node sets. Elements are of the kind that [`ElementKind::default_for`](crate::element::ElementKind::default_for) gives their
-/// shape. Nodes that no element uses are left out.
+/// look out of their part, physical curves and points become node sets. Elements are of the kind that
+/// [`ElementKind::default_for`](crate::element::ElementKind::default_for) gives their shape. Nodes that no element uses
+/// are left out.
 ///
 /// ```
 /// let mesh = squeal::mesh::read("tests/data/pads_on_disc.msh".as_ref(), 1e-3)?;
