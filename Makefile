@@ -1,6 +1,8 @@
 # squeal: `make demo` shows a brake that squeals, `make test` passes the tests. Both set up what they need.
 
 export OPENBLAS_NUM_THREADS := 1
+# A test with a missing or changed snapshot fails and writes nothing; `INSTA_UPDATE=always make test` accepts all.
+export INSTA_UPDATE ?= no
 size_coarse  := 1
 size_small   := 1
 size_medium  := 2
@@ -18,14 +20,14 @@ export OMPI_MCA_rmaps_base_oversubscribe := 1
 .PHONY: help install deb demo test python-test report-test calculix td1 validation docs full bench lint setup build clean
 .DELETE_ON_ERROR:
 
-help: ## this list
+help: ## print this list
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
-demo: setup results/demo/report.html ## the main job on the demo brake (medium mesh): table, paths of the results, report
+demo: setup results/demo/report.html ## complex modes of the demo brake (medium mesh), and the report
 	@cat results/demo/summary.txt
 	@echo "\nopen results/demo/report.html in a browser"
 
-test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## all tests
+test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## run all tests
 	@scripts/setup.sh --tests
 	cargo nextest run --workspace --release
 	cargo test --workspace --release --doc
@@ -36,51 +38,51 @@ python-test: setup build ## the Python package, beside the tables of the same ru
 	@scripts/setup.sh --tests
 	SQUEAL=$(CURDIR)/$(BINARY) MODEL=tests/data/pads_on_disc.toml PYTHONPATH=python /usr/bin/python3 -m pytest -q -p no:cacheprovider python/tests
 
-validation: setup $(patsubst %,meshes/build/td1-%.msh,coarse medium fine) ## writes docs/validation.md: our numbers beside everybody else's
+validation: setup $(patsubst %,meshes/build/td1-%.msh,coarse medium fine) ## write docs/validation.md: results beside exact solutions and results of other programs
 	@scripts/setup.sh --tests
 	cargo nextest run --release --test validation --run-ignored only
 
-calculix: setup ## modes of the same meshes by CalculiX and by us, side by side
+calculix: setup ## compare modes with CalculiX on the same meshes
 	@scripts/setup.sh --tests
 	cargo nextest run --release --test physics --no-capture -E 'test(/^calculix::/)'
 
-report-test: setup ## the report's page in a browser
+report-test: setup ## test the report's page in a browser
 	@scripts/setup.sh --tests
 	cargo nextest run --release --test cli -E 'test(/^browser::/)'
 
-td1: setup meshes/build/td1-coarse.msh ## a whole brake meshed by Gmsh, beside the frequencies that Ansys publishes
+td1: setup meshes/build/td1-coarse.msh ## compare a whole brake with the frequencies that Ansys publishes
 	@scripts/setup.sh --tests
 	cargo nextest run --release --test validation --no-capture -E 'test(/^td1::/)'
 
-docs: build ## the manual as a book: target/manual/index.html
+docs: build ## build the manual: target/manual/index.html
 	@scripts/docs.sh $(BINARY) target/manual
 
-full: setup build meshes/build/brake-full.msh ## the paper's size: 179 thousand nodes on $(RANKS) ranks
+full: setup build meshes/build/brake-full.msh ## complex modes of the demo brake with 179 thousand nodes on $(RANKS) ranks
 	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force --verbose
 
-bench: setup meshes/build/brake-medium.msh ## seconds, entries and memory of assembly, factorisation and eigensolution
+bench: setup meshes/build/brake-medium.msh ## measure time and memory of assembly, factorisation and eigensolution
 	cargo bench --bench element
 	cargo bench --bench assembly
 	cargo bench --bench path
 
-lint: setup ## formatting, clippy and documentation, the page's scripts and style; warnings denied
+lint: setup ## check formatting, clippy, documentation and the page's scripts; warnings are errors
 	@scripts/setup.sh --lint
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --release -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release
 	tools/node_modules/.bin/biome check --config-path=tools/biome.json --error-on-warnings src/report/assets tests/page
 
-setup: ## system packages, as far as they are missing
+setup: ## install missing system packages
 	@scripts/setup.sh
 
-build: setup ## the optimised binary
+build: setup ## build the optimised binary
 	cargo build --release
 
 PREFIX  ?= /usr/local
 DESTDIR ?=
 SHARE    = $(DESTDIR)$(PREFIX)/share
 
-install: build ## the program, its manual pages and completions below PREFIX (/usr/local)
+install: build ## install the program, its manual pages and completions below PREFIX (/usr/local)
 	install -Dm755 $(BINARY) $(DESTDIR)$(PREFIX)/bin/squeal
 	install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions $(SHARE)/zsh/site-functions $(SHARE)/fish/vendor_completions.d
 	$(BINARY) man $(SHARE)/man/man1
@@ -88,13 +90,13 @@ install: build ## the program, its manual pages and completions below PREFIX (/u
 	$(BINARY) completions zsh > $(SHARE)/zsh/site-functions/_squeal
 	$(BINARY) completions fish > $(SHARE)/fish/vendor_completions.d/squeal.fish
 
-deb: build ## a Debian package with what it depends on: target/debian
+deb: build ## build a Debian package: target/debian
 	@command -v cargo-deb >/dev/null || cargo install cargo-deb --locked
 	rm -rf target/package
 	$(MAKE) install DESTDIR=target/package PREFIX=/usr
 	cargo deb --no-build
 
-clean: ## everything that can be made again
+clean: ## remove everything that can be built again
 	cargo clean
 	rm -rf meshes/build results
 

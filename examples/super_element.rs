@@ -21,11 +21,7 @@ pub fn main() -> Result<()> {
     full.reduce_contacts(12)?;
     let options = ReduceOptions { friction: Some(0.3), limit: Some(6000.0), file: file.clone(), force: false };
     let reduction = reduce(&comm, &full, &options, &mut ())?;
-    println!(
-        "{} coordinates in place of {} dofs",
-        reduction.element.n_coordinates(),
-        reduction.element.origin.n_equations
-    );
+    println!("{} coordinates in place of {} dofs", reduction.element.n_coordinates(), reduction.element.origin.n_dofs);
 
     let options = StabilityOptions {
         friction_values: Some(vec![0.3]),

@@ -99,7 +99,7 @@ pub enum Error {
     Interrupted {
         /// Number of the signal.
         signal: i32,
-        /// How far the work has come, and how it goes on.
+        /// How far the work has come, and how it is continued.
         text: String,
     },
     /// An error of one rank that all ranks have agreed to return.

@@ -80,7 +80,7 @@ fn write_draft(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::R
     file.close()
 }
 
-/// What HDF5 says of a file that it could not write.
+/// HDF5's error for a file that it could not write.
 fn failure(path: &Path, reason: &hdf5::Error) -> Error {
     Error::library("HDF5")(format!("{}: {reason}", path.display()))
 }
@@ -142,7 +142,7 @@ fn read_mark(attribute: &Attribute) -> hdf5::Result<String> {
     }
 }
 
-/// Keeps a text.
+/// Writes a text.
 ///
 /// # Errors
 /// HDF5's, as of everything here.
@@ -150,7 +150,7 @@ pub fn text(group: &Group, name: &str, text: &str) -> hdf5::Result<()> {
     list(group, name, text.as_bytes())
 }
 
-/// Keeps a list.
+/// Writes a list.
 ///
 /// # Errors
 /// HDF5's.
@@ -158,7 +158,7 @@ pub fn list<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<
     array(group, name, &[values.len()], values)
 }
 
-/// Keeps rows of so many values.
+/// Writes rows of so many values.
 ///
 /// # Errors
 /// HDF5's.
@@ -166,7 +166,7 @@ pub fn table<T: H5Type>(group: &Group, name: &str, width: usize, values: &[T]) -
     array(group, name, &[values.len() / width.max(1), width], values)
 }
 
-/// Keeps an array, the last index running fastest.
+/// Writes an array, the last index running fastest.
 ///
 /// # Errors
 /// HDF5's; where the values do not fill the shape.
@@ -180,12 +180,12 @@ pub fn array<T: H5Type>(group: &Group, name: &str, shape: &[usize], values: &[T]
 
 /// As many rows as fill a chunk; parts of one where it is longer.
 fn chunk<T>(shape: &[usize]) -> Vec<usize> {
-    let mut room = (CHUNK / size_of::<T>().max(1)).max(1);
+    let mut n_left = (CHUNK / size_of::<T>().max(1)).max(1);
     let mut chunk = vec![1; shape.len()];
     for (length, &n) in chunk.iter_mut().zip(shape).rev() {
-        *length = n.clamp(1, room);
-        room /= *length;
-        room = room.max(1);
+        *length = n.clamp(1, n_left);
+        n_left /= *length;
+        n_left = n_left.max(1);
     }
     chunk
 }

@@ -99,7 +99,7 @@
 //! | p | `normal_force` | normal force of a point, N |
 //! | mu | `friction` | coefficient of friction |
 //! | xi | `correction` | what a reduced contact's penetration gets, m |
-//! | Psi, Phi, E | `basis` | constraint, fixed-interface and inertia modes of a super-element |
+//! | Psi, Phi, E | `basis` | constraint, fixed-interface and residual modes of a super-element |
 //! | w | `weight` | area of a contact point, m2 |
 //! | k_n, k_t | `stiffness`, `stick` | penalty of contact and of sticking, N/m3 |
 //! | D | `tangent` | `-df/dg` of a contact point, N/m |

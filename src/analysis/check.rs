@@ -24,7 +24,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
         parts: (0..full.mesh.parts.len()).map(|i| part(comm, full, i)).collect(),
         pairs: full.interface.pairs.iter().map(pair).collect(),
         layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
-        held_displacements: full.held.as_flattened().iter().filter(|&&h| h).count(),
+        constrained_dofs: full.held.as_flattened().iter().filter(|&&h| h).count(),
         connectors: full.links.len(),
         loads: full.model.loads.iter().map(load).collect(),
         sum_of_loads_n: full.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i])),
@@ -103,7 +103,7 @@ pub fn matrix_summary(comm: &Comm, full: &FullModel) -> Result<MatrixSummary> {
     factor.set_precision(tangent_precision(&system));
     factor.analyse(&system.k)?;
     Ok(MatrixSummary {
-        equations: system.dofs.n_global(),
+        free_dofs: system.dofs.n_global(),
         entries: system.k.n_entries()?,
         factor_gb: factor.stats().estimated_mb / 1024.0,
     })

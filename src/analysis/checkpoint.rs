@@ -1,8 +1,8 @@
-//! What a study needs to go on after its process has ended, at whatever moment.
+//! What a study needs to continue after its process has ended, at whatever moment.
 //!
 //! ```text
 //! .NAME.unfinished/.resume/
-//!   study.txt                 what the numbers depend on, a line each: a run that differs does not go on
+//!   study.txt                 what the numbers depend on, a line each: a run that differs does not continue
 //!   value-0003.h5             a finished value: its group of the results file, and the eigenvalues for tracking
 //!   path-0003.RANK.h5         the last equilibria of the path that ends there
 //!   vectors-0003.RANK.h5      right and left vectors of a snapshot that tracking still needs, single precision,
@@ -33,7 +33,7 @@ use crate::{Error, Result};
 use super::family::{Snapshot, Spectrum};
 use super::sweep::Sweep;
 
-const FORMAT: Format = Format { name: "squeal checkpoint", version: 1, advice: "Begin again with --force" };
+const FORMAT: Format = Format { name: "squeal checkpoint", version: 2, advice: "Begin again with --force" };
 /// What the numbers of a study depend on.
 const STUDY: &str = "study.txt";
 
@@ -44,11 +44,11 @@ pub struct EarlierValue {
     spectrum: Option<Spectrum>,
 }
 
-/// The files from which a study can go on.
+/// The files from which a study can continue.
 pub struct Checkpoint {
     comm: Comm,
     folder: PathBuf,
-    /// Frictions that an earlier run has finished.
+    /// Friction values that an earlier run has finished.
     n_earlier: usize,
     n_done: usize,
     /// Snapshots of which there are vectors.
@@ -108,9 +108,9 @@ impl Checkpoint {
     fn write_own(&self, number: usize, sweep: &Sweep, snapshot: Option<&Snapshot>) -> Result<()> {
         let states = sweep.states();
         let local = states.iter().map(|(_, u)| u.to_vec()).collect::<Result<Vec<_>>>()?;
-        let frictions: Vec<f64> = states.iter().map(|(friction, _)| *friction).collect();
+        let friction_values: Vec<f64> = states.iter().map(|(friction, _)| *friction).collect();
         hdf::create_passing(&self.own("path", number), &FORMAT, |file| {
-            list(file, "frictions", &frictions)?;
+            list(file, "friction_values", &friction_values)?;
             table(file, "u", local.first().map_or(0, Vec::len), &local.concat())
         })?;
         let Some(vectors) = snapshot.and_then(Snapshot::vectors) else { return Ok(()) };
@@ -140,10 +140,10 @@ impl Checkpoint {
     /// [`Error::Input`] where the file is damaged.
     pub fn path(&self, like: &Vector) -> Result<Vec<(f64, Vector)>> {
         let path = self.own("path", self.n_done - 1);
-        let read = read(&path, |file| Ok((values::<f64>(file, "frictions")?, values::<f64>(file, "u")?)));
-        let (frictions, u) = self.comm.agree(read.and_then(|(frictions, u)| {
-            if u.len() == frictions.len() * like.n_local() {
-                return Ok((frictions, u));
+        let read = read(&path, |file| Ok((values::<f64>(file, "friction_values")?, values::<f64>(file, "u")?)));
+        let (friction_values, u) = self.comm.agree(read.and_then(|(friction_values, u)| {
+            if u.len() == friction_values.len() * like.n_local() {
+                return Ok((friction_values, u));
             }
             Err(hdf::damaged(&path, &FORMAT, "it is of another numbering of the equations"))
         }))?;
@@ -151,7 +151,7 @@ impl Checkpoint {
             let n = like.n_local();
             Ok((friction, Vector::from_local(&self.comm, &u[i * n..(i + 1) * n])?))
         };
-        frictions.into_iter().enumerate().map(state).collect()
+        friction_values.into_iter().enumerate().map(state).collect()
     }
 
     /// Right and left vectors of a snapshot, and its equilibrium. Collective.
@@ -244,9 +244,10 @@ fn usable(place: &Path, target: &Path, identity: &[(&str, String)], n: usize) ->
     for (name, value) in identity {
         let before = begun.lines().find_map(|line| line.strip_prefix(&format!("{name}: "))).unwrap_or("unknown");
         if before != value {
-            let what = format!("{} is unfinished ({n} frictions are done), and was begun otherwise", target.display());
+            let what =
+                format!("{} is unfinished ({n} friction values are done), and was begun otherwise", target.display());
             let advice =
-                "Go on with the command that began it, use --force to begin again, or --output for another folder";
+                "Continue with the command that began it, use --force to begin again, or --output for another folder";
             return Err(Error::input(format!("{what}: {name} was {before}, is {value}. {advice}")));
         }
     }

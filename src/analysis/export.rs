@@ -65,7 +65,7 @@ const CONTACT: MatrixFile = MatrixFile {
     head: "tangent of contact and friction, N/m: a part of stiffness",
 };
 
-/// Writes matrices into a folder, which the root has, with node, axis and place of each row in `equations.csv`.
+/// Writes matrices into a folder, which the root has, with node, axis and place of each row in `dofs.csv`.
 /// Collective.
 ///
 /// # Errors
@@ -153,7 +153,7 @@ impl Export<'_> {
 
     /// Writes what each row is. Collective.
     fn rows(&mut self, structure: &Structure, system: &System) -> Result<()> {
-        const FILE: &str = "equations.csv";
+        const FILE: &str = "dofs.csv";
         self.files.push((FILE.into(), "node, axis and place of each row (nodes as the mesh file has them, from 1)"));
         let own = structure.dof_labels(system).join("\n");
         let all = self.comm.gather_values(own);

@@ -90,7 +90,7 @@ fn empty(
         parameter: family.parameter.clone(),
         varies: family.terms.iter().any(|term| term.factor.varies()),
         n_dofs: matrices.n,
-        n_constrained: names.n_held,
+        n_constrained: names.n_constrained,
         symmetry: matrices.symmetry,
         is_damped: matrices.is_damped(),
         band: options.band,

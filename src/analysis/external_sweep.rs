@@ -114,7 +114,7 @@ impl<'a> ExternalSweep<'a> {
         }
         if best.1 >= SINGULAR {
             return Err(Error::input(
-                "the pencil is singular: lambda^2 M + lambda C + K can be inverted for no lambda, as where M, C and K have a common null \
+                "the eigenproblem is singular: lambda^2 M + lambda C + K can be inverted for no lambda, as where M, C and K have a common null \
                  vector. Hold or leave out what neither mass nor stiffness resists",
             ));
         }

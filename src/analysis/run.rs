@@ -95,7 +95,7 @@ pub(super) fn run(
     let system = structure.assemble(comm)?;
     let motion = structure.surface_motion(&system)?;
     let results = Results {
-        about: About { n_equations: system.dofs.n_global(), ..about },
+        about: About { n_dofs: system.dofs.n_global(), ..about },
         surface: motion.surface().clone(),
         contact: structure.contact_faces(),
         ..Results::default()
@@ -163,7 +163,7 @@ fn about(comm: &Comm, structure: &Structure, job: &Job, output: Option<&Output>)
         command: output.map_or_else(String::new, |output| output.command.clone()),
         n_ranks: comm.size(),
         band: job.band,
-        frictions: job.values.clone(),
+        friction_values: job.values.clone(),
         ..structure.about(comm)?
     })
 }
@@ -186,12 +186,12 @@ fn identity(job: &Job, output: &Output, about: &About) -> Vec<(&'static str, Str
 impl Run<'_> {
     /// The values asked for.
     pub fn values(&self) -> Vec<f64> {
-        self.results.about.frictions.clone()
+        self.results.about.friction_values.clone()
     }
 
     /// Whether a value is one of those asked for, whose fields are written and whose modes are drawn and explained.
     pub fn is_asked(&self, friction: f64) -> bool {
-        self.results.about.frictions.contains(&friction)
+        self.results.about.friction_values.contains(&friction)
     }
 
     /// Visits the values asked for, one by one.

@@ -207,13 +207,13 @@ impl<'a> Plan<'a> {
         let reference = self.read(FULL)?;
         let mut study = Study::new(&reference);
         let element = format!("super-element-{}", self.options.super_element);
-        let n_coordinates = self.read(&element)?.about.n_equations;
+        let n_coordinates = self.read(&element)?.about.n_dofs;
         for part in self.parts().into_iter().filter(|part| part.product != FULL) {
             let Work::Stability { model, reduce_each, .. } = &part.work else { continue };
             let results = self.read(&part.product)?;
             let n_contacts = n_contacts(&results);
-            let n_equations = if *reduce_each { n_coordinates } else { results.about.n_equations };
-            let sizes = Sizes { n_contacts, n_retained: Some(2 * n_contacts + self.n_loaded), n_equations };
+            let n_dofs = if *reduce_each { n_coordinates } else { results.about.n_dofs };
+            let sizes = Sizes { n_contacts, n_retained: Some(2 * n_contacts + self.n_loaded), n_dofs };
             let making = record.parts.get(&self.reduction().product).filter(|_| *model != self.options.model);
             study.add(&part.name, [&reference, &results], sizes, making.map(|done| done.seconds))?;
         }

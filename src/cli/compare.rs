@@ -55,7 +55,7 @@ fn compare(shell: &Shell, Compare { a, b, output, force }: &Compare) -> Result<(
 fn read(place: &Path) -> Result<Results> {
     let file = if place.is_dir() { place.join(RESULTS) } else { PathBuf::from(place) };
     if !file.exists() {
-        let what = format!("{} holds no {RESULTS}", place.display());
+        let what = format!("{} contains no {RESULTS}", place.display());
         return Err(Error::input(format!("{what}. Give the folders of two runs of squeal stability")));
     }
     file::read(&file)
@@ -65,15 +65,10 @@ fn read(place: &Path) -> Result<Results> {
 fn name(place: &Path, results: &Results) -> String {
     let about = &results.about;
     let n_contacts: usize = about.pairs.iter().filter(|pair| pair.sliding).map(|pair| pair.n_points).sum();
-    format!(
-        "{}: {}, {} equations, {n_contacts} sliding contact points",
-        place.display(),
-        about.model,
-        about.n_equations
-    )
+    format!("{}: {}, {} dofs, {n_contacts} sliding contact points", place.display(), about.model, about.n_dofs)
 }
 
-/// Says which results could not be compared.
+/// Names the results that could not be compared.
 fn of_both([a, b]: [&Path; 2], error: Error) -> Error {
     match error {
         Error::Input(what) => Error::input(format!("{} and {}: {what}", a.display(), b.display())),

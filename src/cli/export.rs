@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 
 use crate::Result;
 use crate::analysis::{ExportOptions, Exported, MatrixFormat, export};
@@ -15,7 +15,7 @@ use super::{Run, Shell};
 
 /// Formats of matrices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+enum Format {
     /// Matrix Market text, coordinate real general
     Mtx,
     /// PETSc binary
@@ -31,14 +31,28 @@ impl From<Format> for MatrixFormat {
     }
 }
 
-pub fn run(shell: &Shell, run: &Run, format: Format, part: Option<&str>) -> Result<()> {
+/// What `export` takes.
+#[derive(Args)]
+#[group(skip)]
+pub struct Export {
+    #[command(flatten)]
+    run: Run,
+    /// Format of the files
+    #[arg(long, value_enum, default_value = "mtx")]
+    format: Format,
+    /// This part alone: unconstrained, without contact and load
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["friction", "contacts", "law"])]
+    part: Option<String>,
+}
+
+pub fn run(shell: &Shell, Export { run, format, part }: &Export) -> Result<()> {
     let (comm, place) = (shell.comm, run.folder("export"));
     let structure = match part {
         Some(part) => Structure::Full(Box::new(FullModel::read_part(comm, &run.model, part)?)),
         None => Structure::read(comm, &run.model, &run.structure_options())?,
     };
     let options =
-        ExportOptions { friction: run.friction_values(), with_contact: part.is_none(), format: format.into() };
+        ExportOptions { friction: run.friction_values(), with_contact: part.is_none(), format: (*format).into() };
     let folder = Folder::open_empty(comm, &place, run.force)?;
     let mut watch = Watch::new(shell, run.verbose);
     let exported = export(comm, &structure, &options, folder.as_ref(), &mut watch)?;
@@ -50,7 +64,7 @@ pub fn run(shell: &Shell, run: &Run, format: Format, part: Option<&str>) -> Resu
     });
     comm.agree(written)?;
     let (friction, n) = (exported.friction, exported.n_dofs);
-    shell.print(&text, &ExportDocument { folder: place.display().to_string(), friction, equations: n })
+    shell.print(&text, &ExportDocument { folder: place.display().to_string(), friction, dofs: n })
 }
 
 fn text(exported: &Exported, place: &Path) -> String {

@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: an analysis stops after the value at hand, and can go on later.
+//! Ctrl-C and SIGTERM: an analysis stops after the value at hand, and can continue later.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};

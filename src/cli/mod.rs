@@ -34,7 +34,7 @@ use crate::output::json::{self, Failed, Warned};
 use crate::results::Results;
 use crate::structure::StructureOptions;
 use crate::{Error, Result};
-use values::FrictionValues;
+use values::Values;
 
 /// Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake.
 ///
@@ -110,78 +110,36 @@ fn warning_line(warning: &str, as_json: bool) -> String {
 #[derive(Subcommand)]
 enum Command {
     /// Write a model file for a mesh: parts, touching surfaces and axis are filled in, the rest is to be chosen
-    New {
-        #[command(flatten)]
-        new: new::New,
-    },
+    New(new::New),
     /// Print a model file that has every key, each explained
     Example,
     /// Print what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
-    Check {
-        #[command(flatten)]
-        check: check::Check,
-    },
+    Check(check::Check),
     /// Find the static equilibrium under load, contact and friction
-    Static {
-        #[command(flatten)]
-        run: Run,
-    },
-    /// Reduce a model to a super-element with a few hundred coordinates, which squeals like the whole
-    Reduce {
-        #[command(flatten)]
-        reduce: reduce::Reduce,
-    },
+    Static(Run),
+    /// Reduce a model to a super-element with a few hundred coordinates and the same instabilities
+    Reduce(reduce::Reduce),
     /// Write M, C and K about an equilibrium, with what contact has in K and the meaning of each row
-    Export {
-        #[command(flatten)]
-        run: Run,
-        /// What the files are to be
-        #[arg(long, value_enum, default_value = "mtx")]
-        format: export::Format,
-        /// This part alone: unconstrained, without contact and load
-        #[arg(long, value_name = "NAME", conflicts_with_all = ["friction", "contacts", "law"])]
-        part: Option<String>,
-    },
+    Export(export::Export),
     /// Find the modes of external matrices M, C, K, along a parameter of them, or of a free part of a model
-    Modes {
-        #[command(flatten)]
-        modes: modes::Modes,
-    },
+    Modes(modes::Modes),
     /// Find the complex modes of the band, and which of them squeal, for one friction coefficient or a sweep
-    Stability {
-        #[command(flatten)]
-        stability: stability::Stability,
-    },
+    Stability(stability::Stability),
     /// Make a page of a stability run's results: whether, where and why it squeals, sensitivities, figures, moving
     /// shapes, tables
-    Report {
-        #[command(flatten)]
-        report: report::Report,
-    },
+    Report(report::Report),
     /// Compare reduced models with full contact: contact layouts and super-elements, their sizes, seconds and errors
     ///
     /// Each model has a folder of its own, as `squeal stability` makes it. Run again, a study makes only what is
     /// missing or out of date.
-    Study {
-        #[command(flatten)]
-        study: study::Study,
-    },
+    Study(study::Study),
     /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
-    Compare {
-        #[command(flatten)]
-        compare: compare::Compare,
-    },
+    Compare(compare::Compare),
     /// Print the completions of a shell: squeal completions bash > /etc/bash_completion.d/squeal
-    Completions {
-        #[command(flatten)]
-        completions: completions::Completions,
-    },
+    Completions(completions::Completions),
     /// Write the manual pages
     #[command(hide = true)]
-    Man {
-        #[command(flatten)]
-        man: man::Man,
-    },
+    Man(man::Man),
 }
 
 /// What all computing commands take.
@@ -193,7 +151,7 @@ struct Run {
     /// Friction coefficient of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the
     /// model file's)
     #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
-    friction: Option<FrictionValues>,
+    friction: Option<Values>,
     /// Number of reference pairs in place of the contact points of the sliding contacts, e.g. 104
     #[arg(long, value_name = "N")]
     contacts: Option<usize>,
@@ -293,19 +251,19 @@ fn print_usage(usage: &clap::Error) -> i32 {
 
 fn run(command: &Command, shell: &Shell) -> Result<()> {
     match command {
-        Command::New { new } => new::run(shell, new),
+        Command::New(new) => new::run(shell, new),
         Command::Example => new::example(shell),
-        Command::Check { check } => check::run(shell, check),
-        Command::Static { run } => r#static::run(shell, run),
-        Command::Export { run, format, part } => export::run(shell, run, *format, part.as_deref()),
-        Command::Modes { modes } => modes::run(shell, modes),
-        Command::Reduce { reduce } => reduce::run(shell, reduce),
-        Command::Report { report } => report::run(shell, report),
-        Command::Stability { stability } => stability::run(shell, stability),
-        Command::Study { study } => study::run(shell, study),
-        Command::Compare { compare } => compare::run(shell, compare),
-        Command::Completions { completions } => completions::run(shell, completions),
-        Command::Man { man } => man::run(shell, man),
+        Command::Check(check) => check::run(shell, check),
+        Command::Static(run) => r#static::run(shell, run),
+        Command::Export(export) => export::run(shell, export),
+        Command::Modes(modes) => modes::run(shell, modes),
+        Command::Reduce(reduce) => reduce::run(shell, reduce),
+        Command::Report(report) => report::run(shell, report),
+        Command::Stability(stability) => stability::run(shell, stability),
+        Command::Study(study) => study::run(shell, study),
+        Command::Compare(compare) => compare::run(shell, compare),
+        Command::Completions(completions) => completions::run(shell, completions),
+        Command::Man(man) => man::run(shell, man),
     }
 }
 

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::Shell;
 use crate::output::files::write_whole;
-use crate::output::folder::adopt;
+use crate::output::folder::add_to_listed;
 use crate::output::json::Reported;
 use crate::output::overwrite::{FileKind, SIGNATURE, is_free, may_write_file};
 use crate::output::results_folder::RESULTS;
@@ -68,7 +68,7 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     writer.put(html.clone(), &page::KIND, |out| out.write_all(page.as_bytes()))?;
     report.plots.as_ref().map_or(Ok(()), |folder| writer.plots(folder, &findings))?;
     let cycles = report.paraview.as_ref().map(|folder| writer.cycles(folder, &findings)).transpose()?;
-    adopt(home, &writer.written)?;
+    add_to_listed(home, &writer.written)?;
     // A person opens the page, the folder of figures and the collections.
     let shown = [html].into_iter().chain(report.plots.clone()).chain(cycles.into_iter().flatten());
     Ok((words::headline(&findings), shown.collect()))

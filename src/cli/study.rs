@@ -9,7 +9,7 @@ use crate::analysis::{StudyOptions, study};
 use crate::report::study_folder;
 
 use super::Shell;
-use super::values::{self, FrictionValues};
+use super::values::{self, Values};
 use super::watch::Watch;
 
 /// What `study` takes.
@@ -21,7 +21,7 @@ pub struct Study {
     /// Friction coefficient of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the
     /// model file's)
     #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
-    friction: Option<FrictionValues>,
+    friction: Option<Values>,
     /// Contact layouts: numbers of reference pairs over the sliding contacts
     #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "12,44,104,212")]
     layouts: Vec<usize>,

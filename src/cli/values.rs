@@ -2,22 +2,18 @@
 
 use crate::model::{LARGEST_FRICTION, NormalLaw, spaced};
 
-/// A list of friction values.
+/// Values of friction or of any parameter, no two of them the same.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FrictionValues(pub Vec<f64>);
+pub struct Values(pub Vec<f64>);
 
 /// `0.5`, `0.2,0.5` or `FROM:TO:STEP`, the end included.
-pub fn parse(text: &str) -> Result<FrictionValues, String> {
+pub fn parse(text: &str) -> Result<Values, String> {
     let Values(values) = values(text)?;
     if let Some(mu) = values.iter().find(|mu| !(0.0..=LARGEST_FRICTION).contains(*mu)) {
         return Err(format!("friction {mu} is out of range: 0 to {LARGEST_FRICTION}"));
     }
-    Ok(FrictionValues(values))
+    Ok(Values(values))
 }
-
-/// Values of any parameter, no two of them the same.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Values(pub Vec<f64>);
 
 /// As [`parse`], of any numbers.
 pub fn values(text: &str) -> Result<Values, String> {
@@ -93,7 +89,7 @@ mod tests {
 
     #[test]
     fn ranges_include_their_end() {
-        let FrictionValues(values) = parse("0.1:0.9:0.1").unwrap();
+        let Values(values) = parse("0.1:0.9:0.1").unwrap();
         assert_eq!(values, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]);
         assert_eq!(parse("0.5").unwrap().0, [0.5]);
         assert_eq!(parse("0.9:0.1:-0.4").unwrap().0, [0.9, 0.5, 0.1]);

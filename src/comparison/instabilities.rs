@@ -3,28 +3,30 @@
 use num_complex::Complex64;
 use serde::Serialize;
 
-use super::Comparison;
+use super::{ComparedMode, Comparison, ComparisonAtValue, ModePair};
 use crate::results::{ModeData, Results, Value};
 
-/// A mode of a reference that grows at some friction, followed over all frictions asked for.
+/// A mode of a reference that grows at some friction value, followed over all friction values asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceInstability {
-    /// Friction, and number of the mode at it, from 0.
+    /// Friction value, and number of the mode at it, from 0.
     pub places: Vec<(f64, usize)>,
 }
 
-/// A mode at one friction, in the reference or in another model.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// A mode at one friction value, in the reference or in another model.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct CurvePoint {
-    /// Friction of the swept pairs.
+    /// Friction coefficient of the swept pairs.
     pub friction: f64,
     /// Hz.
+    #[serde(rename = "frequency_hz")]
     pub frequency: f64,
     /// 1/s.
+    #[serde(rename = "growth_rate_per_s")]
     pub growth_rate: f64,
     /// Whether it grows.
     pub unstable: bool,
-    /// What it has in common with the reference's mode.
+    /// MAC with the reference's mode.
     pub mac: f64,
 }
 
@@ -51,7 +53,7 @@ pub fn lowest(reference: &Results, n: usize) -> Vec<ReferenceInstability> {
     found.into_iter().map(|one| ReferenceInstability { places: places(one) }).collect()
 }
 
-/// The modes that are the points of a branch, at the frictions asked for, where they are in the band.
+/// The modes that are the points of a branch, at the friction values asked for, where they are in the band.
 fn along<'r>(points: impl Iterator<Item = (f64, Complex64)>, asked: &[&'r Value]) -> Vec<(&'r Value, usize)> {
     let place = |(friction, lambda): (f64, Complex64)| {
         let value = asked.iter().find(|value| value.friction == friction)?;
@@ -66,9 +68,7 @@ impl ReferenceInstability {
     pub fn of(&self, reference: &Results) -> Vec<CurvePoint> {
         let point = |&(friction, i): &(f64, usize)| {
             let value = reference.values.iter().find(|value| value.friction == friction)?;
-            let mode = &value.modes[i];
-            let (frequency, growth_rate) = (mode.frequency(), mode.growth_rate());
-            Some(CurvePoint { friction, frequency, growth_rate, unstable: mode.unstable, mac: 1.0 })
+            Some(CurvePoint::new(friction, &ComparedMode::new(i, &value.modes[i]), 1.0))
         };
         self.places.iter().filter_map(point).collect()
     }
@@ -76,23 +76,28 @@ impl ReferenceInstability {
     /// Its partners in the second of two results that were compared; none where there is no partner.
     pub fn in_other(&self, comparison: &Comparison) -> Vec<CurvePoint> {
         let point = |&(friction, i): &(f64, usize)| {
-            let at = comparison.frictions.iter().find(|at| at.friction == friction)?;
-            let pair = at.pairs.iter().find(|pair| pair.modes[0] == i)?;
-            let (frequency, growth_rate) = (pair.frequencies[1], pair.growth_rates[1]);
-            Some(CurvePoint { friction, frequency, growth_rate, unstable: pair.unstable[1], mac: pair.mac })
+            let at = comparison.values.iter().find(|at| at.friction == friction)?;
+            let ModePair { b, mac, .. } = at.pairs.iter().find(|pair| pair.a.mode == i + 1)?;
+            Some(CurvePoint::new(friction, b, *mac))
         };
         self.places.iter().filter_map(point).collect()
     }
 }
 
-/// Modes of the second result that grow without their partner in the first one growing, or without any: friction, Hz,
-/// 1/s.
-pub fn spurious(comparison: &Comparison) -> Vec<[f64; 3]> {
-    let at_one = |at: &super::ComparisonAtValue| {
-        let pairs = at.pairs.iter().filter(|pair| pair.unstable == [false, true]);
-        let paired = pairs.map(|pair| [at.friction, pair.frequencies[1], pair.growth_rates[1]]);
-        let lone = at.unmatched[1].iter().filter(|lone| lone.unstable);
-        paired.chain(lone.map(|lone| [at.friction, lone.frequency, lone.growth_rate])).collect::<Vec<_>>()
+/// Modes of the second result that grow without their partner in the first one growing, or without any.
+pub fn spurious(comparison: &Comparison) -> Vec<CurvePoint> {
+    let at_one = |at: &ComparisonAtValue| {
+        let paired = at.pairs.iter().filter(|pair| !pair.a.unstable).map(|pair| (&pair.b, pair.mac));
+        let all = paired.chain(at.unmatched[1].iter().map(|mode| (mode, 0.0)));
+        let unstable = all.filter(|(mode, _)| mode.unstable);
+        unstable.map(|(mode, mac)| CurvePoint::new(at.friction, mode, mac)).collect::<Vec<_>>()
     };
-    comparison.frictions.iter().flat_map(at_one).collect()
+    comparison.values.iter().flat_map(at_one).collect()
+}
+
+impl CurvePoint {
+    fn new(friction: f64, mode: &ComparedMode, mac: f64) -> CurvePoint {
+        let ComparedMode { frequency, growth_rate, unstable, .. } = *mode;
+        CurvePoint { friction, frequency, growth_rate, unstable, mac }
+    }
 }

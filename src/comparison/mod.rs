@@ -30,44 +30,43 @@ use serde::Serialize;
 use crate::results::{ModeData, Results, Value};
 use crate::{Error, Result};
 
-/// What two results, A and B, have in common at each friction that both have.
+/// What two results, A and B, have in common at each friction value that both have.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// The band of both, Hz.
+    #[serde(rename = "band_hz")]
     pub band: [f64; 2],
     /// Points at which shapes were compared.
+    #[serde(rename = "points")]
     pub n_points: usize,
     /// Whether B's shapes were interpolated to A's points.
     pub interpolated: bool,
-    /// What errors of growth rates are relative to, 1/s: the largest growth rate of A at these frictions or, where
+    /// The reference of growth rate errors, 1/s: the largest growth rate of A at these friction values or, where
     /// nothing grows, the largest modulus of one.
+    #[serde(rename = "largest_growth_rate_per_s")]
     pub largest_growth: f64,
-    /// One friction after the other, rising.
-    pub frictions: Vec<ComparisonAtValue>,
+    /// One value after the other, rising.
+    pub values: Vec<ComparisonAtValue>,
 }
 
-/// One friction.
+/// One friction value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparisonAtValue {
-    /// Friction of the swept pairs.
+    /// Friction coefficient of the swept pairs.
     pub friction: f64,
     /// Modes that are the same, by A's frequency.
     pub pairs: Vec<ModePair>,
-    /// Modes of A and of B without partner, numbered from 0.
-    pub unmatched: [Vec<UnpairedMode>; 2],
+    /// Modes of A and of B without partner.
+    pub unmatched: [Vec<ComparedMode>; 2],
 }
 
 /// A mode of A and its partner of B.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModePair {
-    /// Their numbers among the modes of the friction, from 0.
-    pub modes: [usize; 2],
-    /// Hz.
-    pub frequencies: [f64; 2],
-    /// 1/s.
-    pub growth_rates: [f64; 2],
-    /// Whether they grow.
-    pub unstable: [bool; 2],
+    /// That of A.
+    pub a: ComparedMode,
+    /// That of B.
+    pub b: ComparedMode,
     /// `f_B / f_A - 1`
     pub frequency_error: f64,
     /// `(a_B - a_A) / a_largest`
@@ -76,23 +75,25 @@ pub struct ModePair {
     pub mac: f64,
 }
 
-/// A mode without partner.
+/// A mode of A or of B.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct UnpairedMode {
-    /// Its number among the modes of the friction, from 0.
+pub struct ComparedMode {
+    /// Its number at the friction value, from 1.
     pub mode: usize,
     /// Hz.
+    #[serde(rename = "frequency_hz")]
     pub frequency: f64,
     /// 1/s.
+    #[serde(rename = "growth_rate_per_s")]
     pub growth_rate: f64,
     /// Whether it grows.
     pub unstable: bool,
 }
 
-/// Two frictions are one within this.
+/// Two friction values are one within this.
 const SAME_FRICTION: f64 = 1e-9;
 
-/// Compares two results at all frictions that both have.
+/// Compares two results at all friction values that both have.
 ///
 /// ```no_run
 /// use squeal::comparison::compare;
@@ -106,19 +107,18 @@ const SAME_FRICTION: f64 = 1e-9;
 /// ```
 ///
 /// # Errors
-/// [`Error::Input`] where they have no friction, no band or no surface in common.
+/// [`Error::Input`] where they have no friction value, no band or no surface in common.
 pub fn compare(a: &Results, b: &Results) -> Result<Comparison> {
     let band = common_band(a.about.band, b.about.band)?;
-    let common = common_frictions(a, b)?;
+    let common = common_values(a, b)?;
     let points = CommonPoints::new(a, b)?;
     let of_a: Vec<f64> = common.iter().flat_map(|[a, _]| &a.modes).map(ModeData::growth_rate).collect();
     let fastest = of_a.iter().copied().fold(0.0, f64::max);
     let largest = of_a.iter().fold(f64::MIN_POSITIVE, |most, growth| most.max(growth.abs()));
     let largest_growth =
         if common.iter().any(|[a, _]| a.modes.iter().any(|mode| mode.unstable)) { fastest } else { largest };
-    let frictions =
-        common.iter().map(|values| ComparisonAtValue::new(*values, &points, band, largest_growth)).collect();
-    Ok(Comparison { band, n_points: points.len(), interpolated: points.are_interpolated(), largest_growth, frictions })
+    let values = common.iter().map(|values| ComparisonAtValue::new(*values, &points, band, largest_growth)).collect();
+    Ok(Comparison { band, n_points: points.len(), interpolated: points.are_interpolated(), largest_growth, values })
 }
 
 fn common_band(a: [f64; 2], b: [f64; 2]) -> Result<[f64; 2]> {
@@ -129,8 +129,8 @@ fn common_band(a: [f64; 2], b: [f64; 2]) -> Result<[f64; 2]> {
     Err(Error::input(format!("no common band: {}-{} Hz and {}-{} Hz", a[0], a[1], b[0], b[1])))
 }
 
-/// The values at each common friction.
-fn common_frictions<'r>(a: &'r Results, b: &'r Results) -> Result<Vec<[&'r Value; 2]>> {
+/// The values of each common friction coefficient.
+fn common_values<'r>(a: &'r Results, b: &'r Results) -> Result<Vec<[&'r Value; 2]>> {
     let partner =
         |value: &Value| b.values.iter().find(|other| (other.friction - value.friction).abs() <= SAME_FRICTION);
     let mut common: Vec<[&Value; 2]> =
@@ -138,12 +138,12 @@ fn common_frictions<'r>(a: &'r Results, b: &'r Results) -> Result<Vec<[&'r Value
     common.sort_by(|[p, _], [q, _]| p.friction.total_cmp(&q.friction));
     if common.is_empty() {
         let list = |results: &Results| {
-            let frictions: Vec<String> =
+            let list: Vec<String> =
                 results.values.iter().filter(|value| value.asked).map(|value| value.friction.to_string()).collect();
-            if frictions.is_empty() { "none".to_owned() } else { frictions.join(", ") }
+            if list.is_empty() { "none".to_owned() } else { list.join(", ") }
         };
         let what = format!("no common friction: {} and {}", list(a), list(b));
-        return Err(Error::input(format!("{what}. Run one of them at the frictions of the other (--friction)")));
+        return Err(Error::input(format!("{what}. Run one of them at the friction values of the other (--friction)")));
     }
     Ok(common)
 }
@@ -156,38 +156,43 @@ impl ComparisonAtValue {
         let mac_table = MacTable::new([&lambdas_a, &lambdas_b], [&shapes_a, &shapes_b]);
         let found = pairing::pairs(&mac_table, [&lambdas_a, &lambdas_b]);
         let pair = |&[i, j]: &[usize; 2]| {
-            ModePair::new([i, j], [&a.modes[i], &b.modes[j]], mac_table.mac(i, j), largest_growth)
+            let modes = [ComparedMode::new(i, &a.modes[i]), ComparedMode::new(j, &b.modes[j])];
+            ModePair::new(modes, mac_table.mac(i, j), largest_growth)
         };
         let inside = |f: f64| (band[0]..=band[1]).contains(&f);
-        let pairs = found.iter().map(pair).filter(|pair| pair.frequencies.iter().any(|&f| inside(f))).collect();
+        let any_inside = |pair: &ModePair| inside(pair.a.frequency) || inside(pair.b.frequency);
+        let pairs = found.iter().map(pair).filter(any_inside).collect();
         let unmatched = [0, 1].map(|side| {
             let modes = &[a, b][side].modes;
             let alone = |i: &usize| found.iter().all(|pair| pair[side] != *i) && inside(modes[*i].frequency());
-            (0..modes.len()).filter(alone).map(|i| UnpairedMode::new(i, &modes[i])).collect()
+            (0..modes.len()).filter(alone).map(|i| ComparedMode::new(i, &modes[i])).collect()
         });
         ComparisonAtValue { friction: a.friction, pairs, unmatched }
     }
 }
 
 impl ModePair {
-    fn new(modes: [usize; 2], [a, b]: [&ModeData; 2], mac: f64, largest_growth: f64) -> ModePair {
-        let frequencies = [a.frequency(), b.frequency()];
-        let growth_rates = [a.growth_rate(), b.growth_rate()];
-        ModePair {
-            modes,
-            frequencies,
-            growth_rates,
-            unstable: [a.unstable, b.unstable],
-            frequency_error: (frequencies[1] - frequencies[0]) / frequencies[0].max(f64::MIN_POSITIVE),
-            growth_error: (growth_rates[1] - growth_rates[0]) / largest_growth,
-            mac,
-        }
+    fn new([a, b]: [ComparedMode; 2], mac: f64, largest_growth: f64) -> ModePair {
+        let frequency_error = (b.frequency - a.frequency) / a.frequency.max(f64::MIN_POSITIVE);
+        let growth_error = (b.growth_rate - a.growth_rate) / largest_growth;
+        ModePair { a, b, frequency_error, growth_error, mac }
+    }
+
+    /// Whether it grows in A or in B.
+    pub fn is_unstable(&self) -> bool {
+        self.a.unstable || self.b.unstable
     }
 }
 
-impl UnpairedMode {
-    fn new(mode: usize, data: &ModeData) -> UnpairedMode {
-        UnpairedMode { mode, frequency: data.frequency(), growth_rate: data.growth_rate(), unstable: data.unstable }
+impl ComparedMode {
+    /// The mode of an index.
+    fn new(i: usize, data: &ModeData) -> ComparedMode {
+        ComparedMode {
+            mode: i + 1,
+            frequency: data.frequency(),
+            growth_rate: data.growth_rate(),
+            unstable: data.unstable,
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use super::mac::{MacTable, distance};
 const WINDOW: f64 = 0.2;
 /// Two modes with less than this in common are not one.
 const LEAST: f64 = 0.4;
-/// Scores are counted in whole parts of one, as the assignment wants them.
+/// Scores are counted in whole parts of one, as the assignment algorithm needs them.
 const PARTS: f64 = 1e12;
 
 /// Pairs of modes of A and B, by A's order: of all assignments one to one that with the largest sum of scores

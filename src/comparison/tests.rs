@@ -31,7 +31,7 @@ fn wave(surface: &Surface, k: f64, phase: f64) -> Shape {
     Shape { re: shape(&|x| (k * x[0]).cos() * (k * x[1]).sin()), im: shape(&|x| phase * (k * x[0]).sin()) }
 }
 
-fn results(surface: Surface, frictions: &[f64], modes: &[(f64, f64, f64)]) -> Results {
+fn results(surface: Surface, friction_values: &[f64], modes: &[(f64, f64, f64)]) -> Results {
     let part = |name: &str| Part { name: name.into(), ..Part::default() };
     let mode = |&(k, hertz, growth): &(f64, f64, f64)| ModeData {
         lambda: Complex64::new(growth, std::f64::consts::TAU * hertz),
@@ -41,7 +41,7 @@ fn results(surface: Surface, frictions: &[f64], modes: &[(f64, f64, f64)]) -> Re
     };
     let value =
         |&friction: &f64| Value { friction, asked: true, modes: modes.iter().map(mode).collect(), ..Value::default() };
-    let values = frictions.iter().map(value).collect();
+    let values = friction_values.iter().map(value).collect();
     let about = About { band: [0.0, 3000.0], parts: vec![part("left"), part("right")], ..About::default() };
     Results { about, surface, values, ..Results::default() }
 }
@@ -54,29 +54,29 @@ fn errors_are_relative_to_the_first_result() {
     let b = results(plate(6), &[0.2, 0.3], &[(1.0, 1010.0, -5.0), (4.0, 1960.0, -10.0), (2.0, 1500.0, 45.0)]);
     let found = compare(&a, &b).unwrap();
     assert_eq!((found.n_points, found.interpolated, found.largest_growth), (98, false, 50.0));
-    assert_eq!(found.frictions.len(), 1);
-    let at = &found.frictions[0];
+    assert_eq!(found.values.len(), 1);
+    let at = &found.values[0];
     assert_eq!((at.friction, at.pairs.len(), &at.unmatched), (0.2, 3, &[vec![], vec![]]));
-    let expected = [([0, 0], 0.01, 0.0), ([1, 2], 0.0, -0.1), ([2, 1], -0.02, 0.2)];
+    let expected = [([1, 1], 0.01, 0.0), ([2, 3], 0.0, -0.1), ([3, 2], -0.02, 0.2)];
     for (pair, (modes, frequency, growth)) in at.pairs.iter().zip(expected) {
-        assert_eq!(pair.modes, modes);
+        assert_eq!([pair.a.mode, pair.b.mode], modes);
         assert!((pair.frequency_error - frequency).abs() < 1e-12 && (pair.growth_error - growth).abs() < 1e-12);
         assert!((pair.mac - 1.0).abs() < 1e-6, "{}", pair.mac);
     }
-    assert_eq!(at.pairs[1].unstable, [true, true]);
+    assert!(at.pairs[1].a.unstable && at.pairs[1].b.unstable);
 }
 
 #[test]
-fn modes_without_partner_are_told() {
+fn modes_without_partner_are_listed() {
     let a = results(plate(6), &[0.1], &MODES);
     let b = results(plate(6), &[0.1], &[MODES[0], (2.0, 1800.0, 1.0), (9.0, 2000.0, 2.0)]);
-    let at = &compare(&a, &b).unwrap().frictions[0];
-    let lone = |side: usize| at.unmatched[side].iter().map(|lone| lone.mode).collect::<Vec<_>>();
-    assert_eq!((at.pairs.len(), lone(0), lone(1)), (2, vec![2], vec![2]), "{at:?}");
+    let at = &compare(&a, &b).unwrap().values[0];
+    let unpaired = |side: usize| at.unmatched[side].iter().map(|mode| mode.mode).collect::<Vec<_>>();
+    assert_eq!((at.pairs.len(), unpaired(0), unpaired(1)), (2, vec![3], vec![3]), "{at:?}");
     // Beyond the other's band a mode has no partner to miss.
     let mut narrow = results(plate(6), &[0.1], &MODES[..2]);
     narrow.about.band[1] = 1600.0;
-    assert_eq!(compare(&a, &narrow).unwrap().frictions[0].unmatched, [vec![], vec![]]);
+    assert_eq!(compare(&a, &narrow).unwrap().values[0].unmatched, [vec![], vec![]]);
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn samples_in_another_order_are_matched_by_their_places() {
     other.samples.truncate(80);
     let found = compare(&a, &results(other, &[0.1], &MODES)).unwrap();
     assert!(!found.interpolated && found.n_points == 80);
-    assert!(found.frictions[0].pairs.iter().all(|pair| (pair.mac - 1.0).abs() < 1e-6));
+    assert!(found.values[0].pairs.iter().all(|pair| (pair.mac - 1.0).abs() < 1e-6));
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn another_mesh_is_interpolated() {
     for [a, b] in [[&a, &b], [&b, &a]] {
         let found = compare(a, b).unwrap();
         assert!(found.interpolated && found.n_points == a.surface.samples.len());
-        let macs: Vec<f64> = found.frictions[0].pairs.iter().map(|pair| pair.mac).collect();
+        let macs: Vec<f64> = found.values[0].pairs.iter().map(|pair| pair.mac).collect();
         assert!(macs.len() == 3 && macs.iter().all(|mac| *mac > 0.999), "{macs:?}");
     }
 }
@@ -108,15 +108,15 @@ fn what_has_nothing_in_common_is_refused() {
         other => panic!("{other:?}"),
     };
     let a = results(plate(6), &[0.1, 0.2], &MODES);
-    let said = refusal(&a, &results(plate(6), &[0.3], &MODES));
-    assert!(said.contains("no common friction: 0.1, 0.2 and 0.3"), "{said}");
+    let message = refusal(&a, &results(plate(6), &[0.3], &MODES));
+    assert!(message.contains("no common friction: 0.1, 0.2 and 0.3"), "{message}");
     let mut high = results(plate(6), &[0.1], &MODES);
     high.about.band = [4000.0, 5000.0];
     assert!(refusal(&a, &high).contains("no common band: 0-3000 Hz and 4000-5000 Hz"));
     let mut moved = results(plate(6), &[0.1], &MODES);
     moved.surface.nodes.iter_mut().for_each(|node| node[1] += 0.5);
-    let said = refusal(&a, &moved);
-    assert!(said.contains("do not coincide") && said.contains("\"left\""), "{said}");
+    let message = refusal(&a, &moved);
+    assert!(message.contains("do not coincide") && message.contains("\"left\""), "{message}");
     let mut larger = results(plate(6), &[0.1], &MODES);
     larger.surface.nodes.iter_mut().for_each(|node| node[1] *= 2.1);
     assert!(refusal(&larger, &a).contains("do not coincide") && refusal(&a, &larger).contains("do not coincide"));
@@ -126,7 +126,7 @@ fn what_has_nothing_in_common_is_refused() {
     assert!(refusal(&a, &results(Surface::default(), &[0.1], &[])).contains("second results have no shapes"));
 }
 
-/// The reference of a study: its modes at two frictions, followed; the first and the third begin to grow.
+/// The reference of a study: its modes at two friction values, followed; the first and the third begin to grow.
 fn reference() -> Results {
     let mut results = results(plate(6), &[0.2, 0.1], &MODES);
     for (value, growths) in results.values.iter_mut().zip([[3.0, 50.0, 8.0], [-5.0, 50.0, 2.0]]) {
@@ -148,11 +148,11 @@ fn reference() -> Results {
 fn a_study_follows_the_two_lowest_instabilities() {
     let reference = reference();
     let mut study = Study::new(&reference);
-    assert_eq!((study.frictions.as_slice(), study.reference.seconds), ([0.1, 0.2].as_slice(), 4.0));
+    assert_eq!((study.friction_values.as_slice(), study.reference.seconds), ([0.1, 0.2].as_slice(), 4.0));
     let frequencies: Vec<f64> = study.reference.curves.iter().map(|curve| curve[0].frequency.round()).collect();
     assert_eq!(frequencies, [1000.0, 1500.0]);
     let unstable: Vec<bool> = study.reference.curves[0].iter().map(|point| point.unstable).collect();
-    assert_eq!(unstable, [false, true], "the first grows at the higher friction only");
+    assert_eq!(unstable, [false, true], "the first grows at the higher value only");
 
     // The model has the first mode at another frequency and stable, and one that grows where the reference's does not.
     let model = results(
@@ -160,14 +160,14 @@ fn a_study_follows_the_two_lowest_instabilities() {
         &[0.1, 0.2],
         &[(4.0, 2000.0, -1.0), (1.0, 1030.0, -4.0), (2.0, 1500.0, 40.0), (9.0, 2500.0, 7.0)],
     );
-    let sizes = Sizes { n_contacts: 4, n_retained: Some(10), n_equations: 30 };
+    let sizes = Sizes { n_contacts: 4, n_retained: Some(10), n_dofs: 30 };
     study.add("four", [&reference, &model], sizes, None).unwrap();
     let four = &study.models[0];
     assert_eq!([study.found(0, four), study.found(1, four)], [[0, 1], [2, 2]]);
     assert!((four.curves[0][1].frequency - 1030.0).abs() < 1e-9 && four.curves[0][1].mac > 0.9999);
     assert_eq!(four.spurious.len(), 2);
-    assert!(four.spurious.iter().all(|[_, hertz, growth]| (hertz - 2500.0).abs() < 1e-9 && *growth == 7.0));
+    assert!(four.spurious.iter().all(|point| (point.frequency - 2500.0).abs() < 1e-9 && point.growth_rate == 7.0));
     let errors = &four.errors[1];
     assert!((errors.worst_frequency - 0.03).abs() < 1e-12 && (errors.mean_frequency - 0.01).abs() < 1e-12);
-    assert_eq!((errors.n_pairs, errors.n_unmatched), (3, [0, 1]));
+    assert_eq!((errors.n_pairs, errors.unmatched_reference, errors.unmatched_model), (3, 0, 1));
 }

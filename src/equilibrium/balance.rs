@@ -16,8 +16,10 @@ use super::Counts;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
     /// Force, N.
+    #[serde(rename = "force_n")]
     pub force: [f64; 3],
     /// Moment about the origin, N m.
+    #[serde(rename = "moment_n_m")]
     pub moment: [f64; 3],
 }
 
@@ -51,21 +53,27 @@ impl Wrench {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairForces {
     /// Points by status.
+    #[serde(flatten)]
     pub counts: Counts,
     /// Sum of the normal forces, N.
+    #[serde(rename = "normal_force_n")]
     pub normal: f64,
     /// Sum of the magnitudes of the tangential forces, N.
+    #[serde(rename = "tangential_force_n")]
     pub tangential: f64,
     /// Force on the slave and its moment about the origin.
     pub on_slave: Wrench,
     /// Area of closed points, m2.
+    #[serde(rename = "closed_area_m2")]
     pub closed_area: f64,
     /// Largest pressure of a point, Pa.
+    #[serde(rename = "peak_pressure_pa")]
     pub peak_pressure: f64,
     /// Largest normal force of a point, N.
+    #[serde(rename = "peak_force_n")]
     pub peak_force: f64,
     /// Sum of the normal forces that the rounding of the coordinates alone explains, N.
-    #[serde(default)]
+    #[serde(rename = "rounding_n")]
     pub rounding: f64,
 }
 

@@ -24,8 +24,10 @@ const MAX_ITERATIONS: usize = 40;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Iteration {
     /// Residual over the larger of loads and contact forces (Euclidean norms).
+    #[serde(rename = "relative_residual")]
     pub residual: f64,
     /// Points by status.
+    #[serde(flatten)]
     pub counts: Counts,
     /// For each pair the number of points whose status differs from the iterate before.
     pub flips: Vec<usize>,

@@ -13,7 +13,7 @@
 //! ```
 //!
 //! Of a symmetric matrix one triangle is there, of an unsymmetric one both. Internal nodes have negative labels. A
-//! displacement that is held at zero has 1e36 on its diagonal. Source: Abaqus Analysis User's Guide, *Generating
+//! displacement that is constrained to zero has 1e36 on its diagonal. Source: Abaqus Analysis User's Guide, *Generating
 //! matrices* and *User-defined elements*; keywords `*MATRIX OUTPUT`, `*MATRIX INPUT`, `*SUBSTRUCTURE MATRIX OUTPUT`,
 //! `*USER ELEMENT`.
 

@@ -1,11 +1,11 @@
 //! Several files put together: one numbering, one pattern, one scaling. On one rank.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
 use super::entries::{Dof, Entries, Naming, Storage};
 use super::family::Coefficient;
-use super::sparse::{Sparse, SparsityPattern};
+use super::sparse::SparsityPattern;
 use super::{Role, read};
 use crate::{Error, Result};
 
@@ -28,16 +28,23 @@ pub struct CombinedTerms {
     pub values: Vec<Vec<f64>>,
     /// The diagonal of D: powers of two.
     pub scale: Vec<f64>,
-    /// For each row its number in the files, from 0.
-    pub rows: Vec<usize>,
-    /// For each row its name, where the files have names.
-    pub dofs: Option<Vec<Dof>>,
-    /// Number of rows left out because they are held.
-    pub n_held: usize,
+    /// Names of the rows.
+    pub names: Names,
 }
 
-/// Abaqus's sign of a displacement that is held at zero is 1e36 on the diagonal; nothing real is as large.
-const HELD: f64 = 1e30;
+/// Names of the rows of external matrices.
+#[derive(Debug, Clone, Default)]
+pub struct Names {
+    /// Number of each row in the files, from 0.
+    pub rows: Vec<usize>,
+    /// Name of each row, where the files have names.
+    pub dofs: Option<Vec<Dof>>,
+    /// Number of rows left out because they are constrained.
+    pub n_constrained: usize,
+}
+
+/// Abaqus's mark of a displacement that is constrained to zero is 1e36 on the diagonal; nothing real is as large.
+const CONSTRAINED: f64 = 1e30;
 /// Rounds of scaling; three decades become a factor of two in two.
 const ROUNDS: usize = 8;
 
@@ -49,22 +56,25 @@ impl CombinedTerms {
     pub fn read(terms: &[Term], omega: f64) -> Result<CombinedTerms> {
         let mut files = terms.iter().map(|term| read(&term.file, term.role)).collect::<Result<Vec<_>>>()?;
         let (n, dofs) = common_numbering(terms, &mut files)?;
-        let may_be_held = files.iter().any(|file| file.storage == Storage::Triangle);
-        let mut matrices: Vec<Sparse> = files.into_iter().map(|file| whole(n, file)).collect();
+        let may_be_constrained = files.iter().any(|file| file.storage == Storage::Triangle);
+        files.iter_mut().for_each(add_other_triangle);
         let mut rows: Vec<usize> = (0..n).collect();
-        if may_be_held {
-            rows.retain(|&i| !is_held(terms, &matrices, i as u32));
-            if rows.len() < n {
-                matrices = matrices.iter().map(|matrix| restricted(matrix, &rows)).collect();
-            }
+        if may_be_constrained {
+            let constrained = constrained_rows(terms, &files);
+            rows.retain(|&i| !constrained.contains(&(i as u32)));
+            restrict(&mut files, &rows, n);
         }
         let dofs = dofs.map(|dofs| rows.iter().map(|&i| dofs[i]).collect::<Vec<_>>());
-        require_filled(terms, &matrices, &rows, dofs.as_deref())?;
-        let scale = scaling(terms, &matrices, omega);
-        let pattern =
-            SparsityPattern::symmetric_union(rows.len(), &matrices.iter().map(|a| &a.pattern).collect::<Vec<_>>());
-        let values = matrices.into_iter().map(|matrix| scaled(matrix, &scale).on(&pattern)).collect();
-        Ok(CombinedTerms { pattern, values, scale, n_held: n - rows.len(), rows, dofs })
+        let names = Names { n_constrained: n - rows.len(), rows, dofs };
+        require_filled(terms, &files, &names)?;
+        let places = files.iter().flat_map(|file| file.items.iter().map(|&(i, j, _)| (i, j)));
+        let pattern = SparsityPattern::new(names.rows.len(), places);
+        let mut values: Vec<Vec<f64>> = files.iter().map(|file| pattern.values(&file.items)).collect();
+        let scale = scaling(terms, &pattern, &values, omega);
+        for values in &mut values {
+            pattern.places().for_each(|(i, j, at)| values[at] *= scale[i] * scale[j]);
+        }
+        Ok(CombinedTerms { pattern, values, scale, names })
     }
 }
 
@@ -109,59 +119,54 @@ fn union(files: &mut [Entries]) -> Vec<Dof> {
     all
 }
 
-/// The matrix with both of its triangles.
-fn whole(n: usize, file: Entries) -> Sparse {
-    let Entries { mut items, storage, .. } = file;
-    let matrix = Sparse::new(n, &items);
-    if storage == Storage::Full || !matrix.is_triangle() {
-        return matrix;
+/// Adds the other triangle where a file that may have one only has one only.
+fn add_other_triangle(file: &mut Entries) {
+    if file.storage == Storage::Full {
+        return;
     }
-    let mirrored: Vec<_> = items.iter().filter(|(i, j, _)| i != j).map(|&(i, j, value)| (j, i, value)).collect();
-    items.extend(mirrored);
-    Sparse::new(n, &items)
+    let below: Vec<_> = file.items.iter().filter(|(i, j, _)| i != j).map(|&(i, j, value)| (j, i, value)).collect();
+    let places: HashSet<(u32, u32)> = below.iter().map(|&(j, i, _)| (i, j)).collect();
+    if below.iter().all(|&(j, i, _)| !places.contains(&(j, i))) {
+        file.items.extend(below);
+    }
 }
 
-fn is_held(terms: &[Term], matrices: &[Sparse], i: u32) -> bool {
-    let stiffnesses = terms.iter().zip(matrices).filter(|(term, _)| term.role == Role::Stiffness);
-    let mut diagonals = stiffnesses.filter_map(|(_, matrix)| matrix.pattern.place(i, i).map(|at| matrix.values[at]));
-    diagonals.any(|value| value.abs() >= HELD)
+fn constrained_rows(terms: &[Term], files: &[Entries]) -> HashSet<u32> {
+    let stiffnesses = terms.iter().zip(files).filter(|(term, _)| term.role == Role::Stiffness);
+    let items = stiffnesses.flat_map(|(_, file)| &file.items);
+    items.filter(|(i, j, value)| i == j && value.abs() >= CONSTRAINED).map(|(i, ..)| *i).collect()
 }
 
-/// The chosen rows and columns, which rise.
-fn restricted(matrix: &Sparse, rows: &[usize]) -> Sparse {
-    let mut new = vec![u32::MAX; matrix.pattern.n_rows()];
-    rows.iter().enumerate().for_each(|(place, &i)| new[i] = place as u32);
-    let mut items = Vec::new();
-    for (place, &i) in rows.iter().enumerate() {
-        let kept = matrix.row(i).filter(|(j, _)| new[*j as usize] != u32::MAX);
-        items.extend(kept.map(|(j, value)| (place as u32, new[j as usize], value)));
+/// Leaves the chosen rows and columns, which rise.
+fn restrict(files: &mut [Entries], rows: &[usize], n: usize) {
+    let mut new = vec![None; n];
+    rows.iter().enumerate().for_each(|(place, &i)| new[i] = Some(place as u32));
+    for file in files {
+        let kept = file.items.iter().filter_map(|&(i, j, value)| Some((new[i as usize]?, new[j as usize]?, value)));
+        file.items = kept.collect();
     }
-    Sparse::new(rows.len(), &items)
 }
 
 /// Refuses a row or a column that is empty in all matrices: every lambda is then an eigenvalue.
-fn require_filled(terms: &[Term], matrices: &[Sparse], rows: &[usize], dofs: Option<&[Dof]>) -> Result<()> {
-    let n = rows.len();
+fn require_filled(terms: &[Term], files: &[Entries], names: &Names) -> Result<()> {
     let first = terms.first().map_or_else(String::new, |term| term.file.display().to_string());
-    if n == 0 {
-        return Err(Error::input(format!("{first}: every row of the matrices is held, nothing is left")));
+    if names.rows.is_empty() {
+        return Err(Error::input(format!("{first}: every row of the matrices is constrained, no dof is left")));
     }
-    let mut filled = vec![[false; 2]; n];
-    for matrix in matrices {
-        for i in 0..n {
-            for (j, _) in matrix.row(i).filter(|(_, value)| *value != 0.0) {
-                filled[i][0] = true;
-                filled[j as usize][1] = true;
-            }
-        }
+    let mut filled = vec![[false; 2]; names.rows.len()];
+    for (i, j, _) in files.iter().flat_map(|file| &file.items).filter(|(.., value)| *value != 0.0) {
+        filled[*i as usize][0] = true;
+        filled[*j as usize][1] = true;
     }
     let Some(i) = filled.iter().position(|[row, column]| !row || !column) else { return Ok(()) };
-    let (what, number) = (if filled[i][0] { "column" } else { "row" }, rows[i] + 1);
-    let name =
-        dofs.map_or_else(String::new, |dofs| format!(" (node {}, degree of freedom {})", dofs[i].node, dofs[i].axis));
+    let (what, number) = (if filled[i][0] { "column" } else { "row" }, names.rows[i] + 1);
+    let name = names
+        .dofs
+        .as_ref()
+        .map_or_else(String::new, |dofs| format!(" (node {}, degree of freedom {})", dofs[i].node, dofs[i].axis));
     Err(Error::input(format!(
-        "{first}: the pencil is singular: {what} {number}{name} is empty in M, C and K, so that every number is an eigenvalue. \
-         Leave it out of the matrices"
+        "{first}: the eigenproblem is singular: {what} {number}{name} is empty in M, C and K, so that every number is an \
+         eigenvalue. Leave it out of the matrices"
     )))
 }
 
@@ -170,36 +175,23 @@ fn require_filled(terms: &[Term], matrices: &[Sparse], rows: &[usize], dofs: Opt
 ///
 /// One round divides by the square root of the largest: Ruiz, A scaling algorithm to equilibrate both rows and columns
 /// norms in matrices, RAL-TR-2001-034.
-fn scaling(terms: &[Term], matrices: &[Sparse], omega: f64) -> Vec<f64> {
-    let n = matrices.first().map_or(0, |matrix| matrix.pattern.n_rows());
-    let mut d = vec![1.0_f64; n];
+fn scaling(terms: &[Term], pattern: &SparsityPattern, values: &[Vec<f64>], omega: f64) -> Vec<f64> {
+    let mut d = vec![1.0_f64; pattern.n_rows()];
     for _ in 0..ROUNDS {
-        let mut largest = vec![0.0_f64; n];
-        for (term, matrix) in terms.iter().zip(matrices) {
+        let mut largest = vec![0.0_f64; d.len()];
+        for (term, values) in terms.iter().zip(values) {
             let weight = match term.role {
                 Role::Mass => omega * omega,
                 Role::Damping => omega,
                 Role::Stiffness => 1.0,
             };
-            for i in 0..n {
-                for (j, value) in matrix.row(i) {
-                    let j = j as usize;
-                    let entry = weight * value.abs() * d[i] * d[j];
-                    largest[i] = largest[i].max(entry);
-                    largest[j] = largest[j].max(entry);
-                }
+            for (i, j, at) in pattern.places() {
+                let entry = weight * values[at].abs() * d[i] * d[j];
+                largest[i] = largest[i].max(entry);
+                largest[j] = largest[j].max(entry);
             }
         }
         d.iter_mut().zip(&largest).filter(|(_, largest)| **largest > 0.0).for_each(|(d, largest)| *d /= largest.sqrt());
     }
     d.iter().map(|d| d.log2().round().exp2()).collect()
-}
-
-fn scaled(mut matrix: Sparse, scale: &[f64]) -> Sparse {
-    for i in 0..matrix.pattern.n_rows() {
-        for at in matrix.pattern.offsets[i]..matrix.pattern.offsets[i + 1] {
-            matrix.values[at] *= scale[i] * scale[matrix.pattern.columns[at] as usize];
-        }
-    }
-    matrix
 }

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::combined::{CombinedTerms, Term};
-use super::sparse::{SparsityPattern, symmetric_part};
-use super::{Dof, Role};
+use super::Role;
+use super::combined::{CombinedTerms, Names, Term};
+use super::sparse::SparsityPattern;
 use crate::Result;
 use crate::native::{Comm, Matrix, Rows};
 
@@ -21,18 +21,7 @@ pub struct Symmetry {
     pub stiffness: bool,
 }
 
-/// What the root alone knows of the rows.
-#[derive(Debug, Clone, Default)]
-pub struct Names {
-    /// Number of each row in the files, from 0.
-    pub rows: Vec<usize>,
-    /// Name of each row, where the files have names.
-    pub dofs: Option<Vec<Dof>>,
-    /// Rows left out because they are held.
-    pub n_held: usize,
-}
-
-/// A quadratic eigenproblem of given matrices, scaled: `D (lambda^2 M + lambda C + K) D y = 0`, `x = D y`. All terms
+/// A quadratic eigenproblem of external matrices, scaled: `D (lambda^2 M + lambda C + K) D y = 0`, `x = D y`. All terms
 /// share one symmetric pattern.
 pub struct ExternalMatrices {
     terms: Vec<Term>,
@@ -47,7 +36,7 @@ pub struct ExternalMatrices {
     pub n: usize,
     /// This rank's rows.
     pub owned: Range<usize>,
-    /// Names of the rows: on the root all, elsewhere none.
+    /// Names of the rows: on the root all, on other ranks none.
     pub names: Names,
 }
 
@@ -116,11 +105,7 @@ impl ExternalMatrices {
         let own: Vec<Matrix> = matrices.by_ref().take(terms.len()).collect();
         let has_part = |i: usize| terms[i].role == Role::Stiffness && !flags[i];
         let symmetric_parts = (0..terms.len()).map(|i| if has_part(i) { matrices.next() } else { None }).collect();
-        let names = problem.map_or_else(Names::default, |CombinedTerms { rows, dofs, n_held, .. }| Names {
-            rows,
-            dofs,
-            n_held,
-        });
+        let names = problem.map_or_else(Names::default, |problem| problem.names);
         let (terms, owned) = (terms.to_vec(), owned(comm.rank()));
         Ok(ExternalMatrices { terms, matrices: own, symmetric_parts, scale: piece.scale, symmetry, n, owned, names })
     }
@@ -178,7 +163,7 @@ impl ExternalMatrices {
 fn parts(terms: &[Term], problem: &CombinedTerms) -> (Vec<Vec<f64>>, Vec<bool>) {
     let (mut parts, mut flags) = (Vec::new(), Vec::new());
     for (term, values) in terms.iter().zip(&problem.values) {
-        let (part, difference) = symmetric_part(&problem.pattern, values);
+        let (part, difference) = problem.pattern.symmetric_part(values);
         let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let is_symmetric = difference <= ROUNDING * largest;
         if term.role == Role::Stiffness && !is_symmetric {
@@ -226,7 +211,7 @@ impl RowBlock {
                 let [mut own, mut other] = arrays[0].each_mut().map(|values| values.iter_mut());
                 for (&j, &value) in self.columns.iter().zip(values) {
                     let next = if is_own(j) { own.next() } else { other.next() };
-                    *next.expect("room for every value") = value;
+                    *next.expect("a place for every value") = value;
                 }
             })?;
             made.push(matrix);

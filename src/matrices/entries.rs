@@ -1,4 +1,4 @@
-//! What a file says of a matrix: its entries, and how it names their rows.
+//! A matrix as a file gives it: its entries, and how it names their rows.
 
 /// A degree of freedom by the name that the program gave it which wrote the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -14,7 +14,7 @@ pub struct Dof {
 pub enum Naming {
     /// By number, so many in all.
     Rows(usize),
-    /// By number; the file does not say how many there are, and has the last of these.
+    /// By number; the file does not give their number, and has the last of these.
     AtLeast(usize),
     /// Row i is that of dof i, in any order.
     Dofs(Vec<Dof>),

@@ -1,4 +1,4 @@
-//! Sums of matrices with expressions of a parameter: `K(p) = sum_i f_i(p) K_i`, and M and C alike, as a TOML file says
+//! Sums of matrices with expressions of a parameter: `K(p) = sum_i f_i(p) K_i`, and M and C alike, as a TOML file gives
 //! them.
 //!
 //! ```toml
@@ -98,7 +98,7 @@ impl Coefficient {
     }
 }
 
-/// What a file says.
+/// The keys of a file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn expressions_know_pi_and_refuse_it_as_a_parameter() {
+    fn expressions_have_pi_and_refuse_it_as_a_parameter() {
         let value = |text: &str, parameter: &str| Coefficient::parse(text, parameter).unwrap().at(0.5).unwrap();
         assert_eq!(value("2*pi*v", "v"), PI);
         assert_eq!(value("pi*pin", "pin"), 0.5 * PI);

@@ -1,4 +1,4 @@
-//! Files of matrices as bytes and lines: gzip is undone, and every line knows its number.
+//! Files of matrices as bytes and lines: gzip is undone, and every line has its number.
 
 use std::fmt::Display;
 use std::fs::File;
@@ -11,7 +11,7 @@ use crate::{Error, Result};
 
 /// What gzip files begin with (RFC 1952).
 const GZIP: [u8; 2] = [0x1f, 0x8b];
-/// Bytes that tell a format.
+/// Bytes by which a format is recognised.
 const HEAD: usize = 16;
 /// Read at a time.
 const BUFFER: usize = 1 << 18;
@@ -29,7 +29,7 @@ impl MatrixFile {
     /// # Errors
     /// [`Error::Input`] where it cannot be read.
     pub fn open(path: &Path) -> Result<MatrixFile> {
-        let fail = |reason: io::Error| Error::input(format!("{}: {}", path.display(), told(&reason)));
+        let fail = |reason: io::Error| Error::input(format!("{}: {}", path.display(), in_words(&reason)));
         let mut raw = BufReader::with_capacity(BUFFER, File::open(path).map_err(fail)?);
         let is_gzip = raw.fill_buf().map_err(fail)?.starts_with(&GZIP);
         let mut reader: Box<dyn BufRead> = match is_gzip {
@@ -58,7 +58,7 @@ impl MatrixFile {
     pub fn fill(&mut self, buffer: &mut [u8]) -> Result<()> {
         self.reader
             .read_exact(buffer)
-            .map_err(|reason| Error::input(format!("{}: {}", self.path.display(), told(&reason))))
+            .map_err(|reason| Error::input(format!("{}: {}", self.path.display(), in_words(&reason))))
     }
 
     /// Whether nothing is left.
@@ -67,12 +67,13 @@ impl MatrixFile {
     /// [`Error::Input`] where the file cannot be read.
     pub fn is_at_end(&mut self) -> Result<bool> {
         let rest = self.reader.fill_buf();
-        rest.map(<[u8]>::is_empty).map_err(|reason| Error::input(format!("{}: {}", self.path.display(), told(&reason))))
+        rest.map(<[u8]>::is_empty)
+            .map_err(|reason| Error::input(format!("{}: {}", self.path.display(), in_words(&reason))))
     }
 }
 
 /// The system's reason, for people.
-fn told(reason: &io::Error) -> String {
+fn in_words(reason: &io::Error) -> String {
     match reason.kind() {
         io::ErrorKind::UnexpectedEof => "the file is cut off: it ends before its data do. Copy it again".into(),
         io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => {
@@ -102,7 +103,7 @@ impl Lines {
     pub fn advance(&mut self) -> Result<bool> {
         self.line.clear();
         self.number += 1;
-        let n = self.source.reader.read_until(b'\n', &mut self.line).map_err(|reason| self.error(told(&reason)))?;
+        let n = self.source.reader.read_until(b'\n', &mut self.line).map_err(|reason| self.error(in_words(&reason)))?;
         match std::str::from_utf8(&self.line) {
             Ok(_) => Ok(n > 0),
             Err(_) => {

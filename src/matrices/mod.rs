@@ -4,12 +4,12 @@
 //! files --read--> Entries --CombinedTerms--> one numbering, pattern, scaling --distribute--> M, C, K on all ranks
 //! ```
 //!
-//! [`read`] knows a format by its content: Matrix Market, PETSc binary, Abaqus's and CalculiX's text, each also
+//! [`read`] recognises a format by its content: Matrix Market, PETSc binary, Abaqus's and CalculiX's text, each also
 //! gzipped. Every matrix is a sum `A(p) = sum_i f_i(p) A_i` of files with expressions of one parameter ([`family`]); a
 //! single file is the sum with one term.
 //!
 //! [`CombinedTerms`] puts the files together on the root: rows that have names (nodes and degrees of freedom) are
-//! matched by them, held ones are left out, and the whole is scaled: `D P(lambda) D`, D diagonal, has the same
+//! matched by them, constrained ones are left out, and the whole is scaled: `D P(lambda) D`, D diagonal, has the same
 //! eigenvalues, and its entries are of one size also where metres meet radians. The entries of D are powers of two, so
 //! that scaling rounds nothing.
 
@@ -24,8 +24,8 @@ mod petsc_binary;
 mod sparse;
 pub mod write;
 
-pub use combined::{CombinedTerms, Term};
-pub use distribute::{ExternalMatrices, Names, Sums, Symmetry};
+pub use combined::{CombinedTerms, Names, Term};
+pub use distribute::{ExternalMatrices, Sums, Symmetry};
 pub use entries::{Dof, Entries, Naming, Storage};
 
 use std::path::Path;

@@ -21,7 +21,7 @@ pub struct GatheredMatrix {
 }
 
 impl GatheredMatrix {
-    /// Brings a distributed matrix to the root; none elsewhere. Collective.
+    /// Brings a distributed matrix to the root; none on the other ranks. Collective.
     ///
     /// # Errors
     /// PETSc's.

@@ -9,9 +9,9 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use super::branches::becomes;
-use super::explain;
 use crate::equilibrium::{PairForces, Step};
-use crate::results::{ModeData, Source};
+use crate::results::{Kind, ModeData, Source};
+use crate::stability::Share;
 use crate::tracking::{Hopf, Point};
 
 /// A row at a friction value.
@@ -37,7 +37,7 @@ pub struct ModeRow {
     pub damping_ratio: f64,
     /// Backward error of the scaled problem.
     pub backward_error: f64,
-    /// Whether it grows, beyond what rounding explains.
+    /// Whether it grows more than rounding explains.
     pub unstable: bool,
 }
 
@@ -45,14 +45,8 @@ pub struct ModeRow {
 #[derive(Default, Serialize)]
 pub struct ContactRow<'a> {
     pair: &'a str,
-    open: usize,
-    stick: usize,
-    slip: usize,
-    normal_force_n: f64,
-    tangential_force_n: f64,
-    closed_area_m2: f64,
-    peak_pressure_pa: f64,
-    peak_force_n: f64,
+    #[serde(flatten)]
+    forces: PairForces,
 }
 
 /// A Newton iterate; `changes` counts the contact points whose status differs from the iterate before.
@@ -67,25 +61,16 @@ pub struct IterationRow<'a> {
     changes: usize,
 }
 
-/// A part, connector or contact pair in a mode: its shares of the energies, its energy input and dissipation as
-/// contributions to the growth rate, and how growth rate and frequency (Hz) follow its friction coefficient (by 1) and
-/// a factor on its damping, stiffness and mass.
+/// A part, connector or contact pair in a mode, and the sensitivities `growth_per_X` (1/s) and `frequency_per_X` (Hz)
+/// with respect to its friction coefficient (by 1), and to a factor on its damping, stiffness and mass.
 #[derive(Default, Serialize)]
 pub struct SourceRow<'a> {
-    kind: &'a str,
+    kind: Kind,
     name: &'a str,
-    kinetic_share: f64,
-    strain_share: f64,
-    fed_per_s: f64,
-    damped_per_s: f64,
-    growth_per_friction: Option<f64>,
-    frequency_per_friction: Option<f64>,
-    growth_per_damping: Option<f64>,
-    frequency_per_damping: Option<f64>,
-    growth_per_stiffness: Option<f64>,
-    frequency_per_stiffness: Option<f64>,
-    growth_per_mass: Option<f64>,
-    frequency_per_mass: Option<f64>,
+    #[serde(flatten)]
+    share: Share,
+    #[serde(flatten)]
+    slopes: Map<String, Json>,
 }
 
 /// A source of a mode, with the mode.
@@ -159,18 +144,7 @@ fn damping_ratio(lambda: Complex64) -> f64 {
 impl<'a> ContactRow<'a> {
     /// The row of a pair.
     pub fn new(pair: &'a str, forces: &PairForces) -> ContactRow<'a> {
-        let counts = forces.counts;
-        ContactRow {
-            pair,
-            open: counts.open,
-            stick: counts.stick,
-            slip: counts.slip,
-            normal_force_n: forces.normal,
-            tangential_force_n: forces.tangential,
-            closed_area_m2: forces.closed_area,
-            peak_pressure_pa: forces.peak_pressure,
-            peak_force_n: forces.peak_force,
-        }
+        ContactRow { pair, forces: forces.clone() }
     }
 }
 
@@ -192,26 +166,19 @@ impl<'a> IterationRow<'a> {
 impl<'a> SourceRow<'a> {
     /// The row of a source.
     pub fn new(source: &'a Source) -> SourceRow<'a> {
-        let (share, s) = (source.share, source.sensitivity);
-        let growth = |slope: Option<Complex64>| slope.map(|z| z.re);
-        let frequency = |slope: Option<Complex64>| slope.map(|z| z.im / TAU);
-        let (damping, stiffness, mass) = (s.map(|s| s.damping), s.map(|s| s.stiffness), s.map(|s| s.mass));
-        SourceRow {
-            kind: explain::kind(source.kind),
-            name: &source.name,
-            kinetic_share: share.kinetic,
-            strain_share: share.strain,
-            fed_per_s: share.fed,
-            damped_per_s: share.damped,
-            growth_per_friction: growth(source.friction),
-            frequency_per_friction: frequency(source.friction),
-            growth_per_damping: growth(damping),
-            frequency_per_damping: frequency(damping),
-            growth_per_stiffness: growth(stiffness),
-            frequency_per_stiffness: frequency(stiffness),
-            growth_per_mass: growth(mass),
-            frequency_per_mass: frequency(mass),
-        }
+        let s = source.sensitivity;
+        let slopes = [
+            ("friction", source.friction),
+            ("damping", s.map(|s| s.damping)),
+            ("stiffness", s.map(|s| s.stiffness)),
+            ("mass", s.map(|s| s.mass)),
+        ];
+        let columns = |(of, slope): (&str, Option<Complex64>)| {
+            let [growth, frequency] = [slope.map(|z| z.re), slope.map(|z| z.im / TAU)];
+            [(format!("growth_per_{of}"), growth.into()), (format!("frequency_per_{of}"), frequency.into())]
+        };
+        let slopes = slopes.into_iter().flat_map(columns).collect();
+        SourceRow { kind: source.kind, name: &source.name, share: source.share, slopes }
     }
 }
 
@@ -243,7 +210,8 @@ impl HopfRow {
     }
 }
 
-/// Writes rows as CSV under their fields' names. A truth value is 0 or 1, and nothing is an empty cell.
+/// Writes rows as CSV under their fields' names. A truth value is 0 or 1, nothing is an empty cell, and a list or an
+/// object within a row has no column.
 ///
 /// # Errors
 /// The writer's.
@@ -272,7 +240,9 @@ pub fn write_csv_over<R: Serialize + Default>(
 
 fn cells<R: Serialize>(row: &R) -> Result<Map<String, Json>> {
     match serde_json::to_value(row)? {
-        Json::Object(cells) => Ok(cells),
+        Json::Object(cells) => {
+            Ok(cells.into_iter().filter(|(_, cell)| !cell.is_object() && !cell.is_array()).collect())
+        }
         _ => Err(Error::other("a row of a table is a struct")),
     }
 }

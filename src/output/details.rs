@@ -1,10 +1,12 @@
-//! Equilibria and modes in words, one friction after the other.
+//! Equilibria and modes in words, one friction value after the other.
 
 use super::explain;
+use super::text::aligned;
+use crate::equilibrium::{Counts, PairForces};
 use crate::results::{ModeData, Pair, Results, Value};
 use crate::stability::Count;
 
-/// All frictions: Newton steps, contact pairs, checks, modes.
+/// All friction values: Newton steps, contact pairs, checks, modes.
 pub fn text(results: &Results) -> String {
     results.values.iter().map(|value| equilibrium(value, &results.about.pairs) + &modes(value)).collect()
 }
@@ -23,49 +25,29 @@ fn equilibrium(value: &Value, pairs: &[Pair]) -> String {
             last.counts.slip
         );
     }
-    let width = pairs.iter().map(|pair| pair.name.len()).max().unwrap_or(4).max(4);
-    text += &format!(
-        "  {:width$}  {:>6} {:>6} {:>6}  {:>12} {:>14} {:>10}\n",
-        "pair", "open", "stick", "slip", "normal N", "tangential N", "peak MPa"
-    );
-    for (pair, forces) in pairs.iter().zip(&value.pairs) {
-        let counts = forces.counts;
-        text += &format!(
-            "  {:width$}  {:>6} {:>6} {:>6}  {:>12.2} {:>14.2} {:>10.3}\n",
-            pair.name,
-            counts.open,
-            counts.stick,
-            counts.slip,
-            forces.normal,
-            forces.tangential,
-            1e-6 * forces.peak_pressure
-        );
-    }
+    let row = |(pair, forces): (&Pair, &PairForces)| {
+        let (Counts { open, stick, slip }, name) = (forces.counts, &pair.name);
+        let (normal, tangential, peak) = (forces.normal, forces.tangential, 1e-6 * forces.peak_pressure);
+        format!("  {name}\t{open}\t{stick}\t{slip}\t{normal:.2}\t{tangential:.2}\t{peak:.3}")
+    };
+    let rows = pairs.iter().zip(&value.pairs).map(row);
+    text += &aligned("  pair\topen\tstick\tslip\tnormal N\ttangential N\tpeak MPa", rows);
     value.checks.lines().fold(text, |text, line| text + "  " + line + "\n")
 }
 
 fn modes(value: &Value) -> String {
     let Some(Count { below, expected, found }) = value.count else { return String::new() };
-    let mut text = format!(
-        "  {} modes; below {below:.1} Hz {found} found, Sturm count {expected}\n  mode  frequency Hz  growth 1/s  damping %  backward error\n",
-        value.modes.len(),
-    );
-    for (number, mode) in (1..).zip(&value.modes) {
-        text += &line(number, mode);
-    }
+    let row = |(number, mode): (usize, &ModeData)| {
+        let (hertz, growth, damping) = (mode.frequency(), mode.growth_rate(), 100.0 * mode.damping_ratio());
+        let (error, mark) = (mode.backward_error, if mode.unstable { "unstable" } else { "" });
+        format!("  {number}\t{hertz:.3}\t{growth:+.3}\t{damping:.4}\t{error:.1e}\t{mark}")
+    };
+    let mut text =
+        format!("  {} modes; below {below:.1} Hz {found} found, Sturm count {expected}\n", value.modes.len());
+    let rows = (1..).zip(&value.modes).map(row);
+    text += &aligned("  mode\tfrequency Hz\tgrowth 1/s\tdamping %\tbackward error\t", rows);
     for mode in value.modes.iter().filter(|mode| !mode.sources.is_empty()) {
         text += &format!("  {}\n", explain::sentence(value.friction, mode));
     }
     text
-}
-
-fn line(number: usize, mode: &ModeData) -> String {
-    format!(
-        "  {number:>4}  {:>12.3}  {:>+10.3}  {:>9.4}  {:>14.1e}{}\n",
-        mode.frequency(),
-        mode.growth_rate(),
-        100.0 * mode.damping_ratio(),
-        mode.backward_error,
-        if mode.unstable { "  unstable" } else { "" }
-    )
 }

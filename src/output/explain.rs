@@ -1,15 +1,6 @@
 //! What explains unstable modes, in a sentence.
 
-use crate::results::{Kind, ModeData, Source};
-
-/// The word for a kind.
-pub fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Part => "part",
-        Kind::Connector => "connector",
-        Kind::Contact => "contact",
-    }
-}
+use crate::results::{ModeData, Source};
 
 /// A line: the sources of a mode's energy input, dissipation and kinetic energy, largest first.
 pub fn sentence(friction: f64, mode: &ModeData) -> String {
@@ -17,8 +8,8 @@ pub fn sentence(friction: f64, mode: &ModeData) -> String {
     format!(
         "{:.1} Hz at friction {friction}: energy input by {}; dissipation by {}; kinetic energy in {}",
         mode.frequency(),
-        largest(sources, |source| source.share.fed.max(0.0)),
-        largest(sources, |source| -source.share.damped),
+        largest(sources, |source| source.share.energy_input.max(0.0)),
+        largest(sources, |source| -source.share.dissipation),
         largest(sources, |source| source.share.kinetic),
     )
 }
@@ -45,10 +36,11 @@ mod tests {
     use num_complex::Complex64;
 
     use super::*;
+    use crate::results::Kind;
     use crate::stability::Share;
 
-    fn source(name: &str, fed: f64, damped: f64, kinetic: f64) -> Source {
-        let share = Share { kinetic, strain: 0.5, fed, damped };
+    fn source(name: &str, energy_input: f64, dissipation: f64, kinetic: f64) -> Source {
+        let share = Share { kinetic, strain: 0.5, energy_input, dissipation };
         Source { kind: Kind::Contact, name: name.into(), share, sensitivity: None, friction: None }
     }
 

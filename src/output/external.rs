@@ -12,6 +12,7 @@ use super::branches;
 use super::columns::{self, AtFriction, ModeRow};
 use super::folder::Folder;
 use super::results_folder::write_branches;
+use super::text::{self, aligned, cost};
 
 /// From this condition number on a warning is given: of sixteen digits four are left.
 const ILL_CONDITIONED: f64 = 1e12;
@@ -34,16 +35,14 @@ pub fn summary(results: &ExternalResults, place: &str) -> String {
     match &results.values[..] {
         [value] => text += &value_text(results, value),
         values => {
-            let width = results.parameter.len().max(8);
-            text += &format!("{:>width$}  modes  unstable: frequency (growth rate)\n", results.parameter);
-            values.iter().for_each(|value| text += &line(value, width));
+            let heading = format!("{}\tmodes\tunstable: frequency (growth rate)", results.parameter);
+            text += &aligned(&heading, values.iter().map(line));
         }
     }
     if let Some(diagram) = &results.diagram {
         text += &branches::summary(diagram, &results.parameter);
     }
-    let plural = if results.n_ranks == 1 { "" } else { "s" };
-    text + &format!("\n{:.1} s on {} rank{plural}\n", results.seconds, results.n_ranks) + &files_text(results, place)
+    text + &cost(results.seconds, results.n_ranks) + &files_text(results, place)
 }
 
 /// What the matrices are like.
@@ -59,13 +58,13 @@ fn matrices_text(results: &ExternalResults) -> String {
 }
 
 /// How many modes, and which of them grow.
-fn line(value: &ExternalValue, width: usize) -> String {
+fn line(value: &ExternalValue) -> String {
     let unstable = value.modes.iter().filter(|mode| mode.is_unstable);
     let named = unstable.map(|mode| format!("{:.4} Hz ({:+.4} /s)", mode.frequency(), mode.lambda.re));
     let list = named.collect::<Vec<_>>().join(", ");
     let doubt = if value.count.agrees() { "" } else { "  (number of modes not confirmed)" };
     let list = if list.is_empty() { "none" } else { &list };
-    format!("{:>width$}  {:>5}  {list}{doubt}\n", value.value, value.modes.len())
+    format!("{}\t{}\t{list}{doubt}", value.value, value.modes.len())
 }
 
 /// The modes at one value, and what is known of their number.
@@ -75,24 +74,23 @@ fn value_text(results: &ExternalResults, value: &ExternalValue) -> String {
 
 /// Modes in lines.
 fn modes_text(modes: &[ExternalMode]) -> String {
-    let mut text = String::from("  mode   frequency Hz    growth 1/s  damping %  backward error  largest in\n");
-    for mode in modes {
+    let row = |mode: &ExternalMode| {
         let place = match mode.largest_dof {
             Some((node, dof)) => format!("node {node}, dof {dof}"),
             None => format!("row {}", mode.largest_row),
         };
         let mark = match (mode.is_unstable, mode.lambda.im == 0.0) {
-            (true, true) => "  unstable: real eigenvalue, divergence",
-            (true, false) => "  unstable",
-            (false, true) => "  real eigenvalue",
+            (true, true) => "unstable: real eigenvalue, divergence",
+            (true, false) => "unstable",
+            (false, true) => "real eigenvalue",
             (false, false) => "",
         };
         let (number, hertz, growth) = (mode.number, mode.frequency(), mode.lambda.re);
         let (damping, error) = (100.0 * mode.damping_ratio(), mode.backward_error);
-        text +=
-            &format!("  {number:>4}  {hertz:>13.6}  {growth:>+12.5}  {damping:>9.4}  {error:>14.1e}  {place}{mark}\n");
-    }
-    text
+        format!("  {number}\t{hertz:.6}\t{growth:+.5}\t{damping:.4}\t{error:.1e}\t{place}\t{mark}")
+    };
+    let heading = "  mode\tfrequency Hz\tgrowth 1/s\tdamping %\tbackward error\tlargest in\t";
+    aligned(heading, modes.iter().map(row))
 }
 
 /// What is known of the number of modes.
@@ -136,8 +134,7 @@ fn files_text(results: &ExternalResults, place: &str) -> String {
     if has_shapes(results) {
         files.push(("shapes*.csv", "shapes, a row for each dof"));
     }
-    let lines: String = files.iter().map(|(name, what)| format!("  {name:36}{what}\n")).collect();
-    format!("\nresults in {place}:\n{lines}")
+    text::files(place, &files)
 }
 
 fn has_shapes(results: &ExternalResults) -> bool {
@@ -223,7 +220,7 @@ fn shapes_table(out: &mut dyn io::Write, results: &ExternalResults, value: &Exte
 /// The results as one JSON document.
 #[derive(Serialize)]
 pub struct ExternalDocument {
-    pub(super) equations: usize,
+    pub(super) dofs: usize,
     pub(super) band_hz: [f64; 2],
     pub(super) values: Vec<ExternalValueDocument>,
 }
@@ -245,7 +242,7 @@ impl From<&ExternalResults> for ExternalDocument {
             modes: value.modes.iter().map(ExternalModeRow::from).collect(),
         };
         ExternalDocument {
-            equations: results.n_dofs,
+            dofs: results.n_dofs,
             band_hz: results.band,
             values: results.values.iter().map(value).collect(),
         }

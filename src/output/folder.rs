@@ -26,7 +26,7 @@ pub struct Folder {
     /// Whether the neighbour stays where the run ends early.
     keeps: Cell<bool>,
     done: bool,
-    /// Held as long as the process lives.
+    /// Locked as long as the process lives.
     _lock: File,
 }
 
@@ -44,7 +44,7 @@ impl Folder {
         let draft = unfinished(place)?;
         let resume = draft.join(RESUME);
         if !resume.exists() && names(&draft).is_ok_and(|names| !names.is_empty()) {
-            let what = format!("{} holds something that is not of squeal", draft.display());
+            let what = format!("{} contains files that squeal did not write", draft.display());
             return Err(Error::input(format!("{what}. Move it, or choose another output folder with --output")));
         }
         fs::create_dir_all(&resume).map_err(|reason| {
@@ -114,11 +114,11 @@ impl Folder {
     pub fn finish(mut self) -> Result<()> {
         self.list()?;
         self.keep();
-        let aside = self.move_aside().map_err(|error| self.elsewhere(&error))?;
+        let aside = self.move_aside().map_err(|error| self.with_place_of_results(&error))?;
         // A folder that is not empty is never replaced by a rename.
         if let Err(reason) = fs::rename(&self.draft, &self.target) {
             aside.iter().for_each(|aside| drop(fs::rename(aside, &self.target)));
-            return Err(self.elsewhere(&Error::io(&self.place)(reason)));
+            return Err(self.with_place_of_results(&Error::io(&self.place)(reason)));
         }
         self.done = true;
         let resume = self.target.join(RESUME);
@@ -143,18 +143,18 @@ impl Folder {
         }
         let aside = neighbour(&self.target, "replaced")?;
         fs::rename(&self.target, &aside).map_err(Error::io(&self.place))?;
-        // From here on nobody writes to it under its name.
+        // From here on no other program writes to it under its name.
         match foreign_entry(&aside)? {
             None => Ok(Some(aside)),
             Some(name) => {
                 fs::rename(&aside, &self.target).map_err(Error::io(&aside))?;
-                Err(Error::input(format!("{} holds {name}, which would be lost", self.place.display())))
+                Err(Error::input(format!("{} contains {name}, which would be lost", self.place.display())))
             }
         }
     }
 
     /// An error after which the results are in the neighbour.
-    fn elsewhere(&self, error: &Error) -> Error {
+    fn with_place_of_results(&self, error: &Error) -> Error {
         let draft = self.draft.display();
         Error::input(format!("{error}\nThe results are complete in {draft}: rename that folder"))
     }
@@ -206,7 +206,7 @@ fn remove(path: &Path) -> std::io::Result<()> {
 ///
 /// # Errors
 /// The system's, with the path.
-pub fn adopt(folder: &Path, files: &[PathBuf]) -> Result<()> {
+pub fn add_to_listed(folder: &Path, files: &[PathBuf]) -> Result<()> {
     let mark = folder.join(MARK);
     if !mark.exists() {
         return Ok(());
@@ -251,21 +251,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_adopted_goes_with_the_folder() {
+    fn added_files_are_replaced_with_the_folder() {
         let place = tempfile::tempdir().unwrap();
         let target = place.path().join("run");
         Folder::open(&target, false).unwrap().finish().unwrap();
         let files = ["plots/a.svg", "moving/a/1.vtu", "report.html"].map(|name| target.join(name));
         files.iter().for_each(|file| write_file(file, |_| Ok(())).unwrap());
         assert!(may_write_folder(&target, true).is_err());
-        adopt(&target, &files).unwrap();
-        adopt(&target, &files).unwrap();
+        add_to_listed(&target, &files).unwrap();
+        add_to_listed(&target, &files).unwrap();
         may_write_folder(&target, true).unwrap();
         assert_eq!(fs::read_to_string(target.join(MARK)).unwrap(), "moving/a/1.vtu\nplots/a.svg\nreport.html\n");
         write_file(&target.join("mine/notes.txt"), |_| Ok(())).unwrap();
-        adopt(&target, &[target.join("mine/a.svg")]).unwrap();
+        add_to_listed(&target, &[target.join("mine/a.svg")]).unwrap();
         assert!(may_write_folder(&target, true).is_err());
-        adopt(place.path(), &files).unwrap();
+        add_to_listed(place.path(), &files).unwrap();
         assert!(!place.path().join(MARK).exists());
     }
 
@@ -338,16 +338,16 @@ mod tests {
     #[test]
     fn what_appears_during_a_run_is_not_lost() {
         let (message, left) = disturbed(false, |target| write_file(&target.join("thesis.txt"), |_| Ok(())).unwrap());
-        assert!(message.contains("holds thesis.txt"), "{message}");
+        assert!(message.contains("contains thesis.txt"), "{message}");
         assert_eq!(left, ["thesis.txt"]);
         let (message, left) = disturbed(true, |target| write_file(&target.join("notes.txt"), |_| Ok(())).unwrap());
-        assert!(message.contains("holds notes.txt"), "{message}");
+        assert!(message.contains("contains notes.txt"), "{message}");
         assert_eq!(left, [MARK, "details.txt", "notes.txt"]);
         let (message, left) = disturbed(true, |target| {
             fs::remove_file(target.join("details.txt")).unwrap();
             write_file(&target.join("details.txt/mine"), |_| Ok(())).unwrap();
         });
-        assert!(message.contains("holds details.txt/mine"), "{message}");
+        assert!(message.contains("contains details.txt/mine"), "{message}");
         assert_eq!(left, [MARK, "details.txt/mine"]);
     }
 
@@ -381,6 +381,6 @@ mod tests {
         Folder::open(&target, false).unwrap().finish().unwrap();
         fs::write(target.join("notes.txt"), "").unwrap();
         let message = Folder::open(&target, true).err().unwrap().to_string();
-        assert!(message.contains("holds notes.txt"), "{message}");
+        assert!(message.contains("contains notes.txt"), "{message}");
     }
 }

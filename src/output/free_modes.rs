@@ -8,6 +8,7 @@ use crate::stability::Count;
 
 use super::columns::write_csv;
 use super::folder::Folder;
+use super::text::{self, aligned, cost};
 
 /// The modes in words, with the files of their folder.
 pub fn summary(found: &FreeModes, place: &str) -> String {
@@ -21,38 +22,34 @@ pub fn summary(found: &FreeModes, place: &str) -> String {
             format!("{n_found} modes below {below:.1} Hz with them, {expected} by the Sturm count: not confirmed\n")
         }
     };
-    text += "\n  mode   frequency Hz  backward error\n";
-    for (number, mode) in (1..).zip(&found.modes) {
-        text += &format!("  {number:>4}  {:>13.4}  {:>14.1e}\n", mode.frequency, mode.backward_error);
-    }
+    let row =
+        |(number, mode): (usize, &FreeMode)| format!("  {number}\t{:.4}\t{:.1e}", mode.frequency, mode.backward_error);
+    text += &format!("\n{}", aligned("  mode\tfrequency Hz\tbackward error", (1..).zip(&found.modes).map(row)));
     if let Some(measured) = &found.measured {
         text += &measured_text(measured, &found.frequencies());
     }
-    let plural = if found.n_ranks == 1 { "" } else { "s" };
-    text + &format!("\n{:.1} s on {} rank{plural}\n", found.seconds, found.n_ranks) + &files_text(found, place)
+    text + &cost(found.seconds, found.n_ranks) + &files_text(found, place)
 }
 
 fn measured_text(measured: &MeasuredComparison, computed: &[f64]) -> String {
     let MeasuredComparison { frequencies, groups, grouped, distance, .. } = measured;
-    let mut text = format!("\nmeasured points are up to {distance:.3} (unit of the mesh) from their nodes\n");
-    text += "  measured Hz   computed Hz  difference %   MAC\n";
-    for (i, measured) in frequencies.iter().enumerate() {
-        let best = (0..groups.len()).max_by(|&a, &b| grouped[(i, a)].total_cmp(&grouped[(i, b)]));
-        let Some(best) = best else { continue };
+    let row = |(i, measured): (usize, &f64)| {
+        let best = (0..groups.len()).max_by(|&a, &b| grouped[(i, a)].total_cmp(&grouped[(i, b)]))?;
         let hertz = computed[groups[best][0]];
-        let together = if groups[best].len() > 1 { "  modes of one frequency together" } else { "" };
+        let together = if groups[best].len() > 1 { "modes of one frequency together" } else { "" };
         let (off, mac) = (100.0 * (hertz / measured - 1.0), grouped[(i, best)]);
-        text += &format!("  {measured:>11.2}   {hertz:>11.2}  {off:>+12.2}  {mac:>5.3}{together}\n");
-    }
-    text
+        Some(format!("  {measured:.2}\t{hertz:.2}\t{off:+.2}\t{mac:.3}\t{together}"))
+    };
+    let rows = frequencies.iter().enumerate().filter_map(row);
+    let table = aligned("  measured Hz\tcomputed Hz\tdifference %\tMAC\t", rows);
+    format!("\nmeasured points are up to {distance:.3} (unit of the mesh) from their nodes\n{table}")
 }
 
 fn files_text(found: &FreeModes, place: &str) -> String {
     let shapes = if found.n_ranks == 1 { "mode_*.vtu" } else { "mode_*.pvtu" };
     let mut files = vec![("summary.txt", "this text"), ("modes.csv", "frequencies"), (shapes, "shapes, for ParaView")];
     files.extend(found.measured.is_some().then_some(("mac.csv", "every measured mode against every computed one")));
-    let lines: String = files.iter().map(|(name, what)| format!("  {name:36}{what}\n")).collect();
-    format!("\nresults in {place}:\n{lines}")
+    text::files(place, &files)
 }
 
 /// Writes the folder's files beside the shapes. Not collective.
@@ -72,8 +69,8 @@ pub fn write(found: &FreeModes, folder: Folder, summary: &str) -> Result<()> {
 #[derive(Default, Serialize)]
 struct FreeModeRow {
     mode: usize,
-    frequency_hz: f64,
-    backward_error: f64,
+    #[serde(flatten)]
+    data: FreeMode,
 }
 
 /// A measured mode and a computed one, the latter alone and with all modes of its frequency.
@@ -87,12 +84,7 @@ struct MacRow {
 }
 
 fn mode_rows(found: &FreeModes) -> impl Iterator<Item = FreeModeRow> {
-    let row = |(mode, data): (usize, &FreeMode)| FreeModeRow {
-        mode,
-        frequency_hz: data.frequency,
-        backward_error: data.backward_error,
-    };
-    (1..).zip(&found.modes).map(row)
+    (1..).zip(&found.modes).map(|(mode, &data)| FreeModeRow { mode, data })
 }
 
 /// Every measured mode with every computed one.

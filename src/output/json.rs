@@ -4,19 +4,20 @@ use serde::Serialize;
 
 use super::columns::{ContactRow, HopfRow, ModeRow, PointRow, SourceRow};
 use super::sweep_text;
-use crate::results::{About, ModeData, Part, Results, Status, Value};
+use crate::equilibrium::Step;
+use crate::results::{About, ModeData, Results, Status, Value};
+use crate::stability::Count;
 use crate::tracking::Branch;
 
 /// What was analysed, each friction value with its contact pairs and modes, branches and Hopf points where modes were
-/// followed, the verdict, warnings, and the folder of the results.
+/// followed, the verdict, and the folder of the results.
 #[derive(Serialize)]
 pub struct ResultsDocument<'a> {
-    about: AboutDocument<'a>,
-    frictions: Vec<ValueDocument<'a>>,
+    about: &'a About,
+    values: Vec<ValueDocument<'a>>,
     branches: Option<Vec<BranchDocument>>,
     hopf: Option<Vec<HopfRow>>,
     verdict: Option<VerdictDocument>,
-    warnings: &'a [String],
     failure: Option<&'a str>,
     costs: &'a str,
     folder: &'a str,
@@ -30,48 +31,17 @@ struct VerdictDocument {
     text: String,
 }
 
+/// A friction value with its contact pairs, checks, Newton steps and modes.
 #[derive(Serialize)]
-struct AboutDocument<'a> {
-    title: &'a str,
-    program: &'a str,
-    libraries: &'a str,
-    command: &'a str,
-    model: &'a str,
-    model_sha256: &'a str,
-    mesh: &'a str,
-    mesh_sha256: &'a str,
-    nodes: usize,
-    elements: usize,
-    equations: usize,
-    ranks: usize,
-    band_hz: [f64; 2],
-    frictions: &'a [f64],
-    parts: Vec<PartDocument<'a>>,
-}
-
-#[derive(Serialize)]
-struct PartDocument<'a> {
-    part: &'a str,
-    material: &'a str,
-    mass_kg: f64,
-}
-
-#[derive(Serialize)]
-struct ValueDocument<'a> {
+pub struct ValueDocument<'a> {
     friction: f64,
     asked: bool,
     seconds: f64,
-    newton_steps: usize,
     contact: Vec<ContactRow<'a>>,
-    count: Option<CountDocument>,
-    modes: Option<Vec<ModeDocument<'a>>>,
-}
-
-#[derive(Serialize)]
-struct CountDocument {
-    below_hz: f64,
-    expected: usize,
-    found: usize,
+    checks: Vec<&'a str>,
+    steps: &'a [Step],
+    count: Option<Count>,
+    modes: Vec<ModeDocument<'a>>,
 }
 
 #[derive(Serialize)]
@@ -92,12 +62,11 @@ impl<'a> ResultsDocument<'a> {
     pub fn new(results: &'a Results, folder: &'a str) -> ResultsDocument<'a> {
         let diagram = results.diagram.as_ref();
         ResultsDocument {
-            about: AboutDocument::new(&results.about),
-            frictions: results.values.iter().map(|value| ValueDocument::new(value, &results.about)).collect(),
+            about: &results.about,
+            values: results.values.iter().map(|value| ValueDocument::new(value, &results.about)).collect(),
             branches: diagram.map(|diagram| (1..).zip(&diagram.branches).map(BranchDocument::new).collect()),
             hopf: diagram.map(|diagram| diagram.hopf.iter().map(HopfRow::new).collect()),
             verdict: (results.about.band[1] > 0.0).then(|| VerdictDocument::new(results)),
-            warnings: &results.about.warnings,
             failure: results.failure.as_ref().map(|failure| failure.reason.as_str()),
             costs: &results.costs,
             folder,
@@ -113,31 +82,9 @@ impl VerdictDocument {
     }
 }
 
-impl<'a> AboutDocument<'a> {
-    fn new(about: &'a About) -> AboutDocument<'a> {
-        let part = |part: &'a Part| PartDocument { part: &part.name, material: &part.material, mass_kg: part.mass };
-        AboutDocument {
-            title: &about.title,
-            program: &about.program,
-            libraries: &about.libraries,
-            command: &about.command,
-            model: &about.model,
-            model_sha256: &about.model_digest,
-            mesh: &about.mesh,
-            mesh_sha256: &about.mesh_digest,
-            nodes: about.n_nodes,
-            elements: about.n_elements,
-            equations: about.n_equations,
-            ranks: about.n_ranks,
-            band_hz: about.band,
-            frictions: &about.frictions,
-            parts: about.parts.iter().map(part).collect(),
-        }
-    }
-}
-
 impl<'a> ValueDocument<'a> {
-    fn new(value: &'a Value, about: &'a About) -> ValueDocument<'a> {
+    /// The document of a value among results.
+    pub fn new(value: &'a Value, about: &'a About) -> ValueDocument<'a> {
         let mode = |(number, data): (usize, &'a ModeData)| ModeDocument {
             row: ModeRow::of(number, data),
             explained: data.sources.iter().map(SourceRow::new).collect(),
@@ -147,10 +94,11 @@ impl<'a> ValueDocument<'a> {
             friction: value.friction,
             asked: value.asked,
             seconds: value.seconds,
-            newton_steps: value.steps.iter().map(|step| step.iterations.len().saturating_sub(1)).sum(),
             contact: pairs.map(|(pair, forces)| ContactRow::new(&pair.name, forces)).collect(),
-            count: value.count.map(|c| CountDocument { below_hz: c.below, expected: c.expected, found: c.found }),
-            modes: value.count.map(|_| (1..).zip(&value.modes).map(mode).collect()),
+            checks: value.checks.lines().collect(),
+            steps: &value.steps,
+            count: value.count,
+            modes: (1..).zip(&value.modes).map(mode).collect(),
         }
     }
 }
@@ -169,7 +117,7 @@ pub struct ExportDocument {
     /// Friction of the equilibrium; none of a free part.
     pub friction: Option<f64>,
     /// Rows of the matrices.
-    pub equations: usize,
+    pub dofs: usize,
 }
 
 /// What `squeal report` wrote.
@@ -245,7 +193,7 @@ mod tests {
         let documents = [
             ("stability", serde_json::to_value(ResultsDocument::new(&results, "run"))),
             ("check", serde_json::to_value(model_summary::tests::summary())),
-            ("modes", serde_json::to_value(ExternalDocument { equations: 3, band_hz: [0.0, 9.0], values })),
+            ("modes", serde_json::to_value(ExternalDocument { dofs: 3, band_hz: [0.0, 9.0], values })),
             (
                 "modes --part",
                 serde_json::to_value(FreeModesDocument {
@@ -254,7 +202,7 @@ mod tests {
                     frequencies_hz: vec![],
                 }),
             ),
-            ("export", serde_json::to_value(ExportDocument { folder: text.clone(), friction: None, equations: 3 })),
+            ("export", serde_json::to_value(ExportDocument { folder: text.clone(), friction: None, dofs: 3 })),
             ("report", serde_json::to_value(Reported { headline: text.clone(), files: vec![] })),
             ("error", serde_json::to_value(Failed { error: text, exit_code: 2 })),
         ];
@@ -263,6 +211,6 @@ mod tests {
             keys += &format!("{command}:\n");
             list(&mut keys, "  ", &document.unwrap());
         }
-        assert_eq!(keys, include_str!("json_keys.txt"));
+        insta::assert_snapshot!(keys);
     }
 }

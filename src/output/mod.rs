@@ -20,5 +20,6 @@ pub mod study;
 pub mod summary;
 pub mod super_element;
 pub mod sweep_text;
+pub mod text;
 mod volume;
 pub mod vtu;

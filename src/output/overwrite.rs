@@ -73,16 +73,20 @@ pub fn may_write_folder(target: &Path, force: bool) -> Result<()> {
     }
     if !target.join(MARK).exists() {
         let first = fs::read_dir(target).map_err(Error::io(target))?.flatten().next();
-        let holds = first.map_or_else(String::new, |entry| format!(": it holds {}", entry.file_name().display()));
-        return refuse(&format!("exists and is not a results folder of squeal{holds}. Choose another with --output"));
+        let contents = first.map_or_else(String::new, |entry| format!(": it contains {}", entry.file_name().display()));
+        return refuse(&format!(
+            "exists and is not a results folder of squeal{contents}. Choose another with --output"
+        ));
     }
     if !force {
-        return refuse("holds the results of another run. Use --force to replace them, or --output for another folder");
+        return refuse(
+            "contains the results of another run. Use --force to replace them, or --output for another folder",
+        );
     }
     match foreign_entry(target)? {
         None => Ok(()),
         Some(name) => refuse(&format!(
-            "holds {name}, which is not of the run before and would be lost. Move it, or choose another folder with --output"
+            "contains {name}, which is not of the earlier run and would be lost. Move it, or choose another folder with --output"
         )),
     }
 }
@@ -173,16 +177,16 @@ mod tests {
         let path = place.path().join("note");
         may_write_file(&path, &NOTES, false).unwrap();
         fs::write(&path, format!("{SIGNATURE}\ntext")).unwrap();
-        let said = may_write_file(&path, &NOTES, false).unwrap_err().to_string();
-        assert!(said.contains("exists. Use --force"), "{said}");
+        let message = may_write_file(&path, &NOTES, false).unwrap_err().to_string();
+        assert!(message.contains("exists. Use --force"), "{message}");
         may_write_file(&path, &NOTES, true).unwrap();
         fs::write(&path, "[mesh]\nfile = \"brake.msh\"\n").unwrap();
         for force in [false, true] {
-            let said = may_write_file(&path, &NOTES, force).unwrap_err().to_string();
-            assert!(said.contains("exists and is not a note of squeal: it is not replaced"), "{said}");
+            let message = may_write_file(&path, &NOTES, force).unwrap_err().to_string();
+            assert!(message.contains("exists and is not a note of squeal: it is not replaced"), "{message}");
         }
-        let said = may_write_file(place.path(), &NOTES, true).unwrap_err().to_string();
-        assert!(said.contains("is a folder"), "{said}");
+        let message = may_write_file(place.path(), &NOTES, true).unwrap_err().to_string();
+        assert!(message.contains("is a folder"), "{message}");
     }
 
     #[test]
@@ -197,12 +201,12 @@ mod tests {
             let path = folder.join(mine);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(&path, "").unwrap();
-            let said = may_write_folder(folder, true).unwrap_err().to_string();
-            assert!(said.contains(&format!("holds {mine}, which is not of the run before")), "{said}");
+            let message = may_write_folder(folder, true).unwrap_err().to_string();
+            assert!(message.contains(&format!("contains {mine}, which is not of the earlier run")), "{message}");
             fs::remove_file(&path).unwrap();
         }
-        let said = may_write_folder(folder, true).unwrap_err().to_string();
-        assert!(said.contains("holds mine/deep"), "an empty folder, too: {said}");
+        let message = may_write_folder(folder, true).unwrap_err().to_string();
+        assert!(message.contains("contains mine/deep"), "an empty folder, too: {message}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What a run ends with on the screen.
 
-use super::{branches, details, explain, sweep_text};
+use super::{branches, details, explain, sweep_text, text};
 use crate::results::Results;
 
 /// What the complex modes come to, and what is in the folder `place`.
@@ -16,7 +16,7 @@ pub fn stability(results: &Results, place: &str) -> String {
     let strongest = explained.max_by(|(_, _, a), (_, _, b)| a.growth_rate().total_cmp(&b.growth_rate()));
     summary += &strongest.map_or_else(String::new, |(friction, _, mode)| explain::sentence(friction, mode) + "\n");
     summary += &results.diagram.as_ref().map_or_else(String::new, |diagram| branches::summary(diagram, "friction"));
-    summary + "\n" + &results.costs + &files(results, place)
+    summary + "\n" + &results.costs + &files_text(results, place)
 }
 
 /// The equilibria in words, and where their pictures are.
@@ -26,7 +26,7 @@ pub fn statics(results: &Results, place: &str) -> String {
 
 /// What is in the results folder: pictures of equilibria, of unstable modes, explanations, branches where there are
 /// any.
-fn files(results: &Results, place: &str) -> String {
+fn files_text(results: &Results, place: &str) -> String {
     const TABLES: [(&str, &str); 6] = [
         ("summary.txt", "this text"),
         ("results.h5", "all of it, for programs"),
@@ -50,12 +50,30 @@ fn files(results: &Results, place: &str) -> String {
     let any_equilibrium = results.asked().next().is_some();
     let any_unstable = results.modes().any(|(_, _, mode)| mode.unstable);
     let any_explained = results.modes().any(|(_, _, mode)| !mode.sources.is_empty());
-    let lines = TABLES
+    let files = TABLES
         .iter()
         .chain(curves.iter().filter(|_| results.diagram.is_some()))
         .chain(reasons.iter().filter(|_| any_explained))
         .chain(states.iter().filter(|_| any_equilibrium))
         .chain(shapes.iter().filter(|_| any_unstable))
-        .map(|(name, what)| format!("  {name:36}{what}\n"));
-    format!("\nresults in {place}:\n{}", lines.collect::<String>())
+        .copied();
+    text::files(place, &files.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::testing;
+
+    #[test]
+    fn a_summary_has_the_sweep_the_verdict_and_the_files() {
+        insta::assert_snapshot!(stability(&testing::results(), "run"));
+    }
+
+    #[test]
+    fn statics_have_their_pairs_and_steps() {
+        let mut results = testing::results();
+        results.values.truncate(2);
+        insta::assert_snapshot!(statics(&results, "run"));
+    }
 }

@@ -12,6 +12,7 @@ use crate::element::{FacetShape, Shape};
 use crate::mesh::{ElementList, Facet};
 
 use super::overwrite::{FileKind, SIGNATURE, head_contains};
+use super::text::escaped;
 
 /// Cells; VTK's node orders are those of [`Shape`] and [`FacetShape`].
 pub enum Cells<'a> {
@@ -179,11 +180,6 @@ fn array(out: &mut impl Write, name: &str, values: &Values) -> io::Result<()> {
         Values::Integers(v) => v.iter().flat_map(|i| i.to_le_bytes()).collect(),
     };
     raw(out, name, kind, components, bytes)
-}
-
-/// A name inside an attribute.
-fn escaped(name: &str) -> String {
-    name.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;")
 }
 
 fn raw(out: &mut impl Write, name: &str, kind: &str, components: usize, bytes: Vec<u8>) -> io::Result<()> {

@@ -37,6 +37,7 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use nalgebra::DMatrix;
+use serde::Serialize;
 
 use crate::assembly::System;
 use crate::contact::{GapOperator, Interface};
@@ -51,8 +52,8 @@ use super::linear::Linear;
 /// Right-hand sides in one pass over a factor or matrix.
 const PANEL: usize = 64;
 
-/// Motions up to this part of the limit get inertia modes: half of it, up to which a super-element is meant to be used,
-/// and a margin, as the brake without inertia modes is too stiff.
+/// Motions up to this part of the limit get residual modes: half of it, up to which a super-element is meant to be
+/// used, and a margin, as the brake without residual modes is too stiff.
 const REACH: f64 = 0.6;
 
 /// A structure to be reduced.
@@ -81,22 +82,25 @@ pub enum Event {
 }
 
 /// What a reduction has cost.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Costs {
     /// The one factor.
+    #[serde(skip)]
     pub factor: FactorStats,
     /// Constraint modes, s.
     pub constraint_seconds: f64,
     /// Fixed-interface modes, s.
+    #[serde(rename = "fixed_interface_seconds")]
     pub fixed_seconds: f64,
     /// Their solves.
+    #[serde(rename = "fixed_interface_solves")]
     pub n_solves: usize,
-    /// Inertia modes and projection of M, C and K, s.
+    /// Residual modes and projection of M, C and K, s.
     pub projection_seconds: f64,
 }
 
 /// The reduced structure. Coordinates: three for each retained point, then one for each fixed-interface mode and each
-/// inertia mode.
+/// residual mode.
 pub struct Reduced {
     /// The retained points, as a gap operator.
     pub retained: GapOperator,
@@ -166,7 +170,7 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
     let none = || DMatrix::zeros(0, 0);
     let coarse = [project(none(), &basis, &system.m)?, project(none(), &basis, &linear.stiffness)?];
     let motions = motions(&coarse[0], &coarse[1], &linear.contacts, REACH * limit, functionals.len())?;
-    basis.append(&interior.inertia_modes(&basis, &motions, &modes)?);
+    basis.append(&interior.residual_modes(&basis, &motions, &modes)?);
     let [mass, stiffness] = coarse;
     let (mass, stiffness) = (project(mass, &basis, &system.m)?, project(stiffness, &basis, &linear.stiffness)?);
     let damping = project(none(), &basis, &system.c)?;
@@ -232,7 +236,7 @@ impl Interior<'_> {
 
     /// What the interior does under the inertia of some motions `Psi Y`, beside the modes: `A M Psi Y`, M-orthonormal.
     /// It has as many vectors as there is room for.
-    fn inertia_modes(&self, psi: &Block, motions: &DMatrix<f64>, modes: &Modes) -> Result<Block> {
+    fn residual_modes(&self, psi: &Block, motions: &DMatrix<f64>, modes: &Modes) -> Result<Block> {
         if motions.ncols() == 0 {
             return Ok(psi.columns(0..0));
         }
@@ -253,7 +257,7 @@ fn inverse(s: DMatrix<f64>) -> Result<Vec<f64>> {
     (0..s.nrows()).filter(|&i| s[(i, i)] == 0.0).for_each(|i| symmetric[(i, i)] = 1.0);
     let factor = symmetric.cholesky().ok_or_else(|| {
         Error::input(
-            "the retained points of the reduction are not independent: two loads act on the same nodes, or a part is held by nothing. \
+            "the retained points of the reduction are not independent: two loads act on the same nodes, or a part is unconstrained. \
              `squeal check` shows loads and free parts",
         )
     })?;

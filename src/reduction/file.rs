@@ -1,11 +1,11 @@
 //! The file of a super-element, HDF5.
 //!
 //! ```text
-//! /                 attributes: format "squeal super-element", version 2
+//! /                 attributes: format "squeal super-element", version 3
 //! about             text, TOML: [origin] model, mesh with hash, friction, bands; [[pair]] the sliding pairs; parts
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
-//! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + inertia modes; kg, N s/m, N/m at the retained
+//! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + residual modes; kg, N s/m, N/m at the retained
 //!                               points, unit modal mass
 //! load, preload     n           generalised forces, N
 //! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:
@@ -35,7 +35,7 @@ use super::recovery::OuterSurface;
 use super::super_element::{NodeContact, Origin, SuperElement};
 
 const FORMAT: Format =
-    Format { name: "squeal super-element", version: 2, advice: "Make the super-element again with `squeal reduce`" };
+    Format { name: "squeal super-element", version: 3, advice: "Make the super-element again with `squeal reduce`" };
 
 /// What is told in words.
 #[derive(Serialize, Deserialize)]

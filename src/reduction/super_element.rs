@@ -1,7 +1,7 @@
 //! A super-element: a brake that has become one element with some hundred coordinates and node-to-node contacts.
 //!
 //! ```text
-//! coordinates  [ slave points | master points | loaded points | fixed-interface modes | inertia modes ]
+//! coordinates  [ slave points | master points | loaded points | fixed-interface modes | residual modes ]
 //!              three a point, one a mode
 //! nodes        three coordinates each, the last one filled up with constrained ones; coordinates that cannot move
 //!              are constrained, too
@@ -33,16 +33,20 @@ pub struct Origin {
     /// The mesh file.
     pub mesh: String,
     /// SHA-256 of its bytes.
+    #[serde(rename = "mesh_sha256")]
     pub mesh_hash: String,
     /// The program and its version.
     pub program: String,
     /// Friction of the swept pairs at the equilibrium that it was made about.
     pub friction: f64,
-    /// Equations of the full model.
-    pub n_equations: usize,
+    /// Free dofs of the full model.
+    #[serde(rename = "dofs_of_the_model")]
+    pub n_dofs: usize,
     /// Band that the model analyses, Hz.
+    #[serde(rename = "band_hz")]
     pub band: [f64; 2],
     /// Fixed-interface modes are kept below this, Hz.
+    #[serde(rename = "limit_hz")]
     pub limit: f64,
     /// Whether friction that turns with the velocity damps the modes.
     pub friction_damping: bool,
@@ -129,8 +133,8 @@ impl SuperElement {
         self.load.len()
     }
 
-    /// Number of inertia modes among the coordinates.
-    pub fn n_inertia_modes(&self) -> usize {
+    /// Number of residual modes among the coordinates.
+    pub fn n_residual_modes(&self) -> usize {
         self.n_coordinates() - 3 * self.points.len() - self.frequencies.len()
     }
 

@@ -2,6 +2,7 @@
 
 use super::svg::{Anchor, INK, PALE, Panel, Scale, Sheet, colour};
 use crate::comparison::{Comparison, ModePair};
+use crate::output::text::plural;
 
 /// Frequency error, growth-rate error and MAC of all pairs against A's frequency; pairs that grow are in colour.
 pub fn errors(comparison: &Comparison) -> String {
@@ -19,30 +20,25 @@ pub fn errors(comparison: &Comparison) -> String {
         let area = [80.0, 60.0 + 175.0 * k as f64, 600.0, 150.0];
         let panel = Panel { area, x: Scale::linear(band), y };
         panel.draw(&mut sheet, (k == 2).then_some("frequency of A, kHz"), name);
-        for pair in pairs(comparison).filter(|pair| !grows(pair)) {
-            sheet.circle(panel.at(pair.frequencies[0] / 1000.0, of(pair)), 2.2, &format!(r#"fill="{PALE}""#));
-        }
-        for pair in pairs(comparison).filter(|pair| grows(pair)) {
-            sheet.circle(panel.at(pair.frequencies[0] / 1000.0, of(pair)), 3.5, &format!(r#"fill="{}""#, colour(0)));
+        for (is_unstable, radius, fill) in [(false, 2.2, PALE), (true, 3.5, colour(0))] {
+            for pair in pairs(comparison).filter(|pair| pair.is_unstable() == is_unstable) {
+                sheet.circle(panel.at(pair.a.frequency / 1000.0, of(pair)), radius, &format!(r#"fill="{fill}""#));
+            }
         }
     }
-    let n = comparison.frictions.len();
-    let title = format!("B compared with A, {n} friction value{}", if n == 1 { "" } else { "s" });
-    sheet.text([80.0, 22.0], Anchor::Start, &title, r#"font-weight="bold""#);
+    let n = comparison.values.len();
+    let title = format!("B compared with A, {n} friction value{}", plural(n));
+    sheet.heading(&title);
     sheet.circle([80.0, 42.0], 3.5, &format!(r#"fill="{}""#, colour(0)));
     sheet.text([90.0, 46.0], Anchor::Start, "unstable in A or in B", &format!(r#"fill="{INK}""#));
     sheet.finish("Errors of frequencies and growth rates and MAC of all modes against frequency")
 }
 
 fn pairs(comparison: &Comparison) -> impl Iterator<Item = &ModePair> {
-    comparison.frictions.iter().flat_map(|at| &at.pairs)
+    comparison.values.iter().flat_map(|at| &at.pairs)
 }
 
-fn grows(pair: &ModePair) -> bool {
-    pair.unstable.contains(&true)
-}
-
-/// A scale about zero that holds all numbers.
+/// A scale about zero that contains all numbers.
 fn symmetric(numbers: impl Iterator<Item = f64>) -> Scale {
     let most = numbers.map(f64::abs).fold(0.0, f64::max).max(1e-9);
     Scale::with_margin([-most, most], 0.05)

@@ -59,9 +59,9 @@ fn bounds(nodes: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
 }
 
 /// Base64 that shapes may take, bytes: a page of this size opens at once.
-const ROOM: usize = 10_000_000;
+const SHAPE_BYTES: usize = 10_000_000;
 
-/// Shapes by the name of their mode, and how many there was no room for.
+/// Shapes by the name of their mode, and how many did not fit.
 #[derive(Serialize)]
 pub struct Shapes {
     /// Six i16 a node: real part, imaginary part.
@@ -71,7 +71,7 @@ pub struct Shapes {
 }
 
 /// Shapes of the unstable modes: of each instability the strongest in any case, then the others, strong ones first, as
-/// far as there is room.
+/// far as they fit.
 pub fn shapes(findings: &Findings) -> Shapes {
     let has_shape = |place: &&Place| findings.mode(**place).shape.is_some();
     let mut others: Vec<Place> =
@@ -83,7 +83,7 @@ pub fn shapes(findings: &Findings) -> Shapes {
     for place in others {
         let Some(shape) = &findings.mode(place).shape else { continue };
         let size = 16 * shape.re.len();
-        if used + size > ROOM && !worst.contains(&place) {
+        if used + size > SHAPE_BYTES && !worst.contains(&place) {
             omitted += 1;
             continue;
         }

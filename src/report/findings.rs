@@ -2,7 +2,7 @@
 //! its partner.
 //!
 //! An instability is a branch with a growing mode. Where modes were not followed over friction, growing modes of
-//! neighbouring frictions belong together when their frequencies lie within 2 % of each other.
+//! neighbouring friction values belong together when their frequencies lie within 2 % of each other.
 
 use std::f64::consts::TAU;
 
@@ -36,7 +36,7 @@ pub struct Instability {
     pub worst: Place,
     /// The growth rate there, 1/s.
     pub growth_rate: f64,
-    /// The frictions between which it grows.
+    /// The friction values between which it grows.
     pub ranges: Vec<Range>,
 }
 
@@ -59,12 +59,12 @@ pub enum End {
     /// The mode grows here, and does not at the neighbouring value (the second number); what lies in between is
     /// unknown.
     Seen(f64, f64),
-    /// The mode grows here, and no value lies beyond.
+    /// The mode grows here, and it is the first or the last value.
     Edge(f64),
 }
 
-/// Frequencies of one instability at neighbouring frictions differ by less than this, relative; only where modes were
-/// not followed.
+/// Frequencies of one instability at neighbouring friction values differ by less than this, relative; only where modes
+/// were not followed.
 const SAME: f64 = 0.02;
 /// Eigenvalues of the same mode in the diagram and among the values agree to this, relative.
 const ROUNDING: f64 = 1e-9;
@@ -148,10 +148,10 @@ impl<'a> Findings<'a> {
 
     fn instability(&self, branch: Option<usize>, mut modes: Vec<Place>) -> Option<Instability> {
         modes.sort_by(|&a, &b| self.friction(a).total_cmp(&self.friction(b)));
-        let is_told = |place: &Place| !self.mode(*place).sources.is_empty() || self.mode(*place).shape.is_some();
-        let told = modes.iter().any(is_told);
+        let is_explained = |place: &Place| !self.mode(*place).sources.is_empty() || self.mode(*place).shape.is_some();
+        let any_explained = modes.iter().any(is_explained);
         let growth = |place: &Place| self.mode(*place).growth_rate();
-        let candidates = modes.iter().filter(|place| !told || is_told(place));
+        let candidates = modes.iter().filter(|place| !any_explained || is_explained(place));
         let worst = *candidates.max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
         let ranges = branch.map_or_else(|| self.seen_ranges(&modes), |b| self.followed_ranges(b, &modes));
         Some(Instability { branch, worst, growth_rate: growth(&worst), ranges, modes })
@@ -180,16 +180,16 @@ impl<'a> Findings<'a> {
 
     /// Ranges of modes that were not followed: runs of values asked for.
     fn seen_ranges(&self, modes: &[Place]) -> Vec<Range> {
-        let frictions: Vec<f64> = self.asked.iter().map(|&v| self.results.values[v].friction).collect();
-        let grows = |i: usize| modes.iter().find(|&&place| self.friction(place) == frictions[i]);
+        let friction_values: Vec<f64> = self.asked.iter().map(|&v| self.results.values[v].friction).collect();
+        let grows = |i: usize| modes.iter().find(|&&place| self.friction(place) == friction_values[i]);
         let mut ranges: Vec<Range> = Vec::new();
-        for (i, &mu) in frictions.iter().enumerate() {
+        for (i, &mu) in friction_values.iter().enumerate() {
             let Some(&place) = grows(i) else { continue };
-            let to = if i + 1 == frictions.len() { End::Edge(mu) } else { End::Seen(mu, frictions[i + 1]) };
+            let to = if i + 1 == friction_values.len() { End::Edge(mu) } else { End::Seen(mu, friction_values[i + 1]) };
             match (i > 0 && grows(i - 1).is_some(), ranges.last_mut()) {
                 (true, Some(range)) => range.to = to,
                 _ => {
-                    let from = if i == 0 { End::Edge(mu) } else { End::Seen(mu, frictions[i - 1]) };
+                    let from = if i == 0 { End::Edge(mu) } else { End::Seen(mu, friction_values[i - 1]) };
                     ranges.push(Range { from, to, frequency: self.mode(place).frequency() });
                 }
             }
@@ -197,7 +197,8 @@ impl<'a> Findings<'a> {
         ranges
     }
 
-    /// Growing modes at the frictions asked for that are `wanted`, those together which have about the same frequency.
+    /// Growing modes at the requested friction values that are `wanted`, those together which have about the same
+    /// frequency.
     fn groups(&self, wanted: impl Fn(Place) -> bool) -> Vec<Vec<Place>> {
         let mut groups: Vec<Vec<Place>> = Vec::new();
         for &value in &self.asked {

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::output::text::plural;
 use crate::results::{About, Pair, Results};
 
 /// The section.
@@ -22,14 +23,13 @@ pub fn section(results: &Results) -> Markup {
 
 fn facts(about: &About) -> Markup {
     let file = |name: &str, digest: &str| html! { dd { (name) br; span.digest { "SHA-256 " (digest) } } };
-    let plural = if about.n_ranks == 1 { "" } else { "s" };
     html! {
         dt { "Model" } (file(&about.model, &about.model_digest))
         @if !about.mesh.is_empty() {
             dt { "Mesh" } (file(&about.mesh, &about.mesh_digest))
             dt { "Size" } dd { (about.n_nodes) " nodes, " (about.n_elements) " elements" }
         }
-        dt { "Solved" } dd { (about.n_equations) " dofs on " (about.n_ranks) " rank" (plural) }
+        dt { "Solved" } dd { (about.n_dofs) " dofs on " (about.n_ranks) " rank" (plural(about.n_ranks)) }
         dt { "Command" } dd { code { "squeal " (about.command) } }
         dt { "Program" } dd { (about.program) }
         dt { "Libraries" } dd { (about.libraries) }

@@ -124,7 +124,7 @@ fn subtitle(findings: &Findings) -> String {
         [one] => format!("\u{3bc} = {one}"),
         [first, .., last] => format!("{} friction values, \u{3bc} = {first} to {last}", values.len()),
     };
-    unbroken(&format!("Complex modes {from}\u{2013}{to} Hz at {values}; {} dofs", about.n_equations))
+    unbroken(&format!("Complex modes {from}\u{2013}{to} Hz at {values}; {} dofs", about.n_dofs))
 }
 
 fn answer_section(findings: &Findings) -> Markup {
@@ -386,7 +386,7 @@ mod tests {
         assert!(page(&results).unwrap().contains("\"surface\":null"));
         results.values.retain(|value| value.friction == 0.0);
         results.diagram = None;
-        results.about.frictions = vec![0.0];
+        results.about.friction_values = vec![0.0];
         assert!(page(&results).unwrap().contains("Quiet: all 8 modes"));
         assert!(page(&Results::default()).unwrap().contains("No friction value has been analysed yet."));
     }

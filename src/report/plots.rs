@@ -43,7 +43,7 @@ const RADIUS: f64 = 15.0;
 fn stability_chart(findings: &Findings) -> String {
     let mut sheet = Sheet::new([WIDTH, 440.0]);
     let band = findings.results.about.band.map(|f| f / 1000.0);
-    let panel = Panel { area: [70.0, 40.0, 560.0, 340.0], x: frictions(findings), y: Scale::linear(band) };
+    let panel = Panel { area: [70.0, 40.0, 560.0, 340.0], x: friction_scale(findings), y: Scale::linear(band) };
     panel.draw(&mut sheet, Some(FRICTION), "frequency, kHz");
     for branch in findings.branches() {
         curve(&mut sheet, &panel, branch, |lambda| lambda.im / TAU / 1000.0, &thin(PALE));
@@ -51,11 +51,16 @@ fn stability_chart(findings: &Findings) -> String {
     let largest = findings.instabilities.first().map_or(1.0, |one| one.growth_rate);
     let radius = |growth: f64| RADIUS * (growth / largest).max(0.0).sqrt();
     for place in asked_modes(findings).filter(|&place| !findings.mode(place).unstable) {
-        let at = panel.at(findings.friction(place), findings.mode(place).frequency() / 1000.0);
-        sheet.circle(at, 2.0, &format!(r#"fill="{PALE}" {}"#, tag(place)));
+        mark(
+            &mut sheet,
+            panel.at(findings.friction(place), findings.mode(place).frequency() / 1000.0),
+            place,
+            2.0,
+            PALE,
+        );
     }
     for (i, instability) in findings.instabilities.iter().enumerate() {
-        for &place in instability.modes.iter().filter(|place| findings.results.values[place.value].asked) {
+        for place in asked(findings, instability) {
             let mode = findings.mode(place);
             let at = panel.at(findings.friction(place), mode.frequency() / 1000.0);
             let style =
@@ -63,12 +68,7 @@ fn stability_chart(findings: &Findings) -> String {
             sheet.circle(at, radius(mode.growth_rate()).max(3.0), &style);
         }
     }
-    sheet.text(
-        [70.0, 20.0],
-        Anchor::Start,
-        "Stability chart: circles are unstable modes, their area is the growth rate",
-        TITLE,
-    );
+    sheet.heading("Stability chart: circles are unstable modes, their area is the growth rate");
     let legend = [1.0, 0.3, 0.1].map(|share| rounded(share * largest));
     for (k, &growth) in legend.iter().enumerate().filter(|_| !findings.instabilities.is_empty()) {
         let y = 70.0 + 38.0 * k as f64;
@@ -90,7 +90,7 @@ fn growth_rates(findings: &Findings) -> String {
     let mut sheet = Sheet::new([WIDTH, 360.0]);
     let in_band = findings.results.values.iter().flat_map(|value| &value.modes).map(|mode| mode.growth_rate());
     let y = Scale::with_margin(span(in_band.chain([0.0])), 0.04);
-    let panel = Panel { area: [70.0, 40.0, 560.0, 260.0], x: frictions(findings), y };
+    let panel = Panel { area: [70.0, 40.0, 560.0, 260.0], x: friction_scale(findings), y };
     panel.draw(&mut sheet, Some(FRICTION), "growth rate, 1/s");
     zero_line(&mut sheet, &panel, findings);
     let unstable: Vec<Option<usize>> = findings.instabilities.iter().map(|one| one.branch).collect();
@@ -99,41 +99,29 @@ fn growth_rates(findings: &Findings) -> String {
         curve(&mut sheet, &panel, branch, |lambda| lambda.re, &style);
     }
     for (i, instability) in findings.instabilities.iter().enumerate() {
-        series(&mut sheet, &panel, findings, (i, instability), |place| findings.mode(place).growth_rate());
+        if let Some(b) = instability.branch {
+            let style = format!(r#"stroke="{}" stroke-width="2" data-branch="{b}""#, colour(i));
+            curve(&mut sheet, &panel, &findings.branches()[b], |lambda| lambda.re, &style);
+        }
+        for place in asked(findings, instability) {
+            let at = panel.at(findings.friction(place), findings.mode(place).growth_rate());
+            mark(&mut sheet, at, place, 3.5, colour(i));
+        }
     }
     if findings.branches().is_empty() {
         for place in asked_modes(findings).filter(|&place| !findings.mode(place).unstable) {
-            let at = panel.at(findings.friction(place), findings.mode(place).growth_rate());
-            sheet.circle(at, 2.0, &format!(r#"fill="{PALE}" {}"#, tag(place)));
+            mark(&mut sheet, panel.at(findings.friction(place), findings.mode(place).growth_rate()), place, 2.0, PALE);
         }
     }
     hopf_marks(&mut sheet, &panel, findings, findings.hopf().iter(), |_| 0.0);
     end_labels(&mut sheet, &panel, findings);
-    sheet.text(
-        [70.0, 20.0],
-        Anchor::Start,
-        "Growth rates: modes above zero are unstable; diamonds are Hopf points",
-        TITLE,
-    );
+    sheet.heading("Growth rates: modes above zero are unstable; diamonds are Hopf points");
     sheet.finish("Growth rate of all modes against friction")
 }
 
-/// An unstable branch in its colour, with a mark at each friction asked for.
-fn series(
-    sheet: &mut Sheet,
-    panel: &Panel,
-    findings: &Findings,
-    (i, instability): (usize, &Instability),
-    of: impl Fn(Place) -> f64,
-) {
-    if let Some(b) = instability.branch {
-        let style = format!(r#"stroke="{}" stroke-width="2" data-branch="{b}""#, colour(i));
-        curve(sheet, panel, &findings.branches()[b], |lambda| lambda.re, &style);
-    }
-    for &place in instability.modes.iter().filter(|place| findings.results.values[place.value].asked) {
-        let style = format!(r#"fill="{}" {}"#, colour(i), tag(place));
-        sheet.circle(panel.at(findings.friction(place), of(place)), 3.5, &style);
-    }
+/// The modes of an instability at the requested values.
+fn asked<'f>(findings: &'f Findings, instability: &'f Instability) -> impl Iterator<Item = Place> + 'f {
+    instability.modes.iter().copied().filter(|place| findings.results.values[place.value].asked)
 }
 
 /// Frequencies at the right end of unstable branches, pushed apart where they would overlap.
@@ -164,7 +152,7 @@ fn end_labels(sheet: &mut Sheet, panel: &Panel, findings: &Findings) {
 }
 
 /// Frequency and growth rate of an unstable branch and its partner against friction, with Hopf points: figure 2b of the
-/// source. None where modes were not followed over several frictions.
+/// source. None where modes were not followed over several friction values.
 fn coupling(findings: &Findings, i: usize, instability: &Instability) -> Option<String> {
     let own = instability.branch?;
     let partner = findings.onset(instability).and_then(|hopf| hopf.partner).map(|partner| partner.branch);
@@ -173,10 +161,10 @@ fn coupling(findings: &Findings, i: usize, instability: &Instability) -> Option<
     let hopf = || findings.hopf().iter().filter(|hopf| branches.contains(&hopf.branch));
     let mut sheet = Sheet::new([WIDTH, 420.0]);
     let y = Scale::with_margin(span(points().map(|point| point.lambda.im / TAU)), 0.1);
-    let upper = Panel { area: [80.0, 40.0, 560.0, 160.0], x: frictions(findings), y };
+    let upper = Panel { area: [80.0, 40.0, 560.0, 160.0], x: friction_scale(findings), y };
     upper.draw(&mut sheet, None, "frequency, Hz");
     let y = Scale::with_margin(span(points().map(|point| point.lambda.re).chain([0.0])), 0.1);
-    let lower = Panel { area: [80.0, 215.0, 560.0, 150.0], x: frictions(findings), y };
+    let lower = Panel { area: [80.0, 215.0, 560.0, 150.0], x: friction_scale(findings), y };
     lower.draw(&mut sheet, Some(FRICTION), "growth rate, 1/s");
     zero_line(&mut sheet, &lower, findings);
     for (k, &b) in branches.iter().enumerate().rev() {
@@ -187,9 +175,8 @@ fn coupling(findings: &Findings, i: usize, instability: &Instability) -> Option<
         curve(&mut sheet, &lower, branch, |lambda| lambda.re, &style);
         for place in places_on(findings, b) {
             let (mode, mu) = (findings.mode(place), findings.friction(place));
-            let style = format!(r#"fill="{}" {}"#, colour(i + 3 * k), tag(place));
-            sheet.circle(upper.at(mu, mode.frequency()), 3.0, &style);
-            sheet.circle(lower.at(mu, mode.growth_rate()), 3.0, &style);
+            mark(&mut sheet, upper.at(mu, mode.frequency()), place, 3.0, colour(i + 3 * k));
+            mark(&mut sheet, lower.at(mu, mode.growth_rate()), place, 3.0, colour(i + 3 * k));
         }
     }
     for hopf in hopf() {
@@ -200,11 +187,11 @@ fn coupling(findings: &Findings, i: usize, instability: &Instability) -> Option<
     hopf_marks(&mut sheet, &upper, findings, hopf(), |hopf| hopf.omega / TAU);
     hopf_marks(&mut sheet, &lower, findings, hopf(), |_| 0.0);
     let name = words::frequency(findings.mode(instability.worst).frequency());
-    let told = match partner {
+    let mechanism = match partner {
         Some(_) => "two modes (solid and dashed) coalesce and one becomes unstable",
         None => "a mode loses stability without coalescence",
     };
-    sheet.text([80.0, 18.0], Anchor::Start, &format!("{name}: {told}"), TITLE);
+    sheet.heading(&format!("{name}: {mechanism}"));
     Some(sheet.finish(&format!("Frequency and growth rate against friction of the instability at {name}")))
 }
 
@@ -225,23 +212,27 @@ fn convergence(findings: &Findings) -> Option<String> {
         let of = if step.converged { colour(1) } else { colour(0) };
         sheet.polyline(&points, &format!(r#"stroke="{of}" stroke-opacity="0.5" stroke-width="1.3""#));
     }
-    sheet.text([70.0, 20.0], Anchor::Start, "Convergence of the equilibria: a line for each Newton solution", TITLE);
+    sheet.heading("Convergence of the equilibria: a line for each Newton solution");
     Some(sheet.finish("Relative residual of each Newton solution against its iterations"))
 }
 
-const TITLE: &str = r#"font-weight="bold""#;
 const SMALL: &str = r#"font-size="12""#;
 
 fn thin(colour: &str) -> String {
     format!(r#"stroke="{colour}" stroke-opacity="0.6""#)
 }
 
-/// What tells a program which mode a mark stands for.
+/// The attribute by which the page's program finds the mode of a mark.
 fn tag(place: Place) -> String {
     format!(r#"data-mode="{}""#, place.name())
 }
 
-fn frictions(findings: &Findings) -> Scale {
+/// A disc that stands for a mode.
+fn mark(sheet: &mut Sheet, at: [f64; 2], place: Place, radius: f64, fill: &str) {
+    sheet.circle(at, radius, &format!(r#"fill="{fill}" {}"#, tag(place)));
+}
+
+fn friction_scale(findings: &Findings) -> Scale {
     let all = span(findings.results.values.iter().map(|value| value.friction));
     Scale::with_margin(all, 0.03)
 }

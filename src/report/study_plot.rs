@@ -8,8 +8,8 @@ use crate::comparison::{CurvePoint, StudiedModel, Study};
 /// grows.
 pub fn instabilities(study: &Study, models: &[&StudiedModel], title: &str) -> Option<String> {
     const COLUMN: f64 = 430.0;
-    let (n, frictions) = (study.reference.curves.len(), &study.frictions);
-    let (Some(first), Some(last)) = (frictions.first(), frictions.last()) else { return None };
+    let (n, friction_values) = (study.reference.curves.len(), &study.friction_values);
+    let (Some(first), Some(last)) = (friction_values.first(), friction_values.last()) else { return None };
     let x = Scale::with_margin([*first, *last], 0.03);
     let mut sheet = Sheet::new([COLUMN * n as f64 + 20.0, 520.0 + 20.0 * models.len().div_ceil(2) as f64]);
     for i in 0..n {
@@ -25,7 +25,7 @@ pub fn instabilities(study: &Study, models: &[&StudiedModel], title: &str) -> Op
             }
         }
     }
-    sheet.text([80.0, 24.0], Anchor::Start, title, r#"font-weight="bold""#);
+    sheet.heading(title);
     for (k, name) in [&study.reference.name].into_iter().chain(models.iter().map(|model| &model.name)).enumerate() {
         let (x, y) = (80.0 + 380.0 * (k % 2) as f64, 510.0 + 20.0 * (k / 2) as f64);
         sheet.polyline(&[[x, y], [x + 28.0, y]], &line(k));

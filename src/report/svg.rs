@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-/// Colours that differ for all kinds of sight (Okabe and Ito, *Color universal design*, 2008), the most telling first.
+use crate::output::text::escaped;
+
+/// Colours that differ for all kinds of sight (Okabe and Ito, *Color universal design*, 2008), the most distinct first.
 pub const PALETTE: [&str; 6] = ["#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 /// Text and axes.
 pub const INK: &str = "#333333";
@@ -14,24 +16,6 @@ const FONT: &str = "'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', s
 /// The colour of the nth series.
 pub fn colour(n: usize) -> &'static str {
     PALETTE[n % PALETTE.len()]
-}
-
-/// A text inside XML or HTML, in elements and in attributes.
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            // XML knows no other control characters.
-            c if c.is_control() && !"\n\t\r".contains(c) => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 /// Where text stands relative to its point.
@@ -90,13 +74,18 @@ impl Sheet {
         let _ = writeln!(self.body, r#"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}" {style}>{text}</text>"#);
     }
 
+    /// A heading in the upper left corner.
+    pub fn heading(&mut self, text: &str) {
+        self.text([70.0, 20.0], Anchor::Start, text, r#"font-weight="bold""#);
+    }
+
     /// Text that reads upwards, its middle at a point.
     pub fn upward(&mut self, [x, y]: [f64; 2], text: &str) {
         let turned = format!(r#"transform="rotate(-90 {x:.1} {y:.1})""#);
         self.text([x, y], Anchor::Middle, text, &turned);
     }
 
-    /// The whole as an SVG element, which says its title to those who do not see it.
+    /// The whole as an SVG element, with its title for screen readers.
     pub fn finish(self, title: &str) -> String {
         let ([width, height], title) = (self.size, escaped(title));
         format!(
@@ -245,10 +234,10 @@ mod tests {
     #[test]
     fn text_is_escaped_and_the_whole_is_xml() {
         let mut sheet = Sheet::new([100.0, 50.0]);
-        let mischief = "<pad> & \"plate\"\u{7}</text>";
-        sheet.text([1.0, 2.0], Anchor::End, mischief, "");
+        let hostile = "<pad> & \"plate\"\u{7}</text>";
+        sheet.text([1.0, 2.0], Anchor::End, hostile, "");
         sheet.diamond([5.0, 5.0], 2.0, "");
-        let svg = sheet.finish(mischief);
+        let svg = sheet.finish(hostile);
         let xml = roxmltree::Document::parse(&svg).unwrap();
         let text = xml.descendants().find(|node| node.has_tag_name("text")).unwrap();
         assert_eq!(text.text(), Some("<pad> & \"plate\"\u{fffd}</text>"));

@@ -33,7 +33,7 @@ pub struct ExternalResults {
     pub values: Vec<ExternalValue>,
     /// Modes followed over the parameter.
     pub diagram: Option<Diagram>,
-    /// What a reader should know, a line each.
+    /// Remarks for the summary, a line each.
     pub notes: Vec<String>,
     /// Number of each row in the files, from 0.
     pub rows: Vec<usize>,
@@ -72,7 +72,7 @@ pub struct ExternalMode {
     pub lambda: Complex64,
     /// Backward error of the scaled problem.
     pub backward_error: f64,
-    /// Whether it grows, beyond noise.
+    /// Whether it grows, more than noise explains.
     pub is_unstable: bool,
     /// Row of the matrices in which its vector is largest, from 1.
     pub largest_row: usize,

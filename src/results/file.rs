@@ -1,10 +1,10 @@
 //! The results file, HDF5.
 //!
 //! ```text
-//! /                     attributes: format "squeal results", version 1
+//! /                     attributes: format "squeal results", version 2
 //! about                 text, TOML: the fields of [`About`]: model and mesh with their SHA-256, program, libraries,
 //!                       command, band (Hz),
-//!                       frictions asked for, [[parts]], [[pairs]]
+//!                       friction values asked for, [[parts]], [[pairs]]
 //! costs                 text, for people
 //! failure               text, TOML, only where the study did not come to its end: reason, [[steps]] of the equilibrium
 //!                       not reached
@@ -26,11 +26,11 @@
 //!                                   asked for
 //!   shapes              k x n_s x 3 x 2   their displacements; the largest of a shape is 1
 //!   pressure, status    n_c         at the nodes of contact/, Pa; 0 open, 1 slip, 2 stick, -1 no contact point
-//!   record              text, TOML: seconds, checks, count of modes, [[pairs]] forces (N) and counts, [[steps]] Newton
-//!                       iterations,
-//!                       [[sources]] what explains a mode: its place, shares, sensitivities
+//!   record              text, TOML: friction, asked, seconds, checks, count of modes, [[pairs]] forces and counts,
+//!                       [[steps]] Newton iterations
+//!   sources             text, TOML: [[sources]] what explains a mode: its place, shares, sensitivities
 //! diagram/              only where modes were followed
-//!   values              solved frictions
+//!   values              solved friction values
 //!   points              n rows: branch (from 0), mode (place among those of tracking), friction, growth_rate, omega
 //!   hopf                text, TOML: [[hopf]]
 //!   doubtful            n x 2       intervals over which not all modes could be recognised
@@ -49,13 +49,11 @@ use serde::{Deserialize, Serialize};
 use super::Source;
 use super::{About, ContactFaces, ModeData, Results, Shape, Surface, Value};
 use crate::Result;
-use crate::equilibrium::{PairForces, Step};
 use crate::hdf::{self, Format, array, list, read_text, table, text, triples, values};
-use crate::stability::Count;
 use crate::tracking::{Branch, Diagram, Hopf, Point};
 
 const FORMAT: Format =
-    Format { name: "squeal results", version: 1, advice: "Make the results anew with the command that they are of" };
+    Format { name: "squeal results", version: 2, advice: "Make the results again with the same command" };
 
 /// A mode's numbers.
 #[derive(H5Type, Clone, Copy)]
@@ -78,14 +76,9 @@ struct PointRow {
     omega: f64,
 }
 
-/// What is told of a friction in words.
+/// What explains the modes of a value, as a text.
 #[derive(Serialize, Deserialize)]
-struct Record {
-    seconds: f64,
-    checks: String,
-    count: Option<Count>,
-    pairs: Vec<PairForces>,
-    steps: Vec<Step>,
+struct SourcesText {
     #[serde(default)]
     sources: Vec<Explained>,
 }
@@ -209,7 +202,7 @@ fn read_contact(group: &Group) -> hdf5::Result<ContactFaces> {
     })
 }
 
-/// Writes one friction into a group of its own.
+/// Writes one value into a group of its own.
 ///
 /// # Errors
 /// HDF5's.
@@ -230,19 +223,10 @@ pub fn write_value(group: &Group, value: &Value) -> hdf5::Result<()> {
     write_shapes(group, "shapes", shaped.iter().map(|(_, shape)| *shape))?;
     list(group, "pressure", &value.pressure)?;
     list(group, "status", &value.status)?;
-    words(group, "record", &record(value))
-}
-
-fn record(value: &Value) -> Record {
     let explained = |(mode, data): (usize, &ModeData)| Explained { mode, sources: data.sources.clone() };
-    Record {
-        seconds: value.seconds,
-        checks: value.checks.clone(),
-        count: value.count,
-        pairs: value.pairs.clone(),
-        steps: value.steps.clone(),
-        sources: value.modes.iter().enumerate().map(explained).filter(|e| !e.sources.is_empty()).collect(),
-    }
+    let sources = value.modes.iter().enumerate().map(explained).filter(|e| !e.sources.is_empty()).collect();
+    words(group, "sources", &SourcesText { sources })?;
+    words(group, "record", value)
 }
 
 fn write_shapes<'s>(
@@ -256,12 +240,11 @@ fn write_shapes<'s>(
     array(group, name, &shape, &numbers)
 }
 
-/// Reads one friction from its group.
+/// Reads one value from its group.
 ///
 /// # Errors
 /// HDF5's; where its arrays do not fit together.
 pub fn read_value(group: &Group) -> hdf5::Result<Value> {
-    let record: Record = from_words(group, "record")?;
     let rows: Vec<ModeRow> = values(group, "modes")?;
     let sampled = read_shapes(group, "sampled", rows.len())?;
     let mode = |(row, sampled): (&ModeRow, Shape)| ModeData {
@@ -269,30 +252,21 @@ pub fn read_value(group: &Group) -> hdf5::Result<Value> {
         backward_error: row.backward_error,
         unstable: row.unstable != 0,
         sampled,
-        shape: None,
-        sources: Vec::new(),
+        ..ModeData::default()
     };
-    let mut modes: Vec<ModeData> = rows.iter().zip(sampled).map(mode).collect();
+    let mut value: Value = from_words(group, "record")?;
+    value.pressure = values(group, "pressure")?;
+    value.status = values(group, "status")?;
+    value.modes = rows.iter().zip(sampled).map(mode).collect();
     let shaped: Vec<u32> = values(group, "shaped")?;
     let stray = || hdf5::Error::from("a shape or a source of no mode");
     for (&i, shape) in shaped.iter().zip(read_shapes(group, "shapes", shaped.len())?) {
-        modes.get_mut(i as usize).ok_or_else(stray)?.shape = Some(shape);
+        value.modes.get_mut(i as usize).ok_or_else(stray)?.shape = Some(shape);
     }
-    for Explained { mode, sources } in record.sources {
-        modes.get_mut(mode).ok_or_else(stray)?.sources = sources;
+    for Explained { mode, sources } in from_words::<SourcesText>(group, "sources")?.sources {
+        value.modes.get_mut(mode).ok_or_else(stray)?.sources = sources;
     }
-    Ok(Value {
-        friction: group.attr("friction")?.read_scalar()?,
-        asked: group.attr("asked")?.read_scalar::<u8>()? != 0,
-        pairs: record.pairs,
-        checks: record.checks,
-        steps: record.steps,
-        pressure: values(group, "pressure")?,
-        status: values(group, "status")?,
-        modes,
-        count: record.count,
-        seconds: record.seconds,
-    })
+    Ok(value)
 }
 
 /// So many shapes.
@@ -345,17 +319,17 @@ fn read_diagram(group: &Group) -> hdf5::Result<Diagram> {
 /// What does not fit together.
 fn inconsistency(results: &Results) -> Option<String> {
     let Results { about, surface, contact, values, diagram, .. } = results;
-    let beyond = |list: &[u32], n: usize| list.iter().any(|&i| i as usize >= n);
+    let exceeds = |list: &[u32], n: usize| list.iter().any(|&i| i as usize >= n);
     let outside = |list: &[i32], n: usize| list.iter().any(|&i| i < 0 || i as usize >= n);
     let n_surface = surface.nodes.len();
-    if beyond(surface.triangles.as_flattened(), n_surface) || beyond(&surface.samples, n_surface) {
+    if exceeds(surface.triangles.as_flattened(), n_surface) || exceeds(&surface.samples, n_surface) {
         return Some("the surface names nodes that it does not have".into());
     }
     if surface.part.len() != surface.triangles.len() || outside(&surface.part, about.parts.len()) {
         return Some("the surface's triangles and parts do not fit together".into());
     }
     let n_contact = contact.nodes.len();
-    if beyond(contact.triangles.as_flattened(), n_contact)
+    if exceeds(contact.triangles.as_flattened(), n_contact)
         || contact.pair.len() != contact.triangles.len()
         || contact.pair_of_node.len() != n_contact
         || outside(&contact.pair, about.pairs.len())

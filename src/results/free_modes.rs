@@ -1,6 +1,7 @@
 //! Free modes of one part, as plain data.
 
 use nalgebra::DMatrix;
+use serde::Serialize;
 
 use crate::stability::Count;
 
@@ -32,15 +33,16 @@ pub struct FreeModes {
 }
 
 /// An elastic mode.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct FreeMode {
     /// Hz.
+    #[serde(rename = "frequency_hz")]
     pub frequency: f64,
     /// Normwise backward error.
     pub backward_error: f64,
 }
 
-/// Measured modes against computed ones.
+/// Measured modes compared with computed ones.
 #[derive(Debug, Clone)]
 pub struct MeasuredComparison {
     /// Measured frequencies, Hz.

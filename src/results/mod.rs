@@ -1,5 +1,5 @@
 //! What a study found, as plain data: no PETSc, no ranks, whole on the root. A run fills it value by value, the results
-//! file keeps it between runs, and everything that a person sees (tables, plots, report, comparisons) is made of it
+//! file keeps it between runs, and everything that a user sees (tables, plots, report, comparisons) is made of it
 //! alone.
 
 mod external;
@@ -46,7 +46,7 @@ pub struct Results {
     pub surface: Surface,
     /// Where contact is known.
     pub contact: ContactFaces,
-    /// One friction after the other, in the order in which they were finished; those asked for and those in between.
+    /// One value after the other, in the order in which they were finished; those asked for and those in between.
     pub values: Vec<Value>,
     /// Modes followed over friction, where that was asked for and has come to its end.
     pub diagram: Option<Diagram>,
@@ -61,7 +61,7 @@ pub struct Results {
 pub struct Failure {
     /// For people.
     pub reason: String,
-    /// The friction whose equilibrium was not reached, where it was that.
+    /// The friction value whose equilibrium was not reached, where it was that.
     pub friction: Option<f64>,
     /// The Newton steps towards it.
     pub steps: Vec<Step>,
@@ -81,30 +81,35 @@ pub struct About {
     /// The model file, or the super-element's.
     pub model: String,
     /// SHA-256 of its bytes.
+    #[serde(rename = "model_sha256")]
     pub model_digest: String,
     /// Its text, as far as it is one.
     pub model_text: String,
     /// The mesh file.
     pub mesh: String,
     /// SHA-256 of its bytes.
+    #[serde(rename = "mesh_sha256")]
     pub mesh_digest: String,
     /// Nodes of the mesh; none of a super-element.
+    #[serde(rename = "nodes")]
     pub n_nodes: usize,
     /// Elements of the mesh.
+    #[serde(rename = "elements")]
     pub n_elements: usize,
-    /// Equations solved, i.e. free displacements or generalised coordinates.
-    pub n_equations: usize,
+    /// Free dofs, or generalised coordinates of a super-element.
+    #[serde(rename = "dofs")]
+    pub n_dofs: usize,
     /// Ranks that solved them.
+    #[serde(rename = "ranks")]
     pub n_ranks: usize,
     /// Band analysed, Hz.
+    #[serde(rename = "band_hz")]
     pub band: [f64; 2],
     /// Frictions asked for, in their order.
-    pub frictions: Vec<f64>,
+    pub friction_values: Vec<f64>,
     /// Whether neither a load nor an overlap presses the contacts together.
-    #[serde(default)]
     pub unloaded: bool,
-    /// What the model has that can hardly be meant, a sentence each.
-    #[serde(default)]
+    /// Doubtful properties of the model, a sentence each.
     pub warnings: Vec<String>,
     /// The parts, which `Surface::part` counts.
     pub parts: Vec<Part>,
@@ -116,10 +121,12 @@ pub struct About {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// Its name in the model.
+    #[serde(rename = "part")]
     pub name: String,
     /// Its material's name.
     pub material: String,
     /// kg.
+    #[serde(rename = "mass_kg")]
     pub mass: f64,
 }
 
@@ -127,12 +134,14 @@ pub struct Part {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// Its name in the model.
+    #[serde(rename = "pair")]
     pub name: String,
     /// Whether its surfaces slide on each other.
     pub sliding: bool,
-    /// Whether its friction is the study's parameter.
+    /// Whether its friction coefficient is the study's parameter.
     pub swept: bool,
     /// Contact points.
+    #[serde(rename = "points")]
     pub n_points: usize,
 }
 
@@ -163,10 +172,10 @@ pub struct ContactFaces {
     pub pair_of_node: Vec<i32>,
 }
 
-/// One friction.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// One friction value. What is skipped here are arrays, which the results file has beside the rest.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Value {
-    /// Friction of the swept pairs.
+    /// Friction coefficient of the swept pairs.
     pub friction: f64,
     /// Whether it was asked for; else tracking needed it.
     pub asked: bool,
@@ -177,10 +186,13 @@ pub struct Value {
     /// The Newton steps that led to it.
     pub steps: Vec<Step>,
     /// Normal pressure at the nodes of the contact faces, Pa.
+    #[serde(skip)]
     pub pressure: Vec<f64>,
     /// There: 0 open, 1 slip, 2 stick, -1 no contact point.
+    #[serde(skip)]
     pub status: Vec<i32>,
     /// Modes of the band by frequency.
+    #[serde(skip)]
     pub modes: Vec<ModeData>,
     /// The check of their number.
     pub count: Option<Count>,
@@ -195,11 +207,11 @@ pub struct ModeData {
     pub lambda: Complex64,
     /// Normwise backward error.
     pub backward_error: f64,
-    /// Whether it grows, beyond what rounding explains.
+    /// Whether it grows more than rounding explains.
     pub unstable: bool,
     /// Displacements at the samples of the surface.
     pub sampled: Shape,
-    /// Displacements at all nodes of the surface; of unstable modes at the frictions asked for.
+    /// Displacements at all nodes of the surface; of unstable modes at the requested values.
     pub shape: Option<Shape>,
     /// What explains it; of the same modes.
     pub sources: Vec<Source>,
@@ -216,12 +228,12 @@ pub struct Shape {
 }
 
 impl Results {
-    /// The modes at the frictions asked for, with their frictions and their numbers there from 1.
+    /// The modes at the requested values, with their friction value and their numbers there from 1.
     pub fn modes(&self) -> impl Iterator<Item = (f64, usize, &ModeData)> {
         self.asked().flat_map(|value| (1..).zip(&value.modes).map(|(number, mode)| (value.friction, number, mode)))
     }
 
-    /// The frictions that were asked for.
+    /// The requested values.
     pub fn asked(&self) -> impl Iterator<Item = &Value> {
         self.values.iter().filter(|value| value.asked)
     }

@@ -6,10 +6,11 @@ use serde::{Deserialize, Serialize};
 use crate::stability::{Sensitivity, Share};
 
 /// What a source of energy, damping and stiffness is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// A part of the mesh.
+    #[default]
     Part,
     /// A connector.
     Connector,
@@ -24,7 +25,7 @@ pub struct Source {
     pub kind: Kind,
     /// Its name in the model.
     pub name: String,
-    /// Its energies, and what it feeds in or takes out.
+    /// Its shares of the energies, its energy input and dissipation.
     pub share: Share,
     /// How the eigenvalue follows it, where the left vector is known.
     pub sensitivity: Option<Sensitivity>,

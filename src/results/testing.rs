@@ -9,7 +9,7 @@ use crate::equilibrium::{Counts, Iteration, PairForces, Step};
 use crate::stability::{Count, Sensitivity, Share};
 use crate::tracking::{Branch, Diagram, Hopf, Partner, Point};
 
-/// A title that means mischief.
+/// A title with markup, which the page must not run.
 pub const TITLE: &str = "disc & pad </script><script>alert(1)</script>";
 
 /// Two modes that couple: `lambda = -damping + i sqrt(omega^2 +- sqrt(gap^2 - force(mu)^2))`, Hz where frequencies.
@@ -62,12 +62,13 @@ pub fn results() -> Results {
         .flat_map(|(c, couple)| couple.hopf(0.0, 0.8).into_iter().map(move |b| (c, b)))
         .collect();
     let between = brackets.iter().flat_map(|(_, bracket)| *bracket);
-    let frictions: Vec<f64> = asked.iter().copied().chain(between).collect();
+    let friction_values: Vec<f64> = asked.iter().copied().chain(between).collect();
     let (surface, contact) = (surface(), contact());
-    let values = frictions.iter().enumerate().map(|(i, &mu)| value(mu, i < asked.len(), &surface, &contact)).collect();
+    let values =
+        friction_values.iter().enumerate().map(|(i, &mu)| value(mu, i < asked.len(), &surface, &contact)).collect();
     Results {
         about: about(asked),
-        diagram: Some(diagram(&frictions, &brackets)),
+        diagram: Some(diagram(&friction_values, &brackets)),
         values,
         costs: "12.3 s on 2 ranks: equilibria 4.5 s, modes 7.8 s".into(),
         surface,
@@ -76,7 +77,7 @@ pub fn results() -> Results {
     }
 }
 
-fn about(frictions: Vec<f64>) -> About {
+fn about(friction_values: Vec<f64>) -> About {
     let part = |name: &str, material: &str, mass| Part { name: name.into(), material: material.into(), mass };
     let pair = |name: &str, sliding| Pair { name: name.into(), sliding, swept: sliding, n_points: 99 };
     About {
@@ -91,10 +92,10 @@ fn about(frictions: Vec<f64>) -> About {
         mesh_digest: "cd".repeat(32),
         n_nodes: 4000,
         n_elements: 2000,
-        n_equations: 12000,
+        n_dofs: 12000,
         n_ranks: 2,
         band: [0.0, 6000.0],
-        frictions,
+        friction_values,
         parts: vec![part("disc", "iron", 5.5), part("pad", "lining", 0.2)],
         pairs: vec![pair("disc / pad", true), pair("piston / <pad>", false)],
         ..About::default()
@@ -185,15 +186,15 @@ fn value(mu: f64, asked: bool, surface: &Surface, contact: &ContactFaces) -> Val
 
 fn mode(lambda: Complex64, asked: bool, couple: &Couple, surface: &Surface) -> ModeData {
     let unstable = lambda.re > 0.0;
-    let is_told = asked && unstable;
+    let is_explained = asked && unstable;
     let sampled: Vec<[f64; 3]> = surface.samples.iter().map(|&n| surface.nodes[n as usize]).collect();
     ModeData {
         lambda,
         backward_error: 3e-14,
         unstable,
         sampled: shape(&sampled, couple.diameters),
-        shape: is_told.then(|| shape(&surface.nodes, couple.diameters)),
-        sources: if is_told { sources(lambda, couple) } else { Vec::new() },
+        shape: is_explained.then(|| shape(&surface.nodes, couple.diameters)),
+        sources: if is_explained { sources(lambda, couple) } else { Vec::new() },
     }
 }
 
@@ -208,16 +209,16 @@ fn shape(nodes: &[[f64; 3]], diameters: f64) -> Shape {
 }
 
 fn sources(lambda: Complex64, couple: &Couple) -> Vec<Source> {
-    let source = |kind, name: &str, kinetic, fed, damped| Source {
+    let source = |kind, name: &str, kinetic, energy_input, dissipation| Source {
         kind,
         name: name.into(),
-        share: Share { kinetic, strain: 1.1 * kinetic - 0.02, fed, damped },
+        share: Share { kinetic, strain: 1.1 * kinetic - 0.02, energy_input, dissipation },
         sensitivity: Some(Sensitivity {
             mass: Complex64::new(40.0 * kinetic, -900.0),
-            damping: Complex64::new(damped, 0.1),
+            damping: Complex64::new(dissipation, 0.1),
             stiffness: Complex64::new(-60.0 * kinetic, 1000.0),
         }),
-        friction: (kind == Kind::Contact).then(|| Complex64::new(2.0 * fed, 30.0)),
+        friction: (kind == Kind::Contact).then(|| Complex64::new(2.0 * energy_input, 30.0)),
     };
     let damping = couple.damping;
     vec![
@@ -229,8 +230,8 @@ fn sources(lambda: Complex64, couple: &Couple) -> Vec<Source> {
     ]
 }
 
-fn diagram(frictions: &[f64], brackets: &[(usize, [f64; 2])]) -> Diagram {
-    let mut values = frictions.to_vec();
+fn diagram(friction_values: &[f64], brackets: &[(usize, [f64; 2])]) -> Diagram {
+    let mut values = friction_values.to_vec();
     values.sort_by(f64::total_cmp);
     let place = |lambda: Complex64, mu: f64| {
         let all = COUPLES.iter().flat_map(|couple| couple.at(mu));

@@ -1,8 +1,8 @@
-//! The one place that decides what a study says: unstable, stable or unknown.
+//! The one place that decides the verdict of a study: unstable, stable or unknown.
 //!
-//! *Stable* is said only where nothing casts doubt on it: modes were found in the band, their number is confirmed, they
-//! were followed everywhere, and contact carries a force at every value. An instability is said with the doubts beside
-//! it.
+//! The verdict is *stable* only where nothing casts doubt on it: modes were found in the band, their number is
+//! confirmed, they were followed everywhere, and contact carries a force at every value. An instability is reported
+//! with the doubts beside it.
 
 use std::fmt::{self, Display};
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{Results, Value};
 
-/// What a study says.
+/// The verdict of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
@@ -22,7 +22,7 @@ pub enum Status {
     Unknown,
 }
 
-/// What a study says, and what casts doubt on it.
+/// The verdict, and the doubts about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// The answer.
@@ -38,7 +38,7 @@ pub enum Doubt {
     NoLoad,
     /// No sliding contact carries a force at these values.
     NoContact(Vec<f64>),
-    /// What the model has that cannot be meant.
+    /// Doubtful properties of the model.
     Implausible(String),
     /// No mode lies in the band, Hz.
     NoModes([f64; 2]),
@@ -84,12 +84,12 @@ impl Results {
     }
 
     fn doubts(&self) -> Vec<Doubt> {
-        let frictions = |wanted: &dyn Fn(&Value) -> bool| -> Vec<f64> {
+        let friction_values = |wanted: &dyn Fn(&Value) -> bool| -> Vec<f64> {
             self.asked().filter(|value| wanted(value)).map(|value| value.friction).collect()
         };
-        let open = frictions(&|value| !self.has_contact(value));
-        let not_converged = frictions(&|value| value.steps.last().is_some_and(|step| !step.converged));
-        let (n_asked, n_done) = (self.about.frictions.len(), self.asked().count());
+        let open = friction_values(&|value| !self.has_contact(value));
+        let not_converged = friction_values(&|value| value.steps.last().is_some_and(|step| !step.converged));
+        let (n_asked, n_done) = (self.about.friction_values.len(), self.asked().count());
         let has_modes = n_done == 0 || self.asked().any(|value| !value.modes.is_empty());
         let intervals = self.diagram.as_ref().map_or_else(Vec::new, |diagram| diagram.doubtful.clone());
         let ended = self.failure.iter().map(|failure| Doubt::Ended(failure.reason.clone()));
@@ -191,7 +191,7 @@ mod tests {
     /// A study of one value at which contact carries a force.
     fn study(unstable: bool) -> Results {
         let pairs = vec![Pair { sliding: true, ..Pair::default() }];
-        let about = About { band: [0.0, 6000.0], frictions: vec![0.4], pairs, ..About::default() };
+        let about = About { band: [0.0, 6000.0], friction_values: vec![0.4], pairs, ..About::default() };
         let forces =
             PairForces { counts: Counts { slip: 9, ..Counts::default() }, normal: 1000.0, ..PairForces::default() };
         let value =
@@ -201,7 +201,7 @@ mod tests {
 
     /// The status and the only reason of a study that was changed.
     #[track_caller]
-    fn said(change: impl FnOnce(&mut Results), unstable: bool) -> (Status, String) {
+    fn message(change: impl FnOnce(&mut Results), unstable: bool) -> (Status, String) {
         let mut results = study(unstable);
         change(&mut results);
         let verdict = results.verdict();
@@ -219,10 +219,10 @@ mod tests {
     #[test]
     fn what_rounding_alone_closes_shows_nothing() {
         for unstable in [false, true] {
-            let (status, reason) = said(|results| results.values[0].pairs[0].rounding = 2000.0, unstable);
+            let (status, reason) = message(|results| results.values[0].pairs[0].rounding = 2000.0, unstable);
             assert_eq!(status, Status::Unknown);
             assert!(reason.starts_with("no sliding contact carries a force at \u{3bc} = 0.4"), "{reason}");
-            let (status, reason) = said(|results| results.about.unloaded = true, unstable);
+            let (status, reason) = message(|results| results.about.unloaded = true, unstable);
             assert_eq!(status, Status::Unknown);
             assert!(reason.starts_with("no load presses"), "{reason}");
         }
@@ -238,7 +238,7 @@ mod tests {
             ("ended early: out of luck.", &|results| {
                 results.failure = Some(Failure { reason: "out of luck.".into(), ..Failure::default() });
             }),
-            ("1 of 2 friction values are missing", &|results| results.about.frictions.push(0.5)),
+            ("1 of 2 friction values are missing", &|results| results.about.friction_values.push(0.5)),
             ("2 found below 6000 Hz, 3 expected", &|results| {
                 results.values[0].count = Some(Count { below: 6000.0, expected: 3, found: 2 });
             }),
@@ -248,10 +248,10 @@ mod tests {
             }),
         ];
         for (reason, change) in changes {
-            let (status, text) = said(change, false);
+            let (status, text) = message(change, false);
             assert!(status == Status::Unknown && text.contains(reason), "{status:?} {text}");
             let no_modes = reason.starts_with("no mode");
-            assert_eq!(said(change, true).0, if no_modes { Status::Unknown } else { Status::Unstable });
+            assert_eq!(message(change, true).0, if no_modes { Status::Unknown } else { Status::Unstable });
         }
     }
 }

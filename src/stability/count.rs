@@ -18,6 +18,7 @@ use crate::Result;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Count {
     /// The frequency, Hz: the band's end, or a gap between modes near it.
+    #[serde(rename = "below_hz")]
     pub below: f64,
     /// By the Sturm count, or by a search before ([`Evidence`]).
     pub expected: usize,

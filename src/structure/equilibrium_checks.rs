@@ -59,7 +59,7 @@ fn torques_text(comm: &Comm, full: &FullModel, balance: &Balance) -> String {
         let (through, axis) = (rotation.through, rotation.axis);
         let held = balance.support_torque(comm, &full.mesh.nodes, |node: u32| of_part[node as usize], through, axis);
         let friction = -friction_torque(full, balance, rotation);
-        format!("torque that holds {}: {held:.3} N m; of friction on it: {friction:.3} N m\n", rotation.part)
+        format!("reaction torque on {}: {held:.3} N m; friction torque: {friction:.3} N m\n", rotation.part)
     });
     torques.collect()
 }

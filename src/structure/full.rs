@@ -115,12 +115,12 @@ impl FullModel {
         let gaps = match open[..] {
             [] => String::new(),
             _ => format!(
-                ", or close the gap of {}: a contact that may open holds only where it touches",
+                ", or close the gap of {}: a contact that may open constrains only where it touches",
                 open.join(", ")
             ),
         };
         Err(Error::input(format!(
-            "{}: held by nothing:\n{free}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
+            "{}: unconstrained:\n{free}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
             self.model.file.display()
         )))
     }

@@ -106,7 +106,7 @@ impl ReducedModel {
         let coordinate = |i: usize| match points.get(i / 3) {
             Some([x, y, z]) => format!("point,{},{},{x:e},{y:e},{z:e}", i / 3 + 1, ["x", "y", "z"][i % 3]),
             None if i < n_interface => format!("fixed-interface mode,{},,,,", i + 1 - 3 * points.len()),
-            None => format!("inertia mode,{},,,,", i + 1 - n_interface),
+            None => format!("residual mode,{},,,,", i + 1 - n_interface),
         };
         let of = |node: u32| {
             let free = (0..3).filter(move |&i| system.dofs.node_dofs(node)[i] >= 0);

@@ -14,7 +14,7 @@ use crate::stability::Mode;
 use crate::{Error, Result};
 
 impl FullModel {
-    /// Reads one part of a model, held by nothing and loaded by nothing. Collective.
+    /// Reads one part of a model, without constraints and loads. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] where there is no such part, or see [`FullModel::read`].

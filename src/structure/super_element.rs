@@ -61,7 +61,7 @@ impl FullModel {
             mesh_hash,
             program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
             friction: equilibrium.friction,
-            n_equations: system.dofs.n_global(),
+            n_dofs: system.dofs.n_global(),
             band: self.model.band,
             limit,
             friction_damping: self.model.friction_damping,

@@ -10,14 +10,14 @@ use serde_json::json;
 const WINDOW: [u32; 2] = [1400, 900];
 
 /// A study with one coupling, and its report, which begins with this sentence.
-fn reported(frictions: &str, sentence: &str) -> Place {
+fn reported(friction_values: &str, sentence: &str) -> Place {
     let place = Place::pads();
-    let band = ["--band", "0:1500", "--friction", frictions];
-    let said = place.run(&[&["stability", "brake.toml"][..], &band, &["-o", "run"]].concat());
-    assert_eq!(said.code, 0, "{}", said.err);
-    let said = place.run(&["report", "run", "--plots", "run/plots", "--paraview", "run/moving"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.starts_with(sentence), "{}", said.out);
+    let band = ["--band", "0:1500", "--friction", friction_values];
+    let finished = place.run(&[&["stability", "brake.toml"][..], &band, &["-o", "run"]].concat());
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    let finished = place.run(&["report", "run", "--plots", "run/plots", "--paraview", "run/moving"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(finished.out.starts_with(sentence), "{}", finished.out);
     place
 }
 
@@ -171,11 +171,11 @@ fn figures_and_motion_come_beside_the_page() {
     assert_eq!(files.len(), 24);
     assert!(files.iter().all(|file| Path::new(&place.path("run/moving")).join(file).is_file()));
     // What is there is not replaced unasked, and goes with the run that it belongs to.
-    let said = place.run(&["report", "run"]);
-    assert!(said.code == 2 && said.err.contains("--force"), "{}", said.err);
+    let finished = place.run(&["report", "run"]);
+    assert!(finished.code == 2 && finished.err.contains("--force"), "{}", finished.err);
     assert_eq!(place.run(&["report", "run", "--force"]).code, 0);
-    let said = place.run(&["static", "brake.toml", "--friction", "0.2", "-o", "run", "--force"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    let said = place.run(&["report", "run"]);
-    assert!(said.code == 2 && said.err.contains("has no modes"), "{}", said.err);
+    let finished = place.run(&["static", "brake.toml", "--friction", "0.2", "-o", "run", "--force"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    let finished = place.run(&["report", "run"]);
+    assert!(finished.code == 2 && finished.err.contains("has no modes"), "{}", finished.err);
 }

@@ -43,8 +43,8 @@ fn eigenvalues(table: &str) -> Vec<Complex64> {
 fn of_family(name: &str, value: &str, band: &str) -> Vec<Complex64> {
     let place = Place::empty();
     let file = data("matrices").join(name);
-    let said = place.run(&["modes", file.to_str().unwrap(), "--parameter", value, "--band", band, "-o", "out"]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&["modes", file.to_str().unwrap(), "--parameter", value, "--band", band, "-o", "out"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     eigenvalues(&place.read("out/modes.csv"))
 }
 
@@ -92,18 +92,19 @@ fn the_bicycles_eigenvalues_are_the_roots_of_its_quartic() {
     }
 }
 
-/// Eigenvalues 1/3, 1/2, 1, i and an infinite one; M is singular and unsymmetric. Real ones are told as divergence.
+/// Eigenvalues 1/3, 1/2, 1, i and an infinite one; M is singular and unsymmetric. Real ones are printed as divergence.
 #[test]
 fn qep1_with_its_singular_mass() {
     let place = Place::empty();
     let file = |name: &str| data("matrices").join(name).to_str().unwrap().to_owned();
     let [m, c, k] = ["qep1_m.mtx", "qep1_c.mtx", "qep1_k.mtx"].map(file);
-    let said = place.run(&["modes", "--mass", &m, "--damping", &c, "--stiffness", &k, "--band", "0:1", "-o", "out"]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished =
+        place.run(&["modes", "--mass", &m, "--damping", &c, "--stiffness", &k, "--band", "0:1", "-o", "out"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     let z = Complex64::new;
     let expected = [z(1.0 / 3.0, 0.0), z(0.5, 0.0), z(1.0, 0.0), z(0.0, 1.0)];
     assert_same(&eigenvalues(&place.read("out/modes.csv")), &expected, 1e-10);
-    assert_eq!(said.out.matches("real eigenvalue, divergence").count(), 3, "{}", said.out);
+    assert_eq!(finished.out.matches("real eigenvalue, divergence").count(), 3, "{}", finished.out);
 }
 
 /// Critical values where a growth rate passes zero; the bicycle weaves below 4.292 m/s and capsizes above 6.024.
@@ -122,9 +123,10 @@ fn hopf_points_of_families() {
     ] {
         let place = Place::empty();
         let file = data("matrices").join(family);
-        let said = place.run(&["modes", file.to_str().unwrap(), "--parameter", values, "--band", band, "-o", "out"]);
-        assert_eq!(said.code, 0, "{}", said.err);
-        assert!(!said.out.contains("not converged"), "{}", said.out);
+        let finished =
+            place.run(&["modes", file.to_str().unwrap(), "--parameter", values, "--band", band, "-o", "out"]);
+        assert_eq!(finished.code, 0, "{}", finished.err);
+        assert!(!finished.out.contains("not converged"), "{}", finished.out);
         let rows = columns(&place.read("out/hopf.csv"), &[parameter, "frequency_hz"]);
         assert_eq!(rows.len(), expected.len(), "{family}: {rows:?}");
         for (row, (value, hertz)) in rows.iter().zip(expected) {
@@ -176,14 +178,14 @@ proptest! {
         for (name, matrix) in [("m.mtx", &m), ("c.mtx", &c), ("k.mtx", &k)] {
             place.write(name, array(&(&d * matrix * &d)));
         }
-        let said = place.run(&["modes", "--mass", "m.mtx", "--damping", "c.mtx", "--stiffness", "k.mtx", "--band", "0:100", "-o", "out"]);
-        prop_assert_eq!(said.code, 0, "{}", said.err);
+        let finished = place.run(&["modes", "--mass", "m.mtx", "--damping", "c.mtx", "--stiffness", "k.mtx", "--band", "0:100", "-o", "out"]);
+        prop_assert_eq!(finished.code, 0, "{}", finished.err);
         assert_same(&eigenvalues(&place.read("out/modes.csv")), &expected, 1e-8);
     }
 }
 
 /// A chain of 60 masses, gyroscopic: `M x'' + G x' + K x = 0` with G skew. All its eigenvalues are imaginary; inertia
-/// is not asked.
+/// is not counted.
 #[test]
 fn a_gyroscopic_chain_has_all_its_modes_on_any_number_of_ranks() {
     const N: usize = 130;
@@ -206,9 +208,13 @@ fn a_gyroscopic_chain_has_all_its_modes_on_any_number_of_ranks() {
     for ranks in [1, 2, 3] {
         let folder = format!("out{ranks}");
         let all = [&arguments[..], &[&folder]].concat();
-        let said = if ranks == 1 { place.run(&all) } else { place.run_on(ranks, &all) };
-        assert_eq!(said.code, 0, "{}", said.err);
-        assert!(said.out.contains("C unsymmetric") && said.out.contains("neither is a proof"), "{}", said.out);
+        let finished = if ranks == 1 { place.run(&all) } else { place.run_on(ranks, &all) };
+        assert_eq!(finished.code, 0, "{}", finished.err);
+        assert!(
+            finished.out.contains("C unsymmetric") && finished.out.contains("neither is a proof"),
+            "{}",
+            finished.out
+        );
         let found = eigenvalues(&place.read(&format!("{folder}/modes.csv")));
         assert_eq!(found.len(), expected.len());
         for (z, omega) in found.iter().zip(&expected) {
@@ -262,23 +268,23 @@ fn formats_do_not_matter() {
     place.write("k2", petsc(&k));
     let modes = [0, 1, 2].map(|i| {
         let [m, k, out] = ["m", "k", "out"].map(|name| format!("{name}{i}"));
-        let said = place.run(&["modes", "--mass", &m, "--stiffness", &k, "--band", "0:10", "-o", &out]);
-        assert_eq!(said.code, 0, "{}", said.err);
+        let finished = place.run(&["modes", "--mass", &m, "--stiffness", &k, "--band", "0:10", "-o", &out]);
+        assert_eq!(finished.code, 0, "{}", finished.err);
         place.read(&format!("{out}/modes.csv"))
     });
     assert!(modes[0].lines().count() == 6 && modes[0] == modes[1] && modes[1] == modes[2], "{modes:?}");
 }
 
-/// A singular K, two coupled masses that nothing holds: the rigid motion is found, and said to be no trouble.
+/// A singular K, two coupled masses without constraints: the rigid motion is found and reported as such.
 #[test]
 fn a_free_structure_is_solved_about_a_shift() {
     let place = Place::empty();
     place.write("m.mtx", array(&DMatrix::identity(2, 2)));
     place.write("k.mtx", array(&DMatrix::from_row_slice(2, 2, &[1e6, -1e6, -1e6, 1e6])));
-    let said = place.run(&["modes", "--mass", "m.mtx", "--stiffness", "k.mtx", "--band", "0:1000", "-o", "out"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("K is singular") && !said.out.contains("unstable"), "{}", said.out);
-    assert!(said.out.contains("2 modes with |lambda| below 1000.0 Hz, as many as"), "{}", said.out);
+    let finished = place.run(&["modes", "--mass", "m.mtx", "--stiffness", "k.mtx", "--band", "0:1000", "-o", "out"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(finished.out.contains("K is singular") && !finished.out.contains("unstable"), "{}", finished.out);
+    assert!(finished.out.contains("2 modes with |lambda| below 1000.0 Hz, as many as"), "{}", finished.out);
     // The motion itself is a double zero with one vector: rounding leaves half of the digits.
     let found = columns(&place.read("out/modes.csv"), &["frequency_hz", "backward_error"]);
     let highest = found.last().unwrap();
@@ -286,14 +292,14 @@ fn a_free_structure_is_solved_about_a_shift() {
     assert!(found[..found.len() - 1].iter().all(|row| row[0] < 1e-3), "{found:?}");
 }
 
-/// Where the scaled matrix has lost its digits, the person is told.
+/// Where the scaled matrix has lost its digits, a warning is printed.
 #[test]
 fn an_ill_conditioned_stiffness_is_warned_of() {
     let place = Place::empty();
     let k = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0 + 1e-13]);
     place.write("m.mtx", array(&(1e-9 * DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0 + 1e-13]))));
     place.write("k.mtx", array(&k));
-    let said = place.run(&["modes", "--mass", "m.mtx", "--stiffness", "k.mtx", "--band", "0:10000", "-o", "out"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("warning: it is above 1e12"), "{}", said.out);
+    let finished = place.run(&["modes", "--mass", "m.mtx", "--stiffness", "k.mtx", "--band", "0:10000", "-o", "out"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(finished.out.contains("warning: it is above 1e12"), "{}", finished.out);
 }

@@ -1,12 +1,12 @@
 //! `--json`: one document on standard output for scripts, and errors as one on standard error.
 
-use crate::support::program::{Place, Said};
+use crate::support::program::{Finished, Place};
 use serde_json::Value;
 
 #[track_caller]
-fn document(said: &Said) -> Value {
-    assert_eq!((said.code, said.err.as_str()), (0, ""));
-    serde_json::from_str(&said.out).unwrap()
+fn document(finished: &Finished) -> Value {
+    assert_eq!((finished.code, finished.err.as_str()), (0, ""));
+    serde_json::from_str(&finished.out).unwrap()
 }
 
 /// Requires an object to have just these keys.
@@ -22,7 +22,7 @@ fn check_tells_what_a_model_is_on_two_ranks() {
     let check = document(&place.run(&["check", "brake.toml", "--json", "--contacts", "4"]));
     has_keys(
         &check,
-        "title mesh parts pairs layouts held_displacements connectors loads sum_of_loads_n warnings equations entries factor_gb",
+        "title mesh parts pairs layouts constrained_dofs connectors loads sum_of_loads_n warnings free_dofs entries factor_gb",
     );
     assert_eq!(check["parts"][0]["part"], "disc");
     // 30 x 30 x 10 mm of 7100 kg/m3.
@@ -39,9 +39,10 @@ fn check_tells_what_a_model_is_on_two_ranks() {
 #[test]
 fn a_run_tells_its_tables() {
     let place = Place::pads();
-    let said = place.run(&["stability", "brake.toml", "--band=0:1500", "--friction=0.2,0.4", "-o", "run", "--json"]);
-    let run = document(&said);
-    has_keys(&run, "about frictions branches hopf verdict warnings failure costs folder");
+    let finished =
+        place.run(&["stability", "brake.toml", "--band=0:1500", "--friction=0.2,0.4", "-o", "run", "--json"]);
+    let run = document(&finished);
+    has_keys(&run, "about values branches hopf verdict failure costs folder");
     assert_eq!((&run["folder"], run["failure"].is_null()), (&Value::from("run"), true));
     has_keys(&run["verdict"], "status reason text");
     assert_eq!((&run["verdict"]["status"], &run["verdict"]["reason"]), (&Value::from("unstable"), &Value::from("")));
@@ -53,7 +54,7 @@ fn a_run_tells_its_tables() {
             table.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect();
         (header, rows)
     };
-    let asked = run["frictions"].as_array().unwrap().iter().filter(|friction| friction["asked"] == true);
+    let asked = run["values"].as_array().unwrap().iter().filter(|friction| friction["asked"] == true);
     let asked: Vec<&Value> = asked.collect();
     assert_eq!(asked.len(), 2);
     let (header, modes) = rows("run/modes.csv");
@@ -83,14 +84,15 @@ fn a_run_tells_its_tables() {
 fn statics_and_reduction_have_documents_too() {
     let place = Place::blocks();
     let run = document(&place.run(&["static", "brake.toml", "--json"]));
-    assert!(run["verdict"].is_null() && run["frictions"][0]["modes"].is_null());
-    assert!((run["frictions"][0]["contact"][0]["normal_force_n"].as_f64().unwrap() - 1000.0).abs() < 1e-3);
+    assert!(run["verdict"].is_null() && run["values"][0]["modes"].as_array().unwrap().is_empty());
+    assert!((run["values"][0]["contact"][0]["normal_force_n"].as_f64().unwrap() - 1000.0).abs() < 1e-3);
     let arguments = ["reduce", "brake.toml", "--contacts", "4", "--limit", "240000", "--json"];
     let reduced = document(&place.run(&arguments));
     has_keys(
         &reduced,
-        "title model mesh mesh_sha256 friction limit_hz contacts retained_points fixed_interface_modes inertia_modes coordinates \
-         equations_of_the_model constraint_seconds fixed_interface_seconds projection_seconds seconds file",
+        "title model mesh mesh_sha256 program friction dofs_of_the_model band_hz limit_hz friction_damping contacts retained_points \
+         fixed_interface_modes residual_modes coordinates constraint_seconds fixed_interface_seconds fixed_interface_solves \
+         projection_seconds seconds file",
     );
     assert_eq!((&reduced["contacts"], &reduced["file"]), (&Value::from(4), &Value::from("brake.se.h5")));
 }
@@ -98,9 +100,9 @@ fn statics_and_reduction_have_documents_too() {
 #[test]
 fn errors_are_documents_on_two_ranks() {
     let place = Place::empty();
-    for said in [place.run(&["check", "none.toml", "--json"]), place.run_on(2, &["check", "none.toml", "--json"])] {
-        assert_eq!((said.code, said.out.as_str()), (2, ""), "{}", said.err);
-        let error: Value = serde_json::from_str(said.err.lines().next().unwrap()).unwrap();
+    for finished in [place.run(&["check", "none.toml", "--json"]), place.run_on(2, &["check", "none.toml", "--json"])] {
+        assert_eq!((finished.code, finished.out.as_str()), (2, ""), "{}", finished.err);
+        let error: Value = serde_json::from_str(finished.err.lines().next().unwrap()).unwrap();
         has_keys(&error, "error exit_code");
         assert_eq!(error["exit_code"], 2);
         assert!(error["error"].as_str().unwrap().contains("none.toml"));

@@ -1,21 +1,21 @@
 //! An equilibrium that cannot be found: exit code 3, what was tried, and the last state to look at.
 
 use crate::support::pad_on_disc::PadOnDisc;
-use crate::support::program::{Place, Said, swap};
+use crate::support::program::{Finished, Place, swap};
 
 /// Requires the report of a solve that gave up, on one rank.
 #[track_caller]
-fn gave_up(place: &Place, said: &Said, says: &[&str]) {
-    gave_up_with(place, said, says, "last_state.vtu");
+fn gave_up(place: &Place, finished: &Finished, parts: &[&str]) {
+    gave_up_with(place, finished, parts, "last_state.vtu");
 }
 
 /// The same, with the name of the last state's file.
 #[track_caller]
-fn gave_up_with(place: &Place, said: &Said, says: &[&str], last_state: &str) {
-    let Said { code, err, .. } = said;
+fn gave_up_with(place: &Place, finished: &Finished, parts: &[&str], last_state: &str) {
+    let Finished { code, err, .. } = finished;
     assert_eq!(*code, 3, "{err}");
     assert_eq!(err.lines().filter(|line| line.starts_with("error")).count(), 1, "one message: {err}");
-    for part in says {
+    for part in parts {
         assert!(err.contains(part), "{part:?} is not in: {err}");
     }
     assert!(err.contains(&format!("The last state is in run/{last_state}\n")), "{err}");
@@ -42,21 +42,21 @@ const PULLED: [&str; 5] = [
 #[test]
 fn a_load_that_pulls_the_pad_off() {
     let place = pulled();
-    let said = place.run(&["static", "brake.toml", "-o", "run"]);
-    gave_up(&place, &said, &PULLED);
+    let finished = place.run(&["static", "brake.toml", "-o", "run"]);
+    gave_up(&place, &finished, &PULLED);
     let steps = place.read("run/convergence.csv");
     assert_eq!(steps.lines().filter(|line| line.contains("contact without friction")).count(), 41, "{steps}");
     // A run that failed is a run: it can be replaced.
-    let said = place.run(&["stability", "brake.toml", "-o", "run", "--force"]);
-    gave_up(&place, &said, &PULLED);
-    assert!(!said.out.contains("stable"), "no verdict without modes: {}", said.out);
+    let finished = place.run(&["stability", "brake.toml", "-o", "run", "--force"]);
+    gave_up(&place, &finished, &PULLED);
+    assert!(!finished.out.contains("stable"), "no verdict without modes: {}", finished.out);
 }
 
 #[test]
 fn a_load_that_pulls_the_pad_off_two_ranks() {
     let place = pulled();
-    let said = place.run_on(2, &["static", "brake.toml", "-o", "run"]);
-    gave_up_with(&place, &said, &PULLED, "last_state.pvtu");
+    let finished = place.run_on(2, &["static", "brake.toml", "-o", "run"]);
+    gave_up_with(&place, &finished, &PULLED, "last_state.pvtu");
 }
 
 /// Too few iterations for the status of the points to settle: what flickers is named.
@@ -64,20 +64,20 @@ fn a_load_that_pulls_the_pad_off_two_ranks() {
 fn too_few_iterations() {
     let place = Place::blocks();
     let few = ["--petsc", "-equilibrium_snes_max_it 4"];
-    let said = place.run(&[&["static", "brake.toml", "-o", "run", "--friction", "1.9"][..], &few].concat());
-    gave_up(&place, &said, &["Flickering pair: disc / pad ("]);
+    let finished = place.run(&[&["static", "brake.toml", "-o", "run", "--friction", "1.9"][..], &few].concat());
+    gave_up(&place, &finished, &["Flickering pair: disc / pad ("]);
 }
 
 /// What a sweep has found before it fails is kept. At high friction the pad digs into the disc.
 #[test]
 fn a_sweep_keeps_what_it_has() {
     let place = Place::blocks();
-    let said = place.run(&["stability", "brake.toml", "-o", "run", "--friction", "0,0.4,1.9"]);
-    gave_up(&place, &said, &["no equilibrium at friction 1.", "the last one is at 1."]);
+    let finished = place.run(&["stability", "brake.toml", "-o", "run", "--friction", "0,0.4,1.9"]);
+    gave_up(&place, &finished, &["no equilibrium at friction 1.", "the last one is at 1."]);
     let modes = place.read("run/contact.csv");
-    let frictions: Vec<&str> = modes.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
-    assert_eq!(frictions, ["0", "0.4"]);
+    let friction_values: Vec<&str> = modes.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+    assert_eq!(friction_values, ["0", "0.4"]);
     assert!(place.list("run").contains(&"equilibrium_mu0.400.vtu".into()));
-    assert!(said.out.contains("\nunknown: no mode lies in the band from 0 to 20000 Hz"), "{}", said.out);
-    assert!(said.out.contains("\ndoubt: the study ended early: no equilibrium at friction 1."), "{}", said.out);
+    assert!(finished.out.contains("\nunknown: no mode lies in the band from 0 to 20000 Hz"), "{}", finished.out);
+    assert!(finished.out.contains("\ndoubt: the study ended early: no equilibrium at friction 1."), "{}", finished.out);
 }

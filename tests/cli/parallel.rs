@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
-use crate::support::program::{Place, Said, run_test_on_two_ranks};
+use crate::support::program::{Finished, Place, run_test_on_two_ranks};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use squeal::native::Session;
@@ -18,7 +18,7 @@ fn numbers(table: &str) -> Vec<Vec<f64>> {
 fn stability(ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let place = Place::pads();
     let arguments = ["stability", "brake.toml", "--band", "0:1500", "-o", "run"];
-    let Said { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
+    let Finished { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
     assert_eq!(code, 0, "{err}");
     assert!(!place.path("pieces").exists(), "{ranks} ranks wrote beside their folder");
     let modes = numbers(&place.read("run/modes.csv")).iter().map(|row| [row[2], row[3]]).collect();
@@ -68,19 +68,20 @@ fn displacements(text: &str) -> (Displacements, usize) {
 #[test]
 fn pieces_add_up_to_the_whole() {
     let place = Place::pads();
-    let before_the_dofs =
-        |said: &Said| said.out.lines().take_while(|l| !l.contains("free dofs")).collect::<Vec<_>>().join("\n");
+    let before_the_dofs = |finished: &Finished| {
+        finished.out.lines().take_while(|l| !l.contains("free dofs")).collect::<Vec<_>>().join("\n")
+    };
     let alone = place.run(&["check", "brake.toml"]);
-    let said = place.run(&["static", "brake.toml", "--friction", "0.4", "-o", "1"]);
-    assert_eq!((alone.code, said.code), (0, 0), "{}{}", alone.err, said.err);
+    let finished = place.run(&["static", "brake.toml", "--friction", "0.4", "-o", "1"]);
+    assert_eq!((alone.code, finished.code), (0, 0), "{}{}", alone.err, finished.err);
     let (whole, n_cells) = displacements(&place.read("1/equilibrium_mu0.400.vtu"));
     let largest = whole.values().flatten().flatten().fold(0.0, |most: f32, u| most.max(u.abs()));
     for ranks in [2, 3] {
         let check = place.run_on(ranks, &["check", "brake.toml"]);
         assert_eq!(before_the_dofs(&check), before_the_dofs(&alone));
         let folder = ranks.to_string();
-        let said = place.run_on(ranks, &["static", "brake.toml", "--friction", "0.4", "-o", &folder]);
-        assert_eq!(said.code, 0, "{}", said.err);
+        let finished = place.run_on(ranks, &["static", "brake.toml", "--friction", "0.4", "-o", &folder]);
+        assert_eq!(finished.code, 0, "{}", finished.err);
         let list = place.read(&format!("{folder}/equilibrium_mu0.400.pvtu"));
         let (mut seen, mut cells) = (HashSet::new(), 0);
         for rank in 0..ranks {
@@ -104,32 +105,32 @@ fn pieces_add_up_to_the_whole() {
 }
 
 /// Runs one of the tests below, which are told apart from tests by `ignore`, on two ranks.
-fn on_two_ranks(name: &str) -> Said {
+fn on_two_ranks(name: &str) -> Finished {
     let start = Instant::now();
-    let said = run_test_on_two_ranks(&format!("parallel::{name}"));
+    let finished = run_test_on_two_ranks(&format!("parallel::{name}"));
     assert!(start.elapsed() < Duration::from_secs(60), "{name} hung");
-    said
+    finished
 }
 
 #[test]
 fn a_panic_on_one_rank_ends_all() {
-    let said = on_two_ranks("rank_one_panics");
-    assert_eq!(said.code, 101, "{}", said.err);
-    assert!(said.err.contains("rank 1 has a bug"), "{}", said.err);
+    let finished = on_two_ranks("rank_one_panics");
+    assert_eq!(finished.code, 101, "{}", finished.err);
+    assert!(finished.err.contains("rank 1 has a bug"), "{}", finished.err);
 }
 
 #[test]
 fn an_error_of_the_library_on_one_rank_ends_all() {
-    let said = on_two_ranks("rank_one_fails");
-    assert_eq!(said.code, 1, "{}", said.err);
-    assert!(said.err.contains("error on rank 1: MUMPS: it has a bug"), "{}", said.err);
+    let finished = on_two_ranks("rank_one_fails");
+    assert_eq!(finished.code, 1, "{}", finished.err);
+    assert!(finished.err.contains("error on rank 1: MUMPS: it has a bug"), "{}", finished.err);
 }
 
 #[test]
 fn an_input_error_on_one_rank_is_told_once_by_the_first() {
-    let said = on_two_ranks("rank_one_misses_a_file");
-    assert_eq!(said.code, 2, "{}", said.err);
-    assert_eq!(said.err.matches("error: rank 1 has no such file").count(), 1, "{}", said.err);
+    let finished = on_two_ranks("rank_one_misses_a_file");
+    assert_eq!(finished.code, 2, "{}", finished.err);
+    assert_eq!(finished.err.matches("error: rank 1 has no such file").count(), 1, "{}", finished.err);
 }
 
 /// Runs `work` as the program runs a command, while the other rank waits for this one.
@@ -170,15 +171,15 @@ fn rank_one_misses_a_file() {
 
 #[test]
 fn numbers_and_values_reach_other_ranks() {
-    let said = on_two_ranks("ranks_exchange_numbers_and_values");
-    assert_eq!(said.code, 0, "{} {}", said.out, said.err);
+    let finished = on_two_ranks("ranks_exchange_numbers_and_values");
+    assert_eq!(finished.code, 0, "{} {}", finished.out, finished.err);
 }
 
 #[test]
 fn an_error_of_mpi_ends_all() {
-    let said = on_two_ranks("ranks_broadcast_from_a_rank_that_is_not_there");
-    assert_eq!(said.code, 1, "{}", said.err);
-    assert!(said.err.contains("MPI_Bcast failed: MPI_ERR_ROOT"), "{}", said.err);
+    let finished = on_two_ranks("ranks_broadcast_from_a_rank_that_is_not_there");
+    assert_eq!(finished.code, 1, "{}", finished.err);
+    assert!(finished.err.contains("MPI_Bcast failed: MPI_ERR_ROOT"), "{}", finished.err);
 }
 
 #[test]

@@ -11,10 +11,14 @@ const BAND: &str = "--band=0:60000";
 fn reduced() -> Place {
     let reduction = "[reduction]\ncontacts = 4\nband = [0, 240000]\n";
     let place = Place::with_blocks(|text| text + reduction, &PadOnDisc::default());
-    let said = place.run(&REDUCE);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("4 contacts, 9 retained points"), "{}", said.out);
-    assert!(said.out.contains("one LDL^T factor") && said.out.contains("results in brake.se.h5"), "{}", said.out);
+    let finished = place.run(&REDUCE);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(finished.out.contains("4 contacts, 9 retained points"), "{}", finished.out);
+    assert!(
+        finished.out.contains("one LDL^T factor") && finished.out.contains("results in brake.se.h5"),
+        "{}",
+        finished.out
+    );
     place
 }
 
@@ -42,8 +46,8 @@ fn a_super_element_has_the_modes_of_its_model() {
     let place = reduced();
     let full = ["stability", "brake.toml", "--contacts", "4", "--friction", "0.4", "--output", "full", BAND];
     assert_eq!(place.run(&full).code, 0);
-    let said = place.run(&["stability", "brake.se.h5", "--output", "reduced", BAND]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&["stability", "brake.se.h5", "--output", "reduced", BAND]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     assert_same(&modes(&place, "reduced"), &modes(&place, "full"), 1e-6);
     let each =
         ["stability", "brake.toml", "--contacts", "4", "--friction", "0.4", "--reduce-each", "--output", "each", BAND];
@@ -51,24 +55,25 @@ fn a_super_element_has_the_modes_of_its_model() {
     assert_same(&modes(&place, "each"), &modes(&place, "reduced"), 1e-9);
     let files = place.list("reduced");
     assert!(files.iter().any(|name| name == "equilibrium_mu0.400.vtu"), "{files:?}");
-    let said = place.run(&["static", "brake.se.h5", "--friction", "0.2", "--law", "cubic:1e9,1e19", "--pressure", "2"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("disc / pad"), "{}", said.out);
+    let finished =
+        place.run(&["static", "brake.se.h5", "--friction", "0.2", "--law", "cubic:1e9,1e19", "--pressure", "2"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(finished.out.contains("disc / pad"), "{}", finished.out);
 }
 
 #[test]
 fn two_ranks_make_and_use_the_same_super_element() {
     let place = reduced();
     assert_eq!(place.run(&["stability", "brake.se.h5", "--output", "one", BAND]).code, 0);
-    let said = place.run_on(2, &[&REDUCE[..6], &["--output", "two.se.h5"]].concat());
-    assert_eq!(said.code, 0, "{}", said.err);
-    let said = place.run_on(2, &["stability", "two.se.h5", "--output", "two", BAND]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run_on(2, &[&REDUCE[..6], &["--output", "two.se.h5"]].concat());
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    let finished = place.run_on(2, &["stability", "two.se.h5", "--output", "two", BAND]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     assert_same(&modes(&place, "two"), &modes(&place, "one"), 1e-8);
     // The first rank works alone, and all end together.
-    assert!(said.out.contains(" on 1 rank:"), "{}", said.out);
-    let said = place.run_on(2, &["stability", "two.se.h5", "--contacts", "12"]);
-    assert_eq!((said.code, said.err.matches("--contacts is for models").count()), (2, 1), "{}", said.err);
+    assert!(finished.out.contains(" on 1 rank:"), "{}", finished.out);
+    let finished = place.run_on(2, &["stability", "two.se.h5", "--contacts", "12"]);
+    assert_eq!((finished.code, finished.err.matches("--contacts is for models").count()), (2, 1), "{}", finished.err);
 }
 
 #[test]
@@ -112,11 +117,15 @@ fn what_a_super_element_does_not_hold_is_refused() {
     assert_refused(&with(&["--law", "cubic"]), &["no coefficients"]);
     assert_refused(&with(&["--pressure", "-1"]), &["not a number above 0"]);
     assert!(!place.path("none").exists());
-    let said = with(&["--band", "0:121000"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.err.contains("warning") && said.err.contains("above 120000 Hz are less exact"), "{}", said.err);
-    let said = place.run(&["stability", "brake.toml", "--law", "linear:1e9", "--output", "model"]);
-    assert_refused(&said, &["--law and --pressure are for super-elements"]);
+    let finished = with(&["--band", "0:121000"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(
+        finished.err.contains("warning") && finished.err.contains("above 120000 Hz are less exact"),
+        "{}",
+        finished.err
+    );
+    let finished = place.run(&["stability", "brake.toml", "--law", "linear:1e9", "--output", "model"]);
+    assert_refused(&finished, &["--law and --pressure are for super-elements"]);
 }
 
 #[test]
@@ -138,9 +147,9 @@ fn a_reduction_that_cannot_be_made_writes_nothing() {
 #[test]
 fn check_shows_and_draws_a_layout() {
     let place = Place::blocks();
-    let said = place.run(&["check", "brake.toml", "--contacts", "4", "--output", "cells.vtu"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("disc / pad: 4 reference nodes, cells of 100.0 to 100.0 mm2"), "{}", said.out);
+    let finished = place.run(&["check", "brake.toml", "--contacts", "4", "--output", "cells.vtu"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(finished.out.contains("disc / pad: 4 reference nodes, cells of 100.0 to 100.0 mm2"), "{}", finished.out);
     let picture = place.read("cells.vtu");
     roxmltree::Document::parse(&picture).unwrap();
     assert!(picture.contains("Name=\"cell\"") && picture.contains("NumberOfCells=\"24\""));

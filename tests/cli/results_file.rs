@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::support::pad_on_disc::PadOnDisc;
-use crate::support::program::{Place, Said};
+use crate::support::program::{Finished, Place};
 use squeal::results::{ModeData, Results, Shape, file};
 
 fn results(place: &Place, folder: &str) -> Results {
@@ -36,15 +36,15 @@ fn is_scaled(shape: &Shape) -> bool {
 #[test]
 fn python_reads_the_file_in_five_lines() {
     let place = Place::pads();
-    let said =
+    let finished =
         place.run(&["stability", "brake.toml", "--band", "0:1500", "--friction", "0.4", "-o", "brake-stability"]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/manual/src/files.md");
     let page = std::fs::read_to_string(page).unwrap();
     let script = page.split("```python\n").nth(1).unwrap().split("```").next().unwrap();
     assert!(script.lines().count() <= 5 && script.contains("h5py"), "{script}");
     let python = Command::new("/usr/bin/python3").args(["-c", script]).current_dir(place.path("")).output().unwrap();
-    let Said { code, out, err } = python.into();
+    let Finished { code, out, err } = python.into();
     assert_eq!(code, 0, "{err}");
     let numbers = |text: &str, separator: char| -> Vec<Vec<f64>> {
         text.lines().map(|line| line.split(separator).filter_map(|word| word.parse().ok()).collect()).collect()
@@ -67,8 +67,8 @@ fn two_ranks_write_what_one_writes() {
     let place = Place::pads();
     let arguments =
         |folder: &'static str| ["stability", "brake.toml", "--band", "0:1500", "--friction", "0.4", "-o", folder];
-    for said in [place.run(&arguments("one")), place.run_on(2, &arguments("two"))] {
-        assert_eq!(said.code, 0, "{}", said.err);
+    for finished in [place.run(&arguments("one")), place.run_on(2, &arguments("two"))] {
+        assert_eq!(finished.code, 0, "{}", finished.err);
     }
     let [one, two] = ["one", "two"].map(|folder| results(&place, folder));
     assert_eq!((&one.surface, one.about.n_ranks, two.about.n_ranks), (&two.surface, 1, 2));
@@ -103,8 +103,8 @@ fn a_super_element_has_the_shapes_of_its_model_on_two_ranks() {
     let reduction = "[reduction]\ncontacts = 4\nband = [0, 240000]\n";
     let place = Place::with_blocks(|text| text + reduction, &PadOnDisc::default());
     let run = |arguments: &[&str], ranks: usize| {
-        let said = if ranks == 1 { place.run(arguments) } else { place.run_on(ranks, arguments) };
-        assert_eq!(said.code, 0, "{}", said.err);
+        let finished = if ranks == 1 { place.run(arguments) } else { place.run_on(ranks, arguments) };
+        assert_eq!(finished.code, 0, "{}", finished.err);
     };
     let (band, friction) = ("--band=0:60000", "--friction=0.4");
     run(&["reduce", "brake.toml", "--contacts", "4", "-o", "brake.se.h5"], 1);

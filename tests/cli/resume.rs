@@ -10,10 +10,10 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::program::{Place, Said, mpirun, swap};
+use crate::support::program::{Finished, Place, mpirun, swap};
 use squeal::results::{Results, Value, file};
 
-/// A sweep in which two modes couple between the frictions asked for.
+/// A sweep in which two modes couple between the friction values asked for.
 const SWEEP: [&str; 6] = ["stability", "brake.toml", "--band=0:1500", "--friction=0.2,0.4", "-o", "run"];
 
 /// Starts the program without waiting for it.
@@ -55,7 +55,7 @@ fn signal(name: &str, process: u32) {
     assert!(sent.success());
 }
 
-fn end(child: Child) -> Said {
+fn end(child: Child) -> Finished {
     child.wait_with_output().unwrap().into()
 }
 
@@ -133,9 +133,9 @@ fn kill_and_go_on(place: &Place, expected: &Results, chance: &mut Chance, n_kill
         assert!(!place.path("run").exists(), "nothing half written under the name");
     }
     if !place.path("run").exists() {
-        let said = place.run(&SWEEP);
-        assert_eq!(said.code, 0, "{}", said.err);
-        assert!(n_done(place) == 0 && said.out.contains("that an earlier run has found"), "{}", said.out);
+        let finished = place.run(&SWEEP);
+        assert_eq!(finished.code, 0, "{}", finished.err);
+        assert!(n_done(place) == 0 && finished.out.contains("that an earlier run has found"), "{}", finished.out);
     }
     assert_same(&results(place, "run"), expected);
     assert!(!place.path(".run.unfinished").exists());
@@ -155,8 +155,8 @@ fn n_rounds(default: usize) -> usize {
 #[test]
 fn a_killed_run_goes_on() {
     let place = Place::pads();
-    let said = place.run(&SWEEP);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&SWEEP);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     std::fs::rename(place.path("run"), place.path("expected")).unwrap();
     let expected = results(&place, "expected");
     let hopf = &expected.diagram.as_ref().unwrap().hopf;
@@ -180,11 +180,11 @@ fn a_killed_rank_ends_a_run_that_goes_on() {
     signal("KILL", children.split_whitespace().last().unwrap().parse().unwrap());
     assert_ne!(end(child).code, 0);
     assert!(!place.path("run").exists() && n_done(&place) >= 1);
-    let said = place.run(&arguments);
-    assert_eq!(said.code, 2, "{}", said.err);
-    assert!(said.err.contains("number of ranks was 2, is 1"), "{}", said.err);
-    let said = place.run_on(2, &arguments);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&arguments);
+    assert_eq!(finished.code, 2, "{}", finished.err);
+    assert!(finished.err.contains("number of ranks was 2, is 1"), "{}", finished.err);
+    let finished = place.run_on(2, &arguments);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     let alone = place.run(&[&arguments[..5], &["alone"]].concat());
     assert_eq!(alone.code, 0, "{}", alone.err);
     assert_same(&results(&place, "run"), &results(&place, "alone"));
@@ -195,15 +195,15 @@ fn a_killed_rank_ends_a_run_that_goes_on() {
 fn friction_damping_goes_on() {
     let place = Place::with_pads(|text| swap(&text, "[stability]", "[stability]\nfriction_damping = true"));
     let arguments = ["stability", "brake.toml", "--band=0:1000", "--friction=0.2,0.25,0.3", "-o", "run"];
-    let said = place.run(&arguments);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&arguments);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     std::fs::rename(place.path("run"), place.path("expected")).unwrap();
     let mut child = start(&place, 1, &arguments);
     wait_for(&place, &mut child, 2);
     child.kill().unwrap();
     end(child);
-    let said = place.run(&arguments);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&arguments);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     assert_same(&results(&place, "run"), &results(&place, "expected"));
 }
 
@@ -216,7 +216,7 @@ fn ctrl_c_ends_after_the_friction_at_hand() {
         let n = n_done(&place);
         wait_for(&place, &mut child, n + 2);
         signal(name, child.id());
-        let Said { code: found, out, err } = end(child);
+        let Finished { code: found, out, err } = end(child);
         assert_eq!((found, out.as_str()), (code, ""), "{err}");
         for part in [
             "stopping after this value; a second signal",
@@ -227,10 +227,10 @@ fn ctrl_c_ends_after_the_friction_at_hand() {
         }
         assert!(!err.contains("error") && n_done(&place) > n && !place.path("run").exists(), "{err}");
     }
-    let said = place.run(&arguments);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&arguments);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     assert_eq!(results(&place, "run").values.len(), 501);
-    assert!(said.err.contains("an earlier run has finished"), "{}", said.err);
+    assert!(finished.err.contains("an earlier run has finished"), "{}", finished.err);
 }
 
 #[test]
@@ -240,19 +240,19 @@ fn what_was_begun_otherwise_is_not_gone_on_with() {
     let mut child = start(&place, 1, &with("--friction=0:1:0.002"));
     wait_for(&place, &mut child, 2);
     // Two runs do not write one folder.
-    let said = place.run(&with("--friction=0:1:0.002"));
-    assert!(said.code == 2 && said.err.contains("another run is writing run"), "{}", said.err);
+    let finished = place.run(&with("--friction=0:1:0.002"));
+    assert!(finished.code == 2 && finished.err.contains("another run is writing run"), "{}", finished.err);
     child.kill().unwrap();
     end(child);
-    let refused = |says: &str| {
-        let said = place.run(&with("--friction=0:1:0.002"));
-        assert_eq!(said.code, 2, "{}", said.err);
-        for part in ["run is unfinished (", says, "--force to begin again"] {
-            assert!(said.err.contains(part), "{part}: {}", said.err);
+    let refused = |parts: &str| {
+        let finished = place.run(&with("--friction=0:1:0.002"));
+        assert_eq!(finished.code, 2, "{}", finished.err);
+        for part in ["run is unfinished (", parts, "--force to begin again"] {
+            assert!(finished.err.contains(part), "{part}: {}", finished.err);
         }
     };
-    let said = place.run(&with("--friction=0.1"));
-    assert!(said.code == 2 && said.err.contains("friction values was 0, 0.002, "), "{}", said.err);
+    let finished = place.run(&with("--friction=0.1"));
+    assert!(finished.code == 2 && finished.err.contains("friction values was 0, 0.002, "), "{}", finished.err);
     let model = place.read("brake.toml");
     place.write("brake.toml", swap(&model, "-1000", "-1001"));
     refused("SHA-256 of the model was ");
@@ -263,11 +263,11 @@ fn what_was_begun_otherwise_is_not_gone_on_with() {
     place.write("blocks.msh", &mesh);
     let value = std::fs::read(place.path(".run.unfinished/.resume/value-0001.h5")).unwrap();
     place.write(".run.unfinished/.resume/value-0001.h5", &value[..value.len() / 2]);
-    let said = place.run(&with("--friction=0:1:0.002"));
-    assert!(said.code == 2 && said.err.contains("value-0001.h5 is incomplete or damaged"), "{}", said.err);
-    let said = place.run(&[&with("--friction=0.1")[..], &["--force"]].concat());
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert_eq!(results(&place, "run").about.frictions, [0.1]);
+    let finished = place.run(&with("--friction=0:1:0.002"));
+    assert!(finished.code == 2 && finished.err.contains("value-0001.h5 is incomplete or damaged"), "{}", finished.err);
+    let finished = place.run(&[&with("--friction=0.1")[..], &["--force"]].concat());
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert_eq!(results(&place, "run").about.friction_values, [0.1]);
 }
 
 /// What fits on the disc is kept, and the run goes on when there is room.
@@ -284,12 +284,12 @@ fn a_full_disc_is_told() {
     wait_for(&place, &mut child, 1);
     let limit = Command::new("prlimit").args(["--pid", &child.id().to_string(), "--fsize=4096"]).status().unwrap();
     assert!(limit.success());
-    let said = end(child);
-    assert_eq!(said.code, 1, "{}", said.err);
-    assert!(said.err.contains("File too large") && said.err.contains(".run.unfinished"), "{}", said.err);
+    let finished = end(child);
+    assert_eq!(finished.code, 1, "{}", finished.err);
+    assert!(finished.err.contains("File too large") && finished.err.contains(".run.unfinished"), "{}", finished.err);
     assert!(!place.path("run").exists() && n_done(&place) >= 1);
-    let said = place.run(&arguments);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let finished = place.run(&arguments);
+    assert_eq!(finished.code, 0, "{}", finished.err);
     assert_eq!(results(&place, "run").values.len(), 51);
     assert!(Path::new(&place.path("run/equilibrium_mu0.500.vtu")).exists());
 }

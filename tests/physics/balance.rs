@@ -12,8 +12,8 @@ use squeal::structure::FullModel;
 /// Hydraulic force, N.
 const CLAMP: f64 = 12000.0;
 
-/// From rest through all frictions: forces and moments balance to 1e-6 of the clamp force (measured 2e-12), the pads
-/// carry it (the pins take what they are stiff along their axis, measured 0.07 %), the hub holds the torque of
+/// From rest through all friction values: forces and moments balance to 1e-6 of the clamp force (measured 2e-12), the
+/// pads carry it (the pins take what they are stiff along their axis, measured 0.07 %), the hub holds the torque of
 /// friction.
 #[test]
 fn equilibria_balance_at_every_friction() {

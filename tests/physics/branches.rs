@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 
 use crate::support::data;
-use crate::support::program::{Place, Said};
+use crate::support::program::{Finished, Place};
 use squeal::analysis::{FrictionFamily, Snapshot, Sweep, tracking_options, widened};
 use squeal::native::{Comm, Session};
 use squeal::structure::FullModel;
@@ -80,8 +80,8 @@ fn the_program_reports_where_a_mode_becomes_unstable_on_two_ranks() {
     let place = Place::pads();
     let arguments = ["stability", "brake.toml", "--band", "0:1500", "--friction", "0.2,0.4", "-o"];
     let with = |folder: &'static str| [&arguments[..], &[folder]].concat();
-    for said in [place.run(&with("one")), place.run_on(2, &with("two"))] {
-        let Said { code, out, err } = said;
+    for finished in [place.run(&with("one")), place.run_on(2, &with("two"))] {
+        let Finished { code, out, err } = finished;
         assert_eq!(code, 0, "{err}");
         for part in [
             "unstable from friction 0.304",
@@ -113,8 +113,9 @@ fn the_program_reports_where_a_mode_becomes_unstable_on_two_ranks() {
 #[test]
 fn branches_can_be_left_out() {
     let place = Place::pads();
-    let said = place.run(&["stability", "brake.toml", "--band", "0:1500", "--friction", "0.2,0.4", "--no-branches"]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(!said.out.contains("branches.csv") && said.out.contains("explained.csv"), "{}", said.out);
+    let finished =
+        place.run(&["stability", "brake.toml", "--band", "0:1500", "--friction", "0.2,0.4", "--no-branches"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(!finished.out.contains("branches.csv") && finished.out.contains("explained.csv"), "{}", finished.out);
     assert_eq!(place.read("brake-stability/modes.csv").lines().count(), 11);
 }

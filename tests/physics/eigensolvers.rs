@@ -53,8 +53,8 @@ fn eigensolvers_agree_on_a_damped_brake() {
     assert!(distance(&both(&small_brake(), 0.5)) < 1e-9);
 }
 
-/// The modes at the last of some frictions, found in blocks after those at the others.
-fn in_blocks_along(comm: &Comm, frictions: &[f64]) -> Band {
+/// The modes at the last of some friction values, found in blocks after those at the others.
+fn in_blocks_along(comm: &Comm, friction_values: &[f64]) -> Band {
     let brake = FullModel::read(comm, &small_brake()).unwrap();
     let families = brake.families().unwrap();
     let system = brake.assemble(comm, &families).unwrap();
@@ -64,7 +64,7 @@ fn in_blocks_along(comm: &Comm, frictions: &[f64]) -> Band {
         let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
         sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap()
     };
-    frictions.iter().map(&mut modes_at).last().unwrap()
+    friction_values.iter().map(&mut modes_at).last().unwrap()
 }
 
 #[test]

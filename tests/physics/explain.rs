@@ -87,26 +87,26 @@ fn energies_balance_and_sensitivities_are_derivatives() {
     }
 }
 
-/// Shares add up to 1 to 1e-12 by their definition; feed-in less dissipation is the growth rate to 1e-6 of what passes
-/// [2e-9].
+/// Shares add up to 1 to 1e-12 by their definition; energy input less dissipation is the growth rate to 1e-6 of what
+/// passes [2e-9].
 fn balance(mode: &Mode, sources: &[Source]) {
     let sum = |of: fn(&Source) -> f64| sources.iter().map(of).sum::<f64>();
     assert_close("kinetic energy", sum(|s| s.share.kinetic), 1.0, 1e-12);
     assert_close("strain energy", sum(|s| s.share.strain), 1.0, 1e-12);
-    let (fed, damped) = (sum(|s| s.share.fed), sum(|s| s.share.damped));
-    let error = (fed + damped - mode.growth_rate()).abs() / (fed.abs() + damped.abs());
+    let (input, dissipation) = (sum(|s| s.share.energy_input), sum(|s| s.share.dissipation));
+    let error = (input + dissipation - mode.growth_rate()).abs() / (input.abs() + dissipation.abs());
     println!(
-        "{:.1} Hz: fed {fed:+.6e}, damped {damped:+.6e}, growth {:+.6e}: off by {error:.1e}",
+        "{:.1} Hz: energy input {input:+.6e}, dissipation {dissipation:+.6e}, growth {:+.6e}: off by {error:.1e}",
         mode.frequency(),
         mode.growth_rate()
     );
     assert!(error < 1e-6);
     for source in sources {
         let Source { kind, share, .. } = source;
-        assert!(share.damped <= 0.0 && share.kinetic >= 0.0, "{source:?}");
+        assert!(share.dissipation <= 0.0 && share.kinetic >= 0.0, "{source:?}");
         assert!(
-            *kind == Kind::Contact || share.fed.abs() < 1e-9 * fed.abs().max(1.0),
-            "only contact feeds: {source:?}"
+            *kind == Kind::Contact || share.energy_input.abs() < 1e-9 * input.abs().max(1.0),
+            "only contact has energy input: {source:?}"
         );
     }
 }

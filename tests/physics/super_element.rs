@@ -142,7 +142,7 @@ impl Full {
             mesh_hash: String::new(),
             program: String::new(),
             friction: equilibrium.friction,
-            n_equations: system.dofs.n_global(),
+            n_dofs: system.dofs.n_global(),
             band: BAND,
             limit,
             friction_damping: brake.model.friction_damping,

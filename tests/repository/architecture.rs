@@ -184,22 +184,23 @@ fn the_table_is_found_among_others() {
 #[test]
 fn what_is_forbidden_is_found() {
     let rule = Rule::new(LIB);
-    let said = |file: &str, text: &str| rule.complaints_about(Path::new(file), text).join("\n");
-    assert_eq!(said("model/read.rs", "// crate::cli\nuse crate::mesh::Mesh;\nuse crate::{Error, Result};\n"), "");
-    assert_eq!(said("model/read.rs", "fn f() { g(\"crate::native // x\"); crate::mesh::read() }"), "");
-    let upwards = said("mesh/tets.rs", "use super::Point;\n\nuse crate::model::Model;\n");
+    let message = |file: &str, text: &str| rule.complaints_about(Path::new(file), text).join("\n");
+    assert_eq!(message("model/read.rs", "// crate::cli\nuse crate::mesh::Mesh;\nuse crate::{Error, Result};\n"), "");
+    assert_eq!(message("model/read.rs", "fn f() { g(\"crate::native // x\"); crate::mesh::read() }"), "");
+    let upwards = message("mesh/tets.rs", "use super::Point;\n\nuse crate::model::Model;\n");
     assert_eq!(upwards, "src/mesh/tets.rs:3: `mesh` imports `model`, which is not above it");
-    assert!(said("mesh/read.rs", "use crate::Model;").contains("`mesh` imports `model`"));
-    let in_a_list = said("mesh/read.rs", "use crate::{\n    Error,\n    model::{Model, Part},\n    native,\n};\n");
+    assert!(message("mesh/read.rs", "use crate::Model;").contains("`mesh` imports `model`"));
+    let in_a_list = message("mesh/read.rs", "use crate::{\n    Error,\n    model::{Model, Part},\n    native,\n};\n");
     assert!(in_a_list.contains(":3: `mesh` imports `model`"), "{in_a_list}");
     assert!(in_a_list.contains(":4: `mesh` imports `native`"), "{in_a_list}");
-    assert!(said("mesh/law/mod.rs", "fn f() { crate::native::init() }").contains("imports `native`"));
+    assert!(message("mesh/law/mod.rs", "fn f() { crate::native::init() }").contains("imports `native`"));
     assert!(
-        said("mesh/law/mod.rs", "use super::super::native::Comm;").contains("src/mesh/law/mod.rs:1: a module is left")
+        message("mesh/law/mod.rs", "use super::super::native::Comm;")
+            .contains("src/mesh/law/mod.rs:1: a module is left")
     );
-    assert!(said("kitchen.rs", "").contains("`kitchen` is not in the table"));
-    assert!(said("model/mod.rs", "fn f() {\n    unsafe {}\n}").contains("src/model/mod.rs:2: `unsafe`"));
-    assert!(said("lib.rs", "unsafe {}").contains("src/lib.rs:1: `unsafe`"));
-    assert!(said("model/mod.rs", "use squeal_sys as sys;").contains("src/model/mod.rs:1: `squeal_sys`"));
-    assert_eq!(said("native/petsc/vector.rs", "use squeal_sys as sys;\nunsafe {}"), "");
+    assert!(message("kitchen.rs", "").contains("`kitchen` is not in the table"));
+    assert!(message("model/mod.rs", "fn f() {\n    unsafe {}\n}").contains("src/model/mod.rs:2: `unsafe`"));
+    assert!(message("lib.rs", "unsafe {}").contains("src/lib.rs:1: `unsafe`"));
+    assert!(message("model/mod.rs", "use squeal_sys as sys;").contains("src/model/mod.rs:1: `squeal_sys`"));
+    assert_eq!(message("native/petsc/vector.rs", "use squeal_sys as sys;\nunsafe {}"), "");
 }

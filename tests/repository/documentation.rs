@@ -131,8 +131,8 @@ fn every_command_line_is_understood() {
     let mut n = 0;
     for page in pages() {
         for command in page.commands() {
-            let said = place.run(&command.split_whitespace().chain(["--help"]).collect::<Vec<_>>());
-            assert_eq!(said.code, 0, "{}: squeal {command}\n{}", page.name(), said.err);
+            let message = place.run(&command.split_whitespace().chain(["--help"]).collect::<Vec<_>>());
+            assert_eq!(message.code, 0, "{}: squeal {command}\n{}", page.name(), message.err);
             n += 1;
         }
     }
@@ -166,9 +166,9 @@ fn the_first_brake_is_meshed_and_checked() {
     assert_eq!(models.len(), 1);
     place.write("readme.toml", &models[0]);
     for model in ["brake.toml", "readme.toml"] {
-        let said = place.run(&["check", model]);
-        assert_eq!(said.code, 0, "{model}: {}", said.err);
-        assert!(said.out.contains("disc"), "{}", said.out);
+        let message = place.run(&["check", model]);
+        assert_eq!(message.code, 0, "{model}: {}", message.err);
+        assert!(message.out.contains("disc"), "{}", message.out);
     }
 }
 
@@ -181,8 +181,8 @@ fn the_family_of_matrices_becomes_unstable_at_three_quarters() {
     let page = manual("matrices.md");
     place.write("hoffmann.toml", &page.blocks("toml")[0]);
     let command = page.commands().into_iter().find(|command| command.contains("hoffmann.toml")).unwrap();
-    let said = place.run(&command.split_whitespace().collect::<Vec<_>>());
-    assert_eq!(said.code, 0, "{}", said.err);
+    let message = place.run(&command.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(message.code, 0, "{}", message.err);
     let hopf = place.read("hoffmann-modes/hopf.csv");
     let friction: f64 = hopf.lines().nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
     assert!((friction - 0.75).abs() < 1e-3, "{hopf}");
@@ -227,9 +227,9 @@ fn keys_and_columns_are_documented() {
     let known = manual("json.md").text + &manual("files.md").text;
     let require = |name: &str, source: &str| assert!(known.contains(&format!("`{name}`")), "{source}: {name}");
     for command in ["check", "stability"] {
-        let said = place.run(&[command, "brake.toml", "--json"]);
-        assert_eq!(said.code, 0, "{}", said.err);
-        let document: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        let message = place.run(&[command, "brake.toml", "--json"]);
+        assert_eq!(message.code, 0, "{}", message.err);
+        let document: serde_json::Value = serde_json::from_str(&message.out).unwrap();
         keys(&document).iter().for_each(|key| require(key, command));
     }
     for table in place.list("brake-stability").iter().filter(|name| name.ends_with(".csv")) {

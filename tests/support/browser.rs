@@ -126,7 +126,7 @@ impl Browser {
     /// What the page has complained of, and the addresses that it has asked for beyond its own.
     pub fn complaints(&mut self) -> Vec<String> {
         self.value("1");
-        // A test that looks at a picture makes the driver wait, and the driver says so.
+        // A test that looks at a picture makes the driver wait, and the driver parts so.
         let is_own = |event: &Value| event.to_string().contains("GPU stall due to ReadPixels");
         let complaint = |event: &Value| match event["method"].as_str() {
             Some("Log.entryAdded") if is_own(event) => None,

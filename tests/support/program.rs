@@ -31,17 +31,17 @@ fn quiet(command: &mut Command) {
     command.env("OMPI_MCA_btl_vader_single_copy_mechanism", "none").env("OMPI_MCA_mpi_yield_when_idle", "1");
 }
 
-/// What a run said.
-pub struct Said {
+/// The exit code and the texts of a run.
+pub struct Finished {
     pub code: i32,
     pub out: String,
     pub err: String,
 }
 
-impl From<Output> for Said {
-    fn from(output: Output) -> Said {
+impl From<Output> for Finished {
+    fn from(output: Output) -> Finished {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Said { code: output.status.code().unwrap_or(-1), out: text(output.stdout), err: text(output.stderr) }
+        Finished { code: output.status.code().unwrap_or(-1), out: text(output.stdout), err: text(output.stderr) }
     }
 }
 
@@ -110,31 +110,35 @@ impl Place {
         command
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Said {
+    pub fn run(&self, arguments: &[&str]) -> Finished {
         self.command().args(arguments).output().unwrap().into()
     }
 
-    pub fn run_on(&self, ranks: usize, arguments: &[&str]) -> Said {
+    pub fn run_on(&self, ranks: usize, arguments: &[&str]) -> Finished {
         let mut command = mpirun(ranks, &cargo_bin("squeal"));
         command.current_dir(self.folder.path()).args(arguments).output().unwrap().into()
     }
 }
 
-/// Requires that the program refused its input: exit code 2, nothing printed, and one error message with all of these
-/// parts.
+/// The message with which the program refused its input: exit code 2, nothing printed, and one error.
 #[track_caller]
-pub fn assert_refused(said: &Said, parts: &[&str]) {
-    let Said { code, out, err } = said;
+pub fn refusal(finished: &Finished) -> String {
+    let Finished { code, out, err } = finished;
     assert_eq!(*code, 2, "{out}{err}");
     assert_eq!(err.lines().filter(|line| line.starts_with("error")).count(), 1, "one message: {err}");
     assert!(err.starts_with("error: ") && out.is_empty(), "{out}{err}");
-    for part in parts {
-        assert!(err.contains(part), "{part:?} is not in: {err}");
-    }
+    err.clone()
+}
+
+/// Requires that the program refused its input with all of these parts in its message.
+#[track_caller]
+pub fn assert_refused(finished: &Finished, parts: &[&str]) {
+    let message = refusal(finished);
+    parts.iter().for_each(|part| assert!(message.contains(part), "{part:?} is not in: {message}"));
 }
 
 /// Runs an ignored test of this executable, by its full name, on two ranks.
-pub fn run_test_on_two_ranks(name: &str) -> Said {
+pub fn run_test_on_two_ranks(name: &str) -> Finished {
     let mut command = mpirun(2, &std::env::current_exe().unwrap());
     command.args(["--exact", name, "--ignored", "--nocapture", "--test-threads=1"]).output().unwrap().into()
 }

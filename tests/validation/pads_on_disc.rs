@@ -58,7 +58,7 @@ pub fn cases(comm: &Comm) -> Vec<Case> {
     }
     vec![Case {
         title: "Two pads on a disc",
-        text: "Two pads pressed on an annular disc by 4 kN, frictions 0 to 0.8, undamped. Reference: another implementation of the same \
+        text: "Two pads pressed on an annular disc by 4 kN, mu from 0 to 0.8, undamped. Reference: another implementation of the same \
                formulation on the same mesh (numpy, scipy, SLEPc; `tests/data/pads_on_disc.json`). The test compares masses (1e-12), forces, \
                torque, closed points and 24 eigenvalues at each friction (frequencies 1e-8, growth rates 1e-6); here are the unstable ones.",
         rows,

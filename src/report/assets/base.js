@@ -15,18 +15,19 @@ function make(tag, attributes = {}, ...children) {
 /** A mode by its name "value-mode". */
 function modeOf(name) {
   const [value, mode] = name.split("-").map(Number);
-  const [frequency, growth, damping, error, unstable, branch] = data.values[value].modes[mode];
+  const row = data.values[value].modes[mode];
   return {
     name,
     value,
-    number: mode + 1,
+    number: row.mode,
     friction: data.values[value].friction,
-    frequency,
-    growth,
-    damping,
-    error,
-    unstable,
-    branch,
+    frequency: row.frequency_hz,
+    growth: row.growth_rate_per_s,
+    damping: row.damping_ratio,
+    error: row.backward_error,
+    unstable: row.unstable,
+    branch: data.branch_of[value][mode],
+    explained: row.explained,
   };
 }
 

@@ -44,7 +44,7 @@ function tipText(mode) {
     `growth rate ${signed(mode.growth, 2)} /s${mode.unstable ? ": unstable" : ""}`,
     `damping ratio ${percent(mode.damping, 3)}`,
   ];
-  if (mode.branch) lines.push(`branch ${mode.branch}`);
+  if (mode.branch !== null) lines.push(`branch ${mode.branch + 1}`);
   return lines.join("\n");
 }
 
@@ -71,9 +71,9 @@ function markChosen(name) {
   const mode = modeOf(name);
   document.querySelectorAll(".plot .picked").forEach((mark) => mark.classList.remove("picked"));
   document.querySelectorAll(`.plot [data-mode="${name}"]`).forEach((mark) => mark.classList.add("picked"));
-  if (mode.branch) {
+  if (mode.branch !== null) {
     document
-      .querySelectorAll(`.plot [data-branch="${mode.branch - 1}"]`)
+      .querySelectorAll(`.plot [data-branch="${mode.branch}"]`)
       .forEach((line) => line.classList.add("picked"));
   }
   byId("chosen").textContent = `Chosen: ${modeLabel(mode)}`;

@@ -20,33 +20,34 @@ function fillChecks(at) {
     "closed area, cm\u00b2",
     "peak pressure, MPa",
   ];
-  const rows = value.pairs.map(([open, stick, slip, normal, tangential, area, peak], i) => {
+  const rows = value.contact.map((row) => {
     const cells = [
-      open,
-      stick,
-      slip,
-      normal.toFixed(1),
-      tangential.toFixed(1),
-      (1e4 * area).toFixed(2),
-      (1e-6 * peak).toFixed(2),
+      row.open,
+      row.stick,
+      row.slip,
+      row.normal_force_n.toFixed(1),
+      row.tangential_force_n.toFixed(1),
+      (1e4 * row.closed_area_m2).toFixed(2),
+      (1e-6 * row.peak_pressure_pa).toFixed(2),
     ];
     return make(
       "tr",
       {},
-      make("td", { class: "left" }, data.pairs[i].name),
+      make("td", { class: "left" }, row.pair),
       ...cells.map((cell) => make("td", {}, cell)),
     );
   });
-  const steps = value.steps.map(([label, converged, n, residual]) =>
-    make(
+  const steps = value.steps.map(({ label, converged, iterations }) => {
+    const { relative_residual: residual } = iterations[iterations.length - 1];
+    return make(
       "tr",
       { class: converged ? "" : "unstable" },
       make("td", { class: "left" }, label),
-      make("td", {}, n),
+      make("td", {}, iterations.length - 1),
       make("td", {}, residual === null ? "\u2013" : residual.toExponential(1).replace("-", "\u2212")),
       make("td", {}, converged ? "yes" : "no"),
-    ),
-  );
+    );
+  });
   const table = (names, body) =>
     make(
       "div",

@@ -3,7 +3,7 @@
 function startExplain() {
   document.querySelectorAll(".instability").forEach((card, i) => {
     const one = data.instabilities[i];
-    const explainable = one.modes.filter((name) => data.explained[name]);
+    const explainable = one.modes.filter((name) => modeOf(name).explained.length);
     const select = card.querySelector("select");
     if (!explainable.length) {
       select.closest(".controls").hidden = true;
@@ -12,7 +12,7 @@ function startExplain() {
     explainable.forEach((name) => select.append(make("option", { value: name }, modeOf(name).friction)));
     const show = (name) => {
       select.value = name;
-      card.querySelector(".explained").replaceChildren(...explained(data.explained[name], modeOf(name)));
+      card.querySelector(".explained").replaceChildren(...explained(modeOf(name)));
     };
     select.addEventListener("change", () => choice.set(select.value));
     choice.onChange((name) => {
@@ -26,10 +26,11 @@ function startExplain() {
   });
 }
 
-function explained(sources, mode) {
-  const energies = sources.filter((s) => Math.max(s.kinetic, Math.abs(s.strain)) > 0.01);
+function explained(mode) {
+  const sources = mode.explained;
+  const energies = sources.filter((s) => Math.max(s.kinetic_share, Math.abs(s.strain_share)) > 0.01);
   const powers = sources.filter(
-    (s) => Math.max(Math.abs(s.fed), Math.abs(s.damped)) > 0.01 * Math.max(...sources.map((t) => Math.abs(t.fed))),
+    (s) => Math.max(Math.abs(s.energy_input_per_s), Math.abs(s.dissipation_per_s)) > 0.01 * Math.max(...sources.map((t) => Math.abs(t.energy_input_per_s))),
   );
   return [
     make(
@@ -41,7 +42,7 @@ function explained(sources, mode) {
         ["b", "strain"],
       ]),
     ),
-    energyBars(energies.sort((a, b) => b.kinetic + b.strain - a.kinetic - a.strain)),
+    energyBars(energies.sort((a, b) => b.kinetic_share + b.strain_share - a.kinetic_share - a.strain_share)),
     make(
       "h4",
       {},
@@ -52,7 +53,7 @@ function explained(sources, mode) {
       ]),
     ),
     powerBars(
-      powers.sort((a, b) => Math.abs(b.fed + b.damped) - Math.abs(a.fed + a.damped)),
+      powers.sort((a, b) => Math.abs(b.energy_input_per_s + b.dissipation_per_s) - Math.abs(a.energy_input_per_s + a.dissipation_per_s)),
       mode,
     ),
     slopes(sources),
@@ -77,22 +78,22 @@ function energyBars(sources) {
       "tr",
       {},
       make("td", { class: "left" }, s.name),
-      make("td", { class: "bar" }, make("div", { class: "twin" }, track("a", s.kinetic), track("b", s.strain))),
-      make("td", {}, percent(s.kinetic)),
-      make("td", {}, percent(s.strain)),
+      make("td", { class: "bar" }, make("div", { class: "twin" }, track("a", s.kinetic_share), track("b", s.strain_share))),
+      make("td", {}, percent(s.kinetic_share)),
+      make("td", {}, percent(s.strain_share)),
     ),
   );
   return make("table", { class: "bars" }, make("tbody", {}, ...rows));
 }
 
 function powerBars(sources, mode) {
-  const most = Math.max(...sources.flatMap((s) => [s.fed, s.fed + s.damped, 0]));
-  const least = Math.min(...sources.flatMap((s) => [s.fed, s.damped, s.fed + s.damped, 0]));
+  const most = Math.max(...sources.flatMap((s) => [s.energy_input_per_s, s.energy_input_per_s + s.dissipation_per_s, 0]));
+  const least = Math.min(...sources.flatMap((s) => [s.energy_input_per_s, s.dissipation_per_s, s.energy_input_per_s + s.dissipation_per_s, 0]));
   const place = (x) => (100 * (x - least)) / (most - least || 1);
   const rows = sources.map((s) => {
     const track = make("div", { class: "track" });
-    if (s.fed) track.append(bar(s.fed > 0 ? "input" : "dissipation", place(0), place(s.fed)));
-    if (s.damped) track.append(bar("dissipation", place(0), place(s.damped)));
+    if (s.energy_input_per_s) track.append(bar(s.energy_input_per_s > 0 ? "input" : "dissipation", place(0), place(s.energy_input_per_s)));
+    if (s.dissipation_per_s) track.append(bar("dissipation", place(0), place(s.dissipation_per_s)));
     const zero = make("i", { class: "zero" });
     zero.style.left = `${place(0)}%`;
     track.append(zero);
@@ -101,7 +102,7 @@ function powerBars(sources, mode) {
       {},
       make("td", { class: "left" }, s.name),
       make("td", { class: "bar" }, track),
-      make("td", {}, signed(s.fed + s.damped, 2)),
+      make("td", {}, signed(s.energy_input_per_s + s.dissipation_per_s, 2)),
     );
   });
   const total = make(
@@ -114,32 +115,36 @@ function powerBars(sources, mode) {
   return make("table", { class: "bars" }, make("tbody", {}, ...rows, total));
 }
 
-const SLOPES = ["\u03bc +0.05", "damping +10\u00a0%", "stiffness +10\u00a0%", "mass +10\u00a0%"];
-const AMOUNTS = [0.05, 0.1, 0.1, 0.1];
+const CHANGES = [
+  { of: "friction", by: 0.05, name: "\u03bc +0.05" },
+  { of: "damping", by: 0.1, name: "damping +10\u00a0%" },
+  { of: "stiffness", by: 0.1, name: "stiffness +10\u00a0%" },
+  { of: "mass", by: 0.1, name: "mass +10\u00a0%" },
+];
+
+/** The change of the growth rate in 1/s by each change, null where it is unknown. */
+const growthChanges = (s) =>
+  CHANGES.map(({ of, by }) => (s[`growth_per_${of}`] === null ? null : by * s[`growth_per_${of}`]));
 
 function slopes(sources) {
-  const sensitive = sources.filter((s) => s.slopes.some((slope) => slope));
-  if (!sensitive.length) return make("span");
-  const most = Math.max(
-    ...sensitive.flatMap((s) => s.slopes.map((slope, i) => (slope ? Math.abs(AMOUNTS[i] * slope[0]) : 0))),
-  );
-  const cell = (slope, i) => {
-    if (!slope) return make("td", {}, "");
-    const [growth, hertz] = [AMOUNTS[i] * slope[0], (AMOUNTS[i] * slope[1]) / (2 * Math.PI)];
-    return make(
-      "td",
-      { title: `frequency ${signed(hertz, 1)} Hz` },
-      Math.abs(growth) < 5e-4 * most ? "0" : signed(growth, 2),
-    );
+  const weight = (s) => Math.max(0, ...growthChanges(s).map(Math.abs));
+  const most = Math.max(...sources.map(weight));
+  if (!most) return make("span");
+  const cell = (s) => (growth, i) => {
+    if (growth === null) return make("td", {}, "");
+    const { of, by } = CHANGES[i];
+    const title = `frequency ${signed(by * s[`frequency_per_${of}`], 1)} Hz`;
+    return make("td", { title }, Math.abs(growth) < 5e-4 * most ? "0" : signed(growth, 2));
   };
-  const weight = (s) => Math.max(...s.slopes.map((slope, i) => (slope ? Math.abs(AMOUNTS[i] * slope[0]) : 0)));
-  const worth = sensitive.filter((s) => weight(s) > 0.03 * most).sort((a, b) => weight(b) - weight(a));
-  const rows = worth.map((s) => make("tr", {}, make("td", { class: "left" }, s.name), ...s.slopes.map(cell)));
+  const worth = sources.filter((s) => weight(s) > 0.03 * most).sort((a, b) => weight(b) - weight(a));
+  const rows = worth.map((s) =>
+    make("tr", {}, make("td", { class: "left" }, s.name), ...growthChanges(s).map(cell(s))),
+  );
   const head = make(
     "tr",
     {},
     make("th", { class: "left" }, "change of"),
-    ...SLOPES.map((name) => make("th", {}, name)),
+    ...CHANGES.map(({ name }) => make("th", {}, name)),
   );
   return make(
     "details",

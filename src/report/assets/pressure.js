@@ -38,7 +38,7 @@ function drawMaps() {
   byId("maps").replaceChildren(...shown.map((face) => map(face, at, top)));
 }
 
-/** The end of the colour scale: what 98 % of the closed points of all frictions stay below, so that a few peaks at edges do not hide the rest. */
+/** The end of the colour scale: what 98 % of the closed points of all friction values stay below, so that a few peaks at edges do not hide the rest. */
 function scaleTop(faces) {
   const all = faces
     .flatMap((face) => face.pressure.flatMap((packed) => Array.from(packed, (p) => (p * face.peak) / 65535)))
@@ -56,8 +56,7 @@ function map(face, at, top) {
     top,
   );
   const peak = Math.max(...face.pressure[at]) * (face.peak / 65535);
-  const [open, stick, slip, normal] = data.values[data.asked[at]].pairs[face.pair];
-  const name = data.pairs[face.pair].name;
+  const { pair: name, open, stick, slip, normal_force_n: normal } = data.values[data.asked[at]].contact[face.pair];
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `${isStatus ? "Contact status" : "Contact pressure"} of ${name}`);
   canvas.addEventListener("pointermove", (event) => {

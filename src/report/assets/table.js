@@ -7,7 +7,7 @@ const COLUMNS = [
   { name: "growth rate, 1/s", of: (mode) => mode.growth, text: (x) => signed(x, 2) },
   { name: "damping ratio, %", of: (mode) => 100 * mode.damping, text: (x) => fixed(x, 4) },
   { name: "backward error", of: (mode) => mode.error, text: (x) => x.toExponential(1).replaceAll("-", "\u2212") },
-  { name: "branch", of: (mode) => mode.branch ?? NaN, text: (x) => (Number.isNaN(x) ? "\u2013" : String(x)) },
+  { name: "branch", of: (mode) => (mode.branch ?? NaN) + 1, text: (x) => (Number.isNaN(x) ? "\u2013" : String(x)) },
   { name: "unstable", of: (mode) => Number(mode.unstable), text: (x) => (x ? "yes" : "no") },
 ];
 const SHOWN = 1000;

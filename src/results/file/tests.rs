@@ -1,8 +1,8 @@
 use super::*;
-use crate::equilibrium::{Counts, Iteration, Wrench};
+use crate::equilibrium::{Counts, Iteration, PairForces, Step, Wrench};
 use crate::results::Kind;
 use crate::results::{Failure, Pair, Part};
-use crate::stability::{Sensitivity, Share};
+use crate::stability::{Count, Sensitivity, Share};
 use crate::tracking::Partner;
 
 fn shape(n: usize, seed: f32) -> Shape {
@@ -11,7 +11,7 @@ fn shape(n: usize, seed: f32) -> Shape {
 }
 
 fn source(friction: Option<Complex64>) -> Source {
-    let share = Share { kinetic: 0.25, strain: 1.0 / 3.0, fed: 3e-5, damped: -0.0 };
+    let share = Share { kinetic: 0.25, strain: 1.0 / 3.0, energy_input: 3e-5, dissipation: -0.0 };
     let [mass, damping, stiffness] = [0.1, 0.2, 0.7].map(|x| Complex64::new(x, -x));
     let sensitivity = friction.map(|_| Sensitivity { mass, damping, stiffness });
     Source { kind: Kind::Contact, name: "disc / \"pad\"".into(), share, sensitivity, friction }
@@ -27,7 +27,7 @@ fn value(friction: f64, asked: bool) -> Value {
         shape: (asked && i == 1).then(|| shape(4, 0.3)),
         sources: if i == 1 { vec![source(Some(Complex64::I)), source(None)] } else { Vec::new() },
     };
-    // What diverges is told, too.
+    // A diverged iteration is kept, too.
     let iteration = |residual| Iteration { residual, counts, flips: vec![0, 4] };
     Value {
         friction,
@@ -59,7 +59,7 @@ fn results() -> Results {
     Results {
         about: About {
             title: "Bremse, 23 °C".into(),
-            frictions: vec![0.1, 0.3],
+            friction_values: vec![0.1, 0.3],
             band: [0.0, 6000.0],
             parts: vec![Part { name: "disc".into(), material: "iron".into(), mass: 0.1 + 0.2 }],
             pairs: vec![Pair { name: "disc / pad".into(), sliding: true, swept: true, n_points: 6 }],
@@ -137,7 +137,7 @@ fn files_that_are_none_are_refused() {
     let file = File::open_rw(&path).unwrap();
     file.attr("version").unwrap().write_scalar(&7).unwrap();
     file.close().unwrap();
-    refused(&path, "is of version 7, this program reads version 1");
+    refused(&path, "is of version 7, this program reads version 2");
     write(&path, &results()).unwrap();
     let file = File::open_rw(&path).unwrap();
     file.dataset("surface/samples").unwrap().write_raw(&[1_u32, 9]).unwrap();

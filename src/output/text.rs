@@ -1,0 +1,90 @@
+//! Text for people: columns under headings, lists of files, small words.
+
+/// Rows in columns under a heading of one or more lines, cells separated by tabs: words to the left, numbers to the
+/// right.
+pub fn aligned(heading: &str, rows: impl IntoIterator<Item = String>) -> String {
+    let rows: Vec<String> = rows.into_iter().collect();
+    let cells = |line: &str| line.split('\t').map(String::from).collect::<Vec<_>>();
+    let (heads, rows): (Vec<_>, Vec<_>) =
+        (heading.lines().map(cells).collect(), rows.iter().map(|row| cells(row)).collect());
+    let column = |k: usize| {
+        let width = heads.iter().chain(&rows).filter_map(|line| line.get(k)).map(|cell| cell.chars().count()).max();
+        (width.unwrap_or(0), rows.iter().filter_map(|row| row.get(k)).all(|cell| is_number(cell)))
+    };
+    let text = |line: &Vec<String>| {
+        let cell_text = |(k, cell): (usize, &String)| match column(k) {
+            (width, true) => format!("{cell:>width$}"),
+            (width, false) => format!("{cell:width$}"),
+        };
+        line.iter().enumerate().map(cell_text).collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+    };
+    heads.iter().chain(&rows).map(text).collect()
+}
+
+/// Whether a cell is a number, several of them, or the mark of a missing one.
+fn is_number(cell: &str) -> bool {
+    cell.trim_start().chars().next().is_none_or(|first| first.is_ascii_digit() || "+-".contains(first))
+}
+
+/// A value, or the mark of a missing one.
+pub fn or_dash<T>(value: Option<T>, shown: impl FnOnce(T) -> String) -> String {
+    value.map_or_else(|| "-".into(), shown)
+}
+
+/// What the files of a results folder contain.
+pub fn files(place: &str, files: &[(&str, &str)]) -> String {
+    let lines: String = files.iter().map(|(name, what)| format!("  {name:36}{what}\n")).collect();
+    format!("\nresults in {place}:\n{lines}")
+}
+
+/// What a run took.
+pub fn cost(seconds: f64, n_ranks: usize) -> String {
+    format!("\n{seconds:.1} s on {n_ranks} rank{}\n", plural(n_ranks))
+}
+
+/// The ending of a noun after a number.
+pub fn plural(n: usize) -> &'static str {
+    if n == 1 { "" } else { "s" }
+}
+
+/// Lines below an empty one; nothing where there are none.
+pub fn paragraph(lines: &str) -> String {
+    if lines.is_empty() { String::new() } else { format!("\n{lines}") }
+}
+
+/// A text inside XML or HTML, in elements and in attributes.
+pub fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            // XML allows no other control characters.
+            c if c.is_control() && !"\n\t\r".contains(c) => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stand_to_the_left_and_numbers_to_the_right() {
+        let rows = ["disc\t1.5\tunstable\t-", "a pad\t-12\t\t3"].map(String::from);
+        let expected = [
+            "                           left",
+            "part   mass, kg  remark    over",
+            "disc        1.5  unstable     -",
+            "a pad       -12               3",
+            "",
+        ];
+        assert_eq!(aligned("\t\t\tleft\npart\tmass, kg\tremark\tover", rows), expected.join("\n"));
+        assert_eq!(aligned("part\tmass", []), "part  mass\n");
+    }
+}
