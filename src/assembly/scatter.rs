@@ -19,7 +19,7 @@ pub struct Scatter<'a> {
     /// For each pair the columns before it in its part of the row.
     columns: Vec<u32>,
     /// Where the rows start in the values of this rank's columns and in those of other ranks'.
-    starts: [Vec<i32>; 2],
+    starts: [Vec<usize>; 2],
 }
 
 impl<'a> Scatter<'a> {
@@ -41,7 +41,7 @@ impl<'a> Scatter<'a> {
                 rows.push(&own, &other);
             }
         }
-        let starts = [rows.own.offsets.clone(), rows.other.offsets.clone()];
+        let starts = [&rows.own, &rows.other].map(|part| part.offsets.iter().map(|&start| start as usize).collect());
         (Scatter { pattern, dofs, columns, starts }, rows)
     }
 
@@ -103,7 +103,7 @@ impl Places {
             self.own.push(a);
             for (i, dof) in dofs.node_dofs(node).into_iter().enumerate().filter(|&(_, e)| e >= 0) {
                 let row = (dof - dofs.owned().start) as usize;
-                self.rows.push(Row { number: 3 * a + i, first, starts: starts.each_ref().map(|s| s[row] as usize) });
+                self.rows.push(Row { number: 3 * a + i, first, starts: starts.each_ref().map(|s| s[row]) });
             }
         }
     }

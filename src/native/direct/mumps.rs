@@ -13,7 +13,7 @@ use super::mumps_data::{Data, Real, Run, both};
 use super::route::Route;
 use super::{FactorKind, ordering};
 use crate::native::petsc::error::check;
-use crate::native::petsc::int;
+use crate::native::petsc::{Int, int};
 use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
@@ -120,11 +120,12 @@ impl Mumps {
         let found = |flag: sys::PetscBool| flag == sys::PetscBool::PETSC_TRUE;
         let none = std::ptr::null_mut();
         for number in 1..=N_ICNTL {
-            let (name, mut value, mut flag) = (option("icntl", number), 0, sys::PetscBool::PETSC_FALSE);
+            let mut value: Int = 0;
+            let (name, mut flag) = (option("icntl", number), sys::PetscBool::PETSC_FALSE);
             // SAFETY: PETSC reads the name, and writes value and flag.
             check(unsafe { sys::PetscOptionsGetInt(none, std::ptr::null(), name.as_ptr(), &mut value, &mut flag) })?;
             if found(flag) {
-                self.set_icntl(number, value);
+                self.set_icntl(number, value as i32);
             }
         }
         for number in 1..=N_CNTL {

@@ -102,7 +102,7 @@ impl Matrix {
     /// PETSc's.
     pub(in crate::native) fn ghosts(&self, from: &Vector) -> Result<&Gather> {
         if self.ghosts.get().is_none() {
-            let gather = Gather::new(from, self.other_columns()?)?;
+            let gather = Gather::of(from, self.other_columns()?)?;
             return Ok(self.ghosts.get_or_init(|| gather));
         }
         Ok(self.ghosts.get().expect("looked at above"))

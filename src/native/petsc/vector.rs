@@ -198,9 +198,13 @@ impl Gather {
     /// # Errors
     /// PETSc's.
     pub fn new(from: &Vector, indices: &[i32]) -> Result<Gather> {
+        Gather::of(from, &indices.iter().map(|&i| i as Int).collect::<Vec<_>>())
+    }
+
+    /// The same, of PETSc's own numbers.
+    pub(super) fn of(from: &Vector, indices: &[Int]) -> Result<Gather> {
         let (mut target, mut set, mut scatter) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
         let n = int("gathered entries", indices.len())? as Int;
-        let indices: Vec<Int> = indices.iter().map(|&i| i as Int).collect();
         // SAFETY: PETSc copies the indices; the index set is destroyed once the scatter holds what it needs.
         unsafe {
             let own = sys::squeal_comm_self();
