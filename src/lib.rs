@@ -52,6 +52,7 @@
 //! | [`element`] | solid elements, facets, quadrature, couplings: pure functions | [`element::solid`] |
 //! | [`mesh`] | nodes, elements by part, surfaces; Gmsh meshes | [`mesh::read`] |
 //! | [`model`] | what is analysed, from the user's file, checked, in SI units | [`model::read`] |
+//! | [`deck`] | input files of Abaqus and CalculiX, read and written | [`deck::read`] |
 //! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
 //! | [`matrices`] | external M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |
 //! | [`assembly`] | dofs, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
@@ -113,6 +114,7 @@ pub mod assembly;
 pub mod cli;
 pub mod comparison;
 pub mod contact;
+pub mod deck;
 pub mod element;
 pub mod equilibrium;
 pub mod error;

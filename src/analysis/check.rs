@@ -16,6 +16,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
     let sliding = || full.interface.pairs.iter().filter(|pair| pair.is_sliding());
     ModelSummary {
         title: full.model.title.clone(),
+        deck: full.deck.clone(),
         mesh: MeshSummary {
             nodes: full.nodes.n_global(),
             elements: comm.sum(full.own_elements().count()),

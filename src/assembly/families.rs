@@ -7,7 +7,7 @@ use crate::element::connector::{RelativeMotion, relative_motion};
 use crate::element::coupling::Cloud;
 use crate::element::{facet, solid};
 use crate::mesh::{Mesh, Surface};
-use crate::model::{Connector, Load, LoadKind, Model, Part};
+use crate::model::{Connector, Load, LoadKind, Model, Part, Place};
 use crate::{Error, Result};
 
 use super::{Connectivity, ElementMatrices, Elements};
@@ -131,10 +131,8 @@ impl ConnectorElement {
 /// [`Error::Input`] where a set is missing, or lies on a line.
 pub fn connector_elements(model: &Model, mesh: &Mesh) -> Result<Vec<ConnectorElement>> {
     let element = |connector: &Connector| {
-        ConnectorElement::new(connector, mesh).map_err(|message| {
-            let (file, line, name) = (model.file.display(), connector.line, &connector.name);
-            Error::input(format!("{file}:{line}: connector {name:?}: {message}"))
-        })
+        ConnectorElement::new(connector, mesh)
+            .map_err(|message| model.error(connector.place, format_args!("connector {:?}: {message}", connector.name)))
     };
     model.connectors.iter().map(element).collect()
 }
@@ -198,7 +196,7 @@ fn cloud(mesh: &Mesh, name: &str) -> Option<(Vec<u32>, Vec<f64>)> {
 pub fn constraints(model: &Model, mesh: &Mesh) -> Result<Vec<[bool; 3]>> {
     let mut constrained = vec![[false; 3]; mesh.nodes.len()];
     for fix in &model.fixes {
-        for n in nodes_of(model, mesh, &fix.nodes, fix.line)? {
+        for n in nodes_of(model, mesh, &fix.nodes, fix.place)? {
             (0..3).for_each(|i| constrained[n as usize][i] |= fix.axes[i]);
         }
     }
@@ -214,7 +212,7 @@ pub fn loads(model: &Model, mesh: &Mesh) -> Result<Vec<(u32, [f64; 3])>> {
     for load in &model.loads {
         match load.kind {
             LoadKind::ForceByNode(total) => {
-                let nodes = nodes_of(model, mesh, &load.on, load.line)?;
+                let nodes = nodes_of(model, mesh, &load.on, load.place)?;
                 let share = total.map(|f| f / nodes.len() as f64);
                 forces.extend(nodes.into_iter().map(|n| (n, share)));
             }
@@ -244,14 +242,12 @@ fn surface_load(
     })
 }
 
-fn nodes_of(model: &Model, mesh: &Mesh, name: &str, line: usize) -> Result<Vec<u32>> {
-    mesh.node_set(name)
-        .ok_or_else(|| Error::input(format!("{}:{line}: the mesh has no {name:?}", model.file.display())))
+fn nodes_of(model: &Model, mesh: &Mesh, name: &str, place: Place) -> Result<Vec<u32>> {
+    mesh.node_set(name).ok_or_else(|| model.error(place, format_args!("the mesh has no {name:?}")))
 }
 
 fn surface_of<'a>(model: &Model, mesh: &'a Mesh, load: &Load) -> Result<&'a Surface> {
     mesh.surfaces.get(&load.on).ok_or_else(|| {
-        let (file, line, on) = (model.file.display(), load.line, &load.on);
-        Error::input(format!("{file}:{line}: {on:?} is not a surface of the mesh: a traction needs one"))
+        model.error(load.place, format_args!("{:?} is not a surface of the mesh: a traction needs one", load.on))
     })
 }

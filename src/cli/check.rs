@@ -18,7 +18,7 @@ use super::Shell;
 #[derive(Args)]
 #[group(skip)]
 pub struct Check {
-    /// The model file
+    /// The model file, or a deck of Abaqus or CalculiX (.inp)
     model: PathBuf,
     /// Show how this number of reference pairs would be spread over the sliding contacts
     #[arg(long, value_name = "N")]

@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod completions;
+mod convert;
 mod export;
 mod interrupt;
 mod man;
@@ -115,6 +116,8 @@ enum Command {
     Example,
     /// Print what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
     Check(check::Check),
+    /// Write a deck of Abaqus or CalculiX as a model file with a Gmsh mesh, or a model as a deck
+    Convert(convert::Convert),
     /// Find the static equilibrium under load, contact and friction
     Static(Run),
     /// Reduce a model to a super-element with a few hundred coordinates and the same instabilities
@@ -146,7 +149,7 @@ enum Command {
 #[derive(Args)]
 #[group(skip)]
 struct Run {
-    /// The model file, or the file of a super-element
+    /// The model file, a deck (.inp), or the file of a super-element
     model: PathBuf,
     /// Friction coefficient of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the
     /// model file's)
@@ -254,6 +257,7 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::New(new) => new::run(shell, new),
         Command::Example => new::example(shell),
         Command::Check(check) => check::run(shell, check),
+        Command::Convert(convert) => convert::run(shell, convert),
         Command::Static(run) => r#static::run(shell, run),
         Command::Export(export) => export::run(shell, export),
         Command::Modes(modes) => modes::run(shell, modes),

@@ -1,6 +1,6 @@
 //! Values, bands and laws as people type them.
 
-use crate::model::{LARGEST_FRICTION, NormalLaw, spaced};
+use crate::model::{LARGEST_FRICTION, NormalLaw, UnitSystem, spaced};
 
 /// Values of friction or of any parameter, no two of them the same.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +58,11 @@ pub fn frequency(text: &str) -> Result<f64, String> {
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }
+}
+
+/// A system of units, such as mm-t-s.
+pub fn units(text: &str) -> Result<UnitSystem, String> {
+    UnitSystem::named(text)
 }
 
 /// `linear:K` or `cubic:K1,K3`, of node-to-node contacts, in N/m and N/m3.

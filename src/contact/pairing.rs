@@ -6,7 +6,7 @@ use super::motion::sliding;
 use super::search::{Found, FoundPoint, Options, Team, find};
 use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Surface};
-use crate::model::{Contact, Model, Rotation, located};
+use crate::model::{Contact, Model, Rotation};
 use std::collections::BTreeSet;
 
 /// A point touches where its gap is below this fraction of the slave's facet size. It decides only where the settling
@@ -71,7 +71,7 @@ impl ContactSurfaces<'_> {
     /// An input error with the contact's file, line and name.
     fn refuse(&self, reason: &str) -> Error {
         let message = format!("contact \"{}\": {reason}", self.contact.name);
-        Error::Input(located(&self.model.file, self.contact.line, message))
+        self.model.error(self.contact.place, message)
     }
 
     /// The contact points; an error where there are none, or where the surfaces share nodes.

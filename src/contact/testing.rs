@@ -3,7 +3,7 @@
 use super::facet::FacetGeometry;
 use crate::element::FacetShape;
 use crate::mesh::{self, Facet, Mesh, Surface};
-use crate::model::{Contact, Model, NormalLaw, Rotation};
+use crate::model::{Contact, Model, NormalLaw, Place, Rotation};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -105,12 +105,14 @@ pub fn flipped(surface: &Surface) -> Surface {
 
 /// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.
 pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
-    let rotation = Rotation { part: "disc".into(), axis: [0.0, 0.0, 1.0], through: [0.0; 3], speed: 5.0, line: 1 };
+    let rotation =
+        Rotation { part: "disc".into(), axis: [0.0, 0.0, 1.0], through: [0.0; 3], speed: 5.0, place: Place::default() };
     Model {
         file: "brake.toml".into(),
         title: String::new(),
         mesh_file: "brake.msh".into(),
         mesh_unit: 1.0,
+        unit_system: None,
         parts: Vec::new(),
         fixes: Vec::new(),
         rotations: if turning { vec![rotation] } else { Vec::new() },
@@ -121,8 +123,9 @@ pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
         friction_damping: false,
         swept: Vec::new(),
         frictions: Vec::new(),
-        mesh_line: 1,
-        sweep_line: 0,
+        files: vec!["brake.toml".into()],
+        mesh_place: Place::default(),
+        sweep_place: Place::default(),
         reduction: None,
     }
 }
@@ -139,7 +142,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         stick: None,
         separation: true,
         search_distance: None,
-        line: 12,
+        place: Place { file: 0, line: 12 },
     }
 }
 

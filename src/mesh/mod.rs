@@ -20,7 +20,8 @@ mod skin;
 mod types;
 
 pub use elements::{Element, ElementList, Facet, Positions};
-pub use gmsh::read;
+pub use gmsh::{read, write};
 pub use numbering::{Numbering, order};
 pub use piece::Piece;
+pub(crate) use skin::Skin;
 pub use types::{Mesh, Surface};

@@ -4,7 +4,7 @@ use super::contacts::friction;
 use super::item::{Item, Number};
 use super::keys::{self, FrictionSweepTable, Text};
 use super::source::ModelText;
-use super::{Contact, Reduction};
+use super::{Contact, Place, Reduction};
 use crate::Result;
 use toml::Spanned;
 
@@ -20,15 +20,15 @@ pub struct SweepSettings {
     pub contacts: Vec<String>,
     /// The values.
     pub frictions: Vec<f64>,
-    /// Line of the file, 0 where there is no sweep.
-    pub line: usize,
+    /// Where it stands; line 0 where there is no sweep.
+    pub place: Place,
 }
 
-/// The sweep, once the contacts it names exist.
+/// The sweep, once the contacts it names exist, where these are known.
 pub fn sweep(
     source: ModelText,
     raw: Option<&Spanned<keys::SweepTable>>,
-    contacts: &[Contact],
+    contacts: Option<&[Contact]>,
 ) -> Result<SweepSettings> {
     let Some(raw) = raw else {
         return Ok(SweepSettings::default());
@@ -38,14 +38,17 @@ pub fn sweep(
     Ok(SweepSettings {
         contacts: swept(&item, friction.get_ref().contacts.as_deref(), contacts)?,
         frictions: values(&item, friction.get_ref())?,
-        line: item.line(),
+        place: item.place(),
     })
 }
 
-fn swept(item: &Item, wanted: Option<&[Text]>, contacts: &[Contact]) -> Result<Vec<String>> {
+fn swept(item: &Item, wanted: Option<&[Text]>, contacts: Option<&[Contact]>) -> Result<Vec<String>> {
     let mut swept: Vec<String> = Vec::new();
     for name in wanted.unwrap_or_default() {
-        let text = &item.find("contact", name, contacts, |contact| &contact.name)?.name;
+        let text = match contacts {
+            Some(contacts) => &item.find("contact", name, contacts, |contact| &contact.name)?.name,
+            None => name.get_ref(),
+        };
         let what = format_args!("contact {text:?} is named twice");
         item.require_at(&name.span(), !swept.contains(text), what, "Keep one of them")?;
         swept.push(text.clone());
@@ -98,5 +101,5 @@ pub fn reduction(source: ModelText, raw: &Spanned<keys::ReductionTable>) -> Resu
     let (at, contacts) = (raw.get_ref().contacts.span(), *raw.get_ref().contacts.get_ref());
     let advice = "Give the number of reference pairs, such as 104";
     item.require_at(&at, contacts > 0, "contacts must be above 0", advice)?;
-    Ok(Reduction { contacts, band: item.band(&raw.get_ref().band)?, line: item.line() })
+    Ok(Reduction { contacts, band: item.band(&raw.get_ref().band)?, place: item.place() })
 }

@@ -21,7 +21,7 @@ fn part(source: ModelText, name: &Text, raw: &keys::PartTable, materials: &[Mate
         name: name.get_ref().clone(),
         material: item.find("material", &raw.material, materials, |material| &material.name)?.clone(),
         rayleigh: rayleigh(&item, &raw.rayleigh)?,
-        line: item.line(),
+        place: item.place(),
     })
 }
 
@@ -39,7 +39,7 @@ pub fn fixes(source: ModelText, raw: &[Spanned<keys::FixTable>]) -> Result<Vec<F
     let fix = |fix: &Spanned<keys::FixTable>| {
         let raw = fix.get_ref();
         let item = Item::new(source, format!("fix of {:?}", raw.nodes), fix.span());
-        Ok(Fix { nodes: raw.nodes.clone(), axes: axes(&item, &raw.axes)?, line: item.line() })
+        Ok(Fix { nodes: raw.nodes.clone(), axes: axes(&item, &raw.axes)?, place: item.place() })
     };
     raw.iter().map(fix).collect()
 }
@@ -55,11 +55,11 @@ fn axes(item: &Item, text: &Text) -> Result<[bool; 3]> {
     Ok(held)
 }
 
-/// The imposed velocities; `unit` is metres per unit of the mesh.
+/// The imposed velocities; `unit` is metres per unit of the mesh, `parts` those that may turn, where they are known.
 pub fn rotations(
     source: ModelText,
     raw: &[Spanned<keys::RotationTable>],
-    parts: &[Part],
+    parts: Option<&[Part]>,
     unit: f64,
 ) -> Result<Vec<Rotation>> {
     let mut seen = HashSet::new();
@@ -67,7 +67,7 @@ pub fn rotations(
         let part = &rotation.get_ref().part;
         let (name, at) = (part.get_ref(), part.span());
         let item = Item::new(source, format!("rotation of {name:?}"), rotation.span());
-        known_part(&item, name, &at, parts)?;
+        parts.map_or(Ok(()), |parts| known_part(&item, name, &at, parts))?;
         let is_first = seen.insert(name.clone());
         item.require_at(&at, is_first, "the part turns already", "Keep one [[rotation]] for each part")?;
         self::rotation(&item, rotation.get_ref(), unit)
@@ -91,6 +91,6 @@ fn rotation(item: &Item, raw: &keys::RotationTable, unit: f64) -> Result<Rotatio
         axis: item.direction(&raw.axis, "axis")?,
         through: through.map(|x| x * unit),
         speed: item.check(&raw.speed, true, "speed", "must be finite", advice)?,
-        line: item.line(),
+        place: item.place(),
     })
 }

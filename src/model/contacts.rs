@@ -35,7 +35,7 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         stick: positive(&raw.stick, "stick", "Give N/m3, such as 1e13")?,
         separation: raw.separation.unwrap_or(true),
         search_distance: positive(&raw.search, "search", distance)?.map(|d| d * unit),
-        line: item.line(),
+        place: item.place(),
     })
 }
 
@@ -94,7 +94,7 @@ fn connector(item: &Item, name: String, raw: &keys::ConnectorTable, unit: f64) -
         stiffness: constants(&raw.stiffness, "stiffness", "Give [x, y, z] in N/m")?,
         rotational_stiffness: optional(&raw.rotational_stiffness, "rotational_stiffness", rotational)?,
         damping: optional(&raw.damping, "damping", "Give [x, y, z] in N s/m")?,
-        line: item.line(),
+        place: item.place(),
     };
     let all = [connector.stiffness, connector.rotational_stiffness, connector.damping];
     let acts = all.as_flattened().iter().any(|&x| x != 0.0);

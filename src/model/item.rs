@@ -2,8 +2,8 @@
 //! values.
 
 use super::keys::Text;
-use super::names;
 use super::source::{ModelText, Span};
+use super::{Place, names};
 use crate::{Error, Result};
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -52,6 +52,11 @@ impl<'a> Item<'a> {
     /// Line of the table's header.
     pub fn line(&self) -> usize {
         self.source.line(self.span.start)
+    }
+
+    /// Where the table's header stands.
+    pub fn place(&self) -> Place {
+        Place { file: 0, line: self.line() as u32 }
     }
 
     /// `file:line: what (name). advice`, at a value of the table.

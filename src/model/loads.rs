@@ -11,7 +11,7 @@ use toml::Spanned;
 pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>]) -> Result<Vec<Load>> {
     let called = |raw: &keys::LoadTable| raw.name.clone().unwrap_or_else(|| raw.on.clone());
     named(source, "load", raw, called, |item, name, raw| {
-        Ok(Load { name, on: raw.on.clone(), kind: kind(item, raw)?, line: item.line() })
+        Ok(Load { name, on: raw.on.clone(), kind: kind(item, raw)?, place: item.place() })
     })
 }
 

@@ -24,27 +24,34 @@ mod analysis;
 mod bodies;
 mod check;
 mod contacts;
-mod elasticity;
+pub mod elasticity;
 mod item;
 mod keys;
 mod loads;
 mod materials;
+mod merge;
 pub mod names;
+mod place;
 mod read;
 mod sliding;
 mod source;
 #[cfg(test)]
 mod tests;
 mod types;
+mod units;
+mod write;
 
 pub use analysis::spaced;
 pub use contacts::LARGEST_FRICTION;
-pub use read::{parse, read};
+pub use place::Place;
+pub use read::{is_deck, parse, read};
 pub use source::located;
 pub use types::{
     Connector, Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction, Rotation,
     SpeedDecay,
 };
+pub use units::UnitSystem;
+pub use write::{isotropic, write};
 
 /// A model file that uses every key, with an explanation of each.
 pub const EXAMPLE: &str = include_str!("example.toml");

@@ -2,12 +2,13 @@
 
 use super::item::Item;
 use super::source::{ModelText, located};
-use super::{Model, analysis, bodies, contacts, keys, loads, materials};
+use super::{Model, Place, UnitSystem, analysis, bodies, contacts, keys, loads, materials};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Units of length and their metres.
-const UNITS: [(&str, f64); 6] = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("in", 0.0254), ("ft", 0.3048)];
+pub(super) const UNITS: [(&str, f64); 6] =
+    [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("in", 0.0254), ("ft", 0.3048)];
 
 /// Reads and checks a model file.
 ///
@@ -45,37 +46,49 @@ pub fn read(path: &Path) -> Result<Model> {
 pub fn parse(text: &str, file: &Path) -> Result<Model> {
     let source = ModelText { file, text };
     let raw: keys::File = source.deserialize()?;
-    let mesh_unit = unit(source, raw.mesh.get_ref())?;
+    let names_deck = is_deck(Path::new(raw.mesh.get_ref().file.get_ref()));
+    let (mesh_unit, unit_system) = unit(source, raw.mesh.get_ref(), names_deck)?;
     let materials = materials::materials(source, &raw.material)?;
     let parts = bodies::parts(source, &raw.part, &materials)?;
     let contacts = contacts::contacts(source, &raw.contact, mesh_unit)?;
-    let sweep = analysis::sweep(source, raw.sweep.as_ref(), &contacts)?;
+    let sweep = analysis::sweep(source, raw.sweep.as_ref(), (!names_deck).then_some(&contacts[..]))?;
     let stability = Item::new(source, "stability".to_owned(), raw.stability.span());
     Ok(Model {
         file: file.to_owned(),
+        files: vec![file.to_owned()],
         title: raw.title.unwrap_or_else(|| stem(file)),
         mesh_file: beside(file, raw.mesh.get_ref().file.get_ref()),
         mesh_unit,
-        mesh_line: source.line(raw.mesh.get_ref().file.span().start),
+        unit_system,
+        mesh_place: Place { file: 0, line: source.line(raw.mesh.get_ref().file.span().start) as u32 },
         fixes: bodies::fixes(source, &raw.fix)?,
-        rotations: bodies::rotations(source, &raw.rotation, &parts, mesh_unit)?,
+        rotations: bodies::rotations(source, &raw.rotation, (!names_deck).then_some(&parts[..]), mesh_unit)?,
         connectors: contacts::connectors(source, &raw.connector, mesh_unit)?,
         loads: loads::loads(source, &raw.load)?,
         band: stability.band(&raw.stability.get_ref().band)?,
         friction_damping: raw.stability.get_ref().friction_damping,
         swept: sweep.contacts,
         frictions: sweep.frictions,
-        sweep_line: sweep.line,
+        sweep_place: sweep.place,
         reduction: raw.reduction.map(|raw| analysis::reduction(source, &raw)).transpose()?,
         parts,
         contacts,
     })
 }
 
-/// Metres per unit of the mesh.
-fn unit(source: ModelText, mesh: &keys::MeshTable) -> Result<f64> {
+/// Whether a path names an input file of Abaqus or CalculiX: it ends with `.inp`, in any case.
+pub fn is_deck(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("inp"))
+}
+
+/// Metres per unit of the mesh; of a deck also the name of a system of units, where one is given.
+fn unit(source: ModelText, mesh: &keys::MeshTable, names_deck: bool) -> Result<(f64, Option<String>)> {
+    let wanted = mesh.unit.get_ref();
+    if let Some(system) = UnitSystem::named(wanted).ok().filter(|_| names_deck) {
+        return Ok((system.length, Some(wanted.clone())));
+    }
     let item = Item::new(source, "mesh".to_owned(), mesh.unit.span());
-    item.find("unit of length", &mesh.unit, &UNITS, |(name, _)| name).map(|(_, metres)| *metres)
+    item.find("unit of length", &mesh.unit, &UNITS, |(name, _)| name).map(|(_, metres)| (*metres, None))
 }
 
 /// A path of the file, seen from the current directory.

@@ -1,25 +1,30 @@
 //! What the model file says once it has been checked: names resolved within the file, SI units.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::names;
+use super::{Place, names};
 use crate::{Error, Result};
 
 /// Everything the user states about a brake, in SI units. Names of the mesh are still names here.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Model {
     /// The model file itself; names in messages refer to it.
     pub file: PathBuf,
+    /// The files that places are in: the model file, and those of a deck.
+    pub files: Vec<PathBuf>,
     /// A line for titles.
     pub title: String,
     /// The mesh file (absolute, or relative to the current directory).
     pub mesh_file: PathBuf,
     /// Metres per unit of the mesh file.
     pub mesh_unit: f64,
-    /// Line of the model file that names the mesh.
-    pub mesh_line: usize,
+    /// The system of units of the mesh's file, where that is a deck and the system is named.
+    pub unit_system: Option<String>,
+    /// Where the mesh is named.
+    pub mesh_place: Place,
     /// Parts, in the order of the file.
     pub parts: Vec<Part>,
     /// Fixed displacements.
@@ -40,13 +45,21 @@ pub struct Model {
     pub swept: Vec<String>,
     /// Friction values of the sweep (empty: as in the contacts).
     pub frictions: Vec<f64>,
-    /// Line of the sweep in the model file (0: there is none).
-    pub sweep_line: usize,
+    /// Where the sweep stands (line 0: there is none).
+    pub sweep_place: Place,
     /// Contact reduction and super-element, where the file asks for them.
     pub reduction: Option<Reduction>,
 }
 
 impl Model {
+    /// `file:line: message`.
+    ///
+    /// # Panics
+    /// Where the place is in no file of the model.
+    pub fn error(&self, place: Place, message: impl Display) -> Error {
+        place.error(&self.files, message)
+    }
+
     /// The model of one part alone, which nothing constrains, touches or loads, so that there is nothing to sweep
     /// either.
     ///
@@ -66,14 +79,14 @@ impl Model {
         self.loads.clear();
         self.swept.clear();
         self.frictions.clear();
-        self.sweep_line = 0;
+        self.sweep_place = Place::default();
         self.reduction = None;
         Ok(self)
     }
 }
 
 /// A physical volume with its material.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Part {
     /// Name of the physical volume.
     pub name: String,
@@ -81,12 +94,12 @@ pub struct Part {
     pub material: Material,
     /// Mass- and stiffness-proportional damping, `C = alpha M + beta K` (1/s, s).
     pub rayleigh: Rayleigh,
-    /// Line of the model file.
-    pub line: usize,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// A linear elastic material.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Material {
     /// Name in the model file.
     pub name: String,
@@ -97,7 +110,7 @@ pub struct Material {
 }
 
 /// Coefficients of proportional damping.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rayleigh {
     /// Mass coefficient, 1/s.
     pub alpha: f64,
@@ -106,18 +119,18 @@ pub struct Rayleigh {
 }
 
 /// Displacements held at zero.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Fix {
     /// Physical surface, curve or point.
     pub nodes: String,
     /// Which of x, y, z.
     pub axes: [bool; 3],
-    /// Line of the model file.
-    pub line: usize,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// Rigid rotation imposed on the velocity of a part.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Rotation {
     /// The turning part.
     pub part: String,
@@ -127,12 +140,12 @@ pub struct Rotation {
     pub through: [f64; 3],
     /// Speed, rad/s, right-handed about the axis.
     pub speed: f64,
-    /// Line of the model file.
-    pub line: usize,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// A contact pair.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Contact {
     /// Name in tables.
     pub name: String,
@@ -152,8 +165,8 @@ pub struct Contact {
     pub separation: bool,
     /// Points farther than this from the master are dropped, m.
     pub search_distance: Option<f64>,
-    /// Line of the model file.
-    pub line: usize,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// A friction coefficient that falls from the static to the kinetic one with the sliding speed v,
@@ -168,7 +181,7 @@ pub struct SpeedDecay {
 }
 
 /// Pressure as a function of penetration.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum NormalLaw {
     /// `p = w k_n d`, k_n in N/m3.
     Linear {
@@ -195,7 +208,7 @@ impl NormalLaw {
 }
 
 /// Spring and damper between the rigid motions that two node sets make on average.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Connector {
     /// Name in tables.
     pub name: String,
@@ -209,12 +222,12 @@ pub struct Connector {
     pub rotational_stiffness: [f64; 3],
     /// Translational damping by axis, N s/m.
     pub damping: [f64; 3],
-    /// Line of the model file.
-    pub line: usize,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// An external load.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Load {
     /// Name in tables.
     pub name: String,
@@ -222,12 +235,12 @@ pub struct Load {
     pub on: String,
     /// What acts.
     pub kind: LoadKind,
-    /// Line of the model file.
-    pub line: usize,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// The kinds of load.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum LoadKind {
     /// A total force (N), the same on each node.
     ForceByNode([f64; 3]),
@@ -238,12 +251,12 @@ pub enum LoadKind {
 }
 
 /// How the structure is reduced to a super-element.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reduction {
     /// Number of reference pairs over all sliding contacts together.
     pub contacts: usize,
     /// Band of the fixed-interface modes that are kept, Hz.
     pub band: [f64; 2],
-    /// Line of the model file.
-    pub line: usize,
+    /// Where it stands.
+    pub place: Place,
 }

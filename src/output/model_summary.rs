@@ -3,12 +3,16 @@
 use serde::Serialize;
 
 use super::text::{aligned, paragraph};
+use crate::deck::DeckSummary;
 
 /// A model, read and checked.
 #[derive(Serialize)]
 pub struct ModelSummary {
     /// Title of the model.
     pub title: String,
+    /// What was understood of the deck, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deck: Option<DeckSummary>,
     /// The mesh as a whole.
     pub mesh: MeshSummary,
     /// One row a part.
@@ -130,13 +134,14 @@ pub struct MatrixSummary {
 impl ModelSummary {
     /// All but the matrices, for people.
     pub fn text(&self) -> String {
+        let deck = self.deck.as_ref().map_or_else(String::new, |deck| deck.text() + "\n");
         let MeshSummary { nodes, elements, size_m } = self.mesh;
         let size = joined(size_m, 1e3, 1, " x ");
         let layouts: String = self.layouts.iter().flatten().map(LayoutRow::text).collect();
         let load = |load: &LoadRow| format!("load {:?} on {}: {}\n", load.load, load.on, load.what);
         let loads: String = self.loads.iter().map(load).collect();
         format!(
-            "{}\n\nmesh: {nodes} nodes, {elements} elements, {size} mm\n{}{}{}\n{} constrained dofs, {} connectors\n\
+            "{}\n\n{deck}mesh: {nodes} nodes, {elements} elements, {size} mm\n{}{}{}\n{} constrained dofs, {} connectors\n\
              {loads}sum of the loads: {} N\n\n",
             self.title,
             self.parts_text(),
@@ -236,6 +241,7 @@ pub(super) mod tests {
         ModelSummary {
             title: "blocks".into(),
             mesh: MeshSummary { nodes: 100, elements: 54, size_m: [0.03, 0.03, 0.01] },
+            deck: None,
             parts: vec![part],
             pairs: vec![pair],
             layouts: Some(vec![layout]),

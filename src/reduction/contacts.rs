@@ -21,7 +21,7 @@ use crate::contact::search::{Landing, land};
 use crate::contact::{ContactPoint, Interface, PointLaw, Statistics, sliding};
 use crate::element::coupling::{self, Cloud, mean_motion};
 use crate::mesh::{Mesh, Surface};
-use crate::model::{Model, located};
+use crate::model::{Model, Place};
 use crate::{Error, Result};
 
 use super::layout::{self, Points};
@@ -47,7 +47,7 @@ pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -
     for (i, pair) in full.pairs.iter().enumerate() {
         let first = reduced.points.len();
         if pair.is_sliding() {
-            let site = Site { model, mesh, full, pair, line: model.contacts[i].line };
+            let site = Site { model, mesh, full, pair, place: model.contacts[i].place };
             site.add(&mut reduced, shares.next().expect("a share for each sliding pair"))?;
         } else {
             for a in pair.points.clone() {
@@ -69,14 +69,14 @@ struct Site<'a> {
     mesh: &'a Mesh,
     full: &'a Interface,
     pair: &'a ContactPair,
-    line: usize,
+    place: Place,
 }
 
 impl Site<'_> {
     fn refuse(&self, reason: &dyn std::fmt::Display) -> Error {
         let advice = "Give a smaller number of contacts, or a finer mesh of the slave";
         let what = format!("contact {:?}: {reason}. {advice}", self.pair.name);
-        Error::Input(located(&self.model.file, self.line, what))
+        self.model.error(self.place, what)
     }
 
     /// Appends the pair's reference nodes.

@@ -1,14 +1,14 @@
 //! A brake with all nodes of its mesh.
 
-use std::fs::File;
 use std::path::Path;
 
 use crate::assembly::{self, Boundary, Connectivity, ConnectorElement, Elements, Solids, System};
 use crate::contact::search::Team;
 use crate::contact::{ContactPair, Interface, Response};
+use crate::deck::DeckSummary;
 use crate::element::solid::{MassProperties, mass_properties};
-use crate::mesh::{self, Mesh, Numbering, Piece};
-use crate::model::{self, Load, LoadKind, Model, located};
+use crate::mesh::{Mesh, Numbering, Piece};
+use crate::model::{self, Load, LoadKind, Model, is_deck};
 use crate::native::Comm;
 use crate::reduction;
 use crate::results::{About, ContactFaces, Part};
@@ -16,6 +16,7 @@ use crate::{Error, Result};
 
 use super::contact_surface::{ContactSurface, Fields};
 use super::distribution::distribute;
+use super::files::ModelFiles;
 use super::{digest, free_motions, pairs, plausibility};
 
 /// A model with its mesh and contact interface. Each rank has its piece of the mesh ([`Piece`]), and all that is on
@@ -35,6 +36,8 @@ pub struct FullModel {
     pub held: Vec<[bool; 3]>,
     /// Connectors.
     pub links: Vec<ConnectorElement>,
+    /// What was understood of the deck, where there is one.
+    pub deck: Option<DeckSummary>,
 }
 
 /// An overlap of contact surfaces below this is rounding of the mesh, m: machined surfaces are rougher.
@@ -62,9 +65,23 @@ impl FullModel {
     /// # Errors
     /// [`Error::Input`] with file and line, whatever is wrong.
     pub fn read(comm: &Comm, path: &Path) -> Result<FullModel> {
-        let model = comm.agree(model::read(path))?;
-        let piece = distribute(comm, || read_mesh(&model))?;
-        comm.agree(FullModel::new(model, piece, comm))
+        FullModel::from_files(comm, path, |model, mesh| Ok((model, mesh)))
+    }
+
+    /// Reads model and mesh, changes both, and gives each rank its piece. Collective.
+    ///
+    /// # Errors
+    /// Those of reading and of the change.
+    pub(super) fn from_files(
+        comm: &Comm,
+        path: &Path,
+        change: impl Fn(Model, Option<Mesh>) -> Result<(Model, Option<Mesh>)>,
+    ) -> Result<FullModel> {
+        let (model, mesh, deck) = ModelFiles::shared(comm, path)?;
+        let (model, mesh) = comm.agree(change(model, mesh))?;
+        let piece = distribute(comm, || Ok(mesh.expect("the root has read it")))?;
+        let full = comm.agree(FullModel::new(model, piece, comm))?;
+        Ok(FullModel { deck, ..full })
     }
 
     /// Reads a brake, with so many reference pairs in place of the contact points of the sliding pairs where
@@ -98,7 +115,7 @@ impl FullModel {
         let loads = assembly::loads(&model, &mesh)?;
         let held = assembly::constraints(&model, &mesh)?;
         let links = assembly::connector_elements(&model, &mesh)?;
-        Ok(FullModel { model, mesh, nodes, interface, loads, held, links })
+        Ok(FullModel { model, mesh, nodes, interface, loads, held, links, deck: None })
     }
 
     /// Refuses a brake of which a part is unconstrained, or constrained by contacts that nothing presses. Collective.
@@ -257,7 +274,12 @@ impl FullModel {
         let n_elements = comm.sum(self.own_elements().count());
         let [model_digest, mesh_digest] = self.digests(comm)?;
         let file = &self.model.file;
-        let text = comm.agree(std::fs::read_to_string(file).map_err(Error::io(file)))?;
+        // A deck is a mesh, too: its text would fill the results.
+        let text = match is_deck(file) {
+            true => Ok(model::write(&self.model, &file.display().to_string())),
+            false => std::fs::read_to_string(file).map_err(Error::io(file)),
+        };
+        let text = comm.agree(text)?;
         Ok(About {
             title: self.model.title.clone(),
             model: self.model.file.display().to_string(),
@@ -292,14 +314,4 @@ impl FullModel {
         };
         system.dofs.owned_nodes().flat_map(label).collect()
     }
-}
-
-/// The mesh of a model.
-pub(super) fn read_mesh(model: &Model) -> Result<Mesh> {
-    if let Err(reason) = File::open(&model.mesh_file) {
-        let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
-        let advice = "Give its path in [mesh] file, relative to the model file";
-        return Err(Error::Input(located(&model.file, model.mesh_line, format!("{what}. {advice}"))));
-    }
-    mesh::read(&model.mesh_file, model.mesh_unit)
 }

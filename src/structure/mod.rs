@@ -14,6 +14,7 @@ pub mod contact_surface;
 mod digest;
 mod distribution;
 mod equilibrium_checks;
+mod files;
 mod free_motions;
 mod full;
 pub mod plausibility;
@@ -25,6 +26,7 @@ mod surface_motion;
 
 pub use digest::digest;
 pub use equilibrium_checks::EquilibriumChecks;
+pub use files::ModelFiles;
 pub use free_motions::{FreeMotion, free_motions};
 pub use full::{Families, FullModel};
 pub use ranked::Ranked;
@@ -70,7 +72,8 @@ impl Default for StructureOptions {
 }
 
 impl Structure {
-    /// Reads a model file (TOML) with its mesh, or a super-element's file (HDF5), and checks it. Collective.
+    /// Reads a model file (TOML) with its mesh, a deck of Abaqus or CalculiX, or a super-element's file (HDF5), and
+    /// checks it. Collective.
     ///
     /// ```no_run
     /// use squeal::structure::StructureOptions;

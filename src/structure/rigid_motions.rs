@@ -5,10 +5,8 @@ use std::path::Path;
 use nalgebra::{Matrix6, SMatrix};
 
 use super::FullModel;
-use super::distribution::distribute;
-use super::full::read_mesh;
 use crate::assembly::System;
-use crate::model;
+use crate::mesh::Mesh;
 use crate::native::{Block, Comm};
 use crate::stability::Mode;
 use crate::{Error, Result};
@@ -19,12 +17,10 @@ impl FullModel {
     /// # Errors
     /// [`Error::Input`] where there is no such part, or see [`FullModel::read`].
     pub fn read_part(comm: &Comm, path: &Path, part: &str) -> Result<FullModel> {
-        let model = comm.agree(model::read(path).and_then(|model| model.only(part)))?;
-        let one = |mesh: crate::mesh::Mesh| {
+        let one = |mesh: Mesh| {
             mesh.only(part).ok_or_else(|| Error::input(format!("{}: the mesh has no part {part:?}", path.display())))
         };
-        let piece = distribute(comm, || read_mesh(&model).and_then(one))?;
-        comm.agree(FullModel::new(model, piece, comm))
+        FullModel::from_files(comm, path, |model, mesh| Ok((model.only(part)?, mesh.map(one).transpose()?)))
     }
 }
 

@@ -3,6 +3,7 @@
 mod bad_input;
 mod browser;
 mod command_line;
+mod deck;
 mod external_matrices;
 mod json;
 mod matrix_formats;

@@ -20,6 +20,7 @@
 //! `make calculix` prints the tables. Without ccx (`scripts/setup.sh --tests` installs it) there is nothing to compare
 //! with, and the tests fail.
 
+mod decks;
 mod elements;
 
 use std::fmt::Write;

@@ -48,6 +48,16 @@ static KINDS: [GmshType; 26] = [
     kind(92, "64-node hexahedra", 3, 64),
 ];
 
+/// The type of a shape.
+pub fn of_shape(shape: Shape) -> &'static GmshType {
+    KINDS.iter().find(|kind| kind.shape() == Some(shape)).expect("every shape has a type")
+}
+
+/// The type of a facet's shape.
+pub fn of_facet(shape: FacetShape) -> &'static GmshType {
+    KINDS.iter().find(|kind| kind.is_facet() && kind.n_nodes == shape.n_nodes()).expect("every shape has a type")
+}
+
 /// The kind with Gmsh's number.
 pub fn by_number(number: i32) -> Option<&'static GmshType> {
     KINDS.iter().find(|kind| kind.number == number)

@@ -11,6 +11,9 @@ mod scan;
 mod sections;
 #[cfg(test)]
 mod tests;
+mod write;
+
+pub use write::write;
 
 use super::Mesh;
 use crate::{Error, Result};

@@ -1,6 +1,6 @@
 //! Whether model file and mesh go together.
 
-use super::{Contact, LoadKind, Model, Rotation, located, names};
+use super::{Contact, LoadKind, Model, Place, Rotation, names};
 use crate::algebra::{cross, sub};
 use crate::mesh::Mesh;
 use crate::{Error, Result};
@@ -28,8 +28,8 @@ struct ModelCheck<'a> {
 }
 
 impl ModelCheck<'_> {
-    fn complain(&mut self, line: usize, message: String) {
-        self.messages.push(located(&self.model.file, line, message));
+    fn complain(&mut self, place: Place, message: String) {
+        self.messages.push(place.message(&self.model.files, message));
     }
 
     /// Parts of the file and physical volumes are the same.
@@ -38,17 +38,17 @@ impl ModelCheck<'_> {
         let volumes = || mesh.parts.iter().map(String::as_str);
         for part in model.parts.iter().filter(|part| !mesh.parts.contains(&part.name)) {
             let advice = names::advice(&part.name, volumes());
-            self.complain(part.line, format!("the mesh has no physical volume (part {:?}). {advice}", part.name));
+            self.complain(part.place, format!("the mesh has no physical volume (part {:?}). {advice}", part.name));
         }
         for (i, part) in model.parts.iter().enumerate() {
             if model.parts[..i].iter().any(|other| other.name == part.name) {
-                self.complain(part.line, format!("the part is there twice (part {:?}). Keep one of them", part.name));
+                self.complain(part.place, format!("the part is there twice (part {:?}). Keep one of them", part.name));
             }
         }
         for volume in volumes().filter(|volume| !model.parts.iter().any(|part| part.name == *volume)) {
             let advice = format!("Add [part.{volume:?}] with a material");
             self.complain(
-                model.mesh_line,
+                model.mesh_place,
                 format!("a physical volume of the mesh is no part (volume {volume:?}). {advice}"),
             );
         }
@@ -58,29 +58,29 @@ impl ModelCheck<'_> {
     fn names(&mut self) {
         let model = self.model;
         for fix in &model.fixes {
-            self.node_set(&fix.nodes, fix.line, "fix");
+            self.node_set(&fix.nodes, fix.place, "fix");
         }
         for connector in &model.connectors {
             for end in &connector.between {
-                self.node_set(end, connector.line, &format!("connector {:?}", connector.name));
+                self.node_set(end, connector.place, &format!("connector {:?}", connector.name));
             }
         }
     }
 
     /// Whether a surface or node set exists; complains where it does not.
-    fn node_set(&mut self, name: &str, line: usize, item: &str) -> bool {
+    fn node_set(&mut self, name: &str, place: Place, item: &str) -> bool {
         let mesh = self.mesh;
         if mesh.surfaces.contains_key(name) || mesh.node_sets.contains_key(name) {
             return true;
         }
         let all = mesh.surfaces.keys().chain(mesh.node_sets.keys()).map(String::as_str);
         let advice = names::advice(name, all);
-        self.complain(line, format!("the mesh has no surface or node set {name:?} ({item}). {advice}"));
+        self.complain(place, format!("the mesh has no surface or node set {name:?} ({item}). {advice}"));
         false
     }
 
     /// Whether a surface exists; complains where it does not, or is a curve or point.
-    fn surface(&mut self, name: &str, line: usize, item: &str) -> bool {
+    fn surface(&mut self, name: &str, place: Place, item: &str) -> bool {
         let mesh = self.mesh;
         if mesh.surfaces.contains_key(name) {
             return true;
@@ -91,7 +91,7 @@ impl ModelCheck<'_> {
             format!("the mesh has no physical surface {name:?} ({item})")
         };
         let advice = names::advice(name, mesh.surfaces.keys().map(String::as_str));
-        self.complain(line, format!("{what}. {advice}"));
+        self.complain(place, format!("{what}. {advice}"));
         false
     }
 
@@ -101,24 +101,24 @@ impl ModelCheck<'_> {
         for load in &model.loads {
             let item = format!("load {:?}", load.name);
             match load.kind {
-                LoadKind::ForceByNode(_) => self.node_set(&load.on, load.line, &item),
-                LoadKind::ForceByArea(_) | LoadKind::Pressure(_) => self.surface(&load.on, load.line, &item),
+                LoadKind::ForceByNode(_) => self.node_set(&load.on, load.place, &item),
+                LoadKind::ForceByArea(_) | LoadKind::Pressure(_) => self.surface(&load.on, load.place, &item),
             };
         }
     }
 
     /// Both surfaces lie on one part each, not the same; then what the pair's motion asks for.
     fn contact(&mut self, contact: &Contact) {
-        let (line, item) = (contact.line, format!("contact {:?}", contact.name));
-        let slave = self.contact_surface(&contact.slave, line, &item);
-        let master = self.contact_surface(&contact.master, line, &item);
+        let (place, item) = (contact.place, format!("contact {:?}", contact.name));
+        let slave = self.contact_surface(&contact.slave, place, &item);
+        let master = self.contact_surface(&contact.master, place, &item);
         let (Some(slave), Some(master)) = (slave, master) else {
             return;
         };
         if slave == master {
             let part = &self.mesh.parts[slave as usize];
             self.complain(
-                line,
+                place,
                 format!("slave and master both lie on the part {part:?} ({item}). Name surfaces of two parts"),
             );
             return;
@@ -127,8 +127,8 @@ impl ModelCheck<'_> {
     }
 
     /// The one part that a contact surface lies on; complains where there is no such part.
-    fn contact_surface(&mut self, name: &str, line: usize, item: &str) -> Option<u32> {
-        if !self.surface(name, line, item) {
+    fn contact_surface(&mut self, name: &str, place: Place, item: &str) -> Option<u32> {
+        if !self.surface(name, place, item) {
             return None;
         }
         let mesh = self.mesh;
@@ -136,7 +136,7 @@ impl ModelCheck<'_> {
             let (inner, all) = (mesh.surfaces[name].inner.len(), mesh.surfaces[name].facets.len());
             let what =
                 format!("{inner} of {all} facets of {name:?} lie between two elements, not on the skin ({item})");
-            self.complain(line, format!("{what}. Mesh the two parts apart, without common nodes"));
+            self.complain(place, format!("{what}. Mesh the two parts apart, without common nodes"));
             return None;
         }
         let parts = mesh.parts_of_surface(name)?;
@@ -145,13 +145,13 @@ impl ModelCheck<'_> {
         }
         let on: Vec<&str> = parts.iter().map(|&part| mesh.parts[part as usize].as_str()).collect();
         let what = format!("the surface {name:?} lies on several parts: {} ({item})", on.join(", "));
-        self.complain(line, format!("{what}. Make a physical surface for each part, and a contact for each"));
+        self.complain(place, format!("{what}. Make a physical surface for each part, and a contact for each"));
         None
     }
 
     /// A pair slides where the master alone turns; all others stick, and need `stick` where they have friction.
     fn motion(&mut self, contact: &Contact, item: &str) {
-        let (model, line) = (self.model, contact.line);
+        let (model, place) = (self.model, contact.place);
         let slave = model.turning(&contact.slave, self.mesh);
         let master = model.turning(&contact.master, self.mesh);
         let message = match (slave, master) {
@@ -174,7 +174,7 @@ impl ModelCheck<'_> {
             ),
             _ => return,
         };
-        self.complain(line, message);
+        self.complain(place, message);
     }
 
     /// Whether a contact has friction, in the file or in the sweep.
@@ -189,7 +189,7 @@ impl ModelCheck<'_> {
         if !model.frictions.is_empty() && model.swept_contacts(self.mesh).is_empty() {
             let what = "no contact slides, so there is none to sweep (sweep)";
             let advice = "Name contacts in it, or add a [[rotation]] of the disc";
-            self.complain(model.sweep_line, format!("{what}. {advice}"));
+            self.complain(model.sweep_place, format!("{what}. {advice}"));
         }
     }
 }

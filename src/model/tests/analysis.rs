@@ -23,7 +23,7 @@ fn bands_and_sweeps_must_not_be_empty() {
 fn the_reduction_is_kept_and_checked() {
     let with = |text: &str| parsed(&format!("{GOOD}[reduction]\n{text}\n"));
     let reduction = with("contacts = 44\nband = [0, 12000]").unwrap().reduction.unwrap();
-    assert_eq!((reduction.contacts, reduction.line), (44, 49));
+    assert_eq!((reduction.contacts, reduction.place.line), (44, 49));
     assert!(with("contacts = 0\nband = [0, 1]").unwrap_err().contains(":50: contacts must be above 0 (reduction)"));
     let said = with("contacts = 1.5\nband = [0, 1]").unwrap_err();
     assert!(said.contains("expected a whole number ([reduction])"), "{said}");

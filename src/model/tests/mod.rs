@@ -96,7 +96,7 @@ fn values_come_in_si_units_and_parts_in_the_order_of_the_file() {
     let model = parsed(GOOD).unwrap();
     assert_eq!(model.title, "brake");
     assert_eq!(model.mesh_file, Path::new("cases/brake.msh"));
-    assert_eq!((model.mesh_unit, model.mesh_line), (1e-3, 3));
+    assert_eq!((model.mesh_unit, model.mesh_place.line), (1e-3, 3));
     let names: Vec<&str> = model.parts.iter().map(|part| part.name.as_str()).collect();
     assert_eq!(names, ["disc", "a_pad"]);
     assert_eq!(model.parts[0].rayleigh, Rayleigh { alpha: 10.0, beta: 1e-8 });
@@ -111,17 +111,17 @@ fn values_come_in_si_units_and_parts_in_the_order_of_the_file() {
     assert_eq!(model.connectors[0].at, Some([1e-2, 0.0, 0.0]));
     assert_eq!(model.loads[0].name, "back");
     assert_eq!(model.loads[0].kind, LoadKind::ForceByNode([0.0, 0.0, 4000.0]));
-    assert_eq!((model.sweep_line, model.reduction), (48, None));
+    assert_eq!((model.sweep_place.line, model.reduction), (48, None));
 }
 
 #[test]
 fn a_part_alone_has_nothing_to_sweep() {
     let model = parsed(GOOD).unwrap();
-    assert!(!model.frictions.is_empty() && model.sweep_line > 0);
+    assert!(!model.frictions.is_empty() && model.sweep_place.line > 0);
     let part = model.only("disc").unwrap();
     assert_eq!((part.parts.len(), part.contacts.len(), part.loads.len()), (1, 0, 0));
     assert!(part.swept.is_empty() && part.frictions.is_empty());
-    assert_eq!(part.sweep_line, 0);
+    assert_eq!(part.sweep_place.line, 0);
 }
 
 #[test]

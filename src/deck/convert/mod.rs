@@ -1,0 +1,118 @@
+//! From a deck to a [`Model`] and its [`Mesh`], in SI units; what the model cannot express is refused with its place.
+//!
+//! ```text
+//! Deck --Assembly--> one numbering --bodies--> parts, materials, tetrahedra
+//!                                  --regions--> surfaces, node sets   (each name once)
+//!                                  --history--> what acts at the end of the last step: supports, loads, rotations
+//!                                  --pairs, couplings--> contacts, connectors
+//! ```
+
+mod analysis;
+mod bodies;
+mod couplings;
+mod history;
+mod materials;
+mod pairs;
+mod penalty;
+mod regions;
+mod supports;
+#[cfg(test)]
+mod tests;
+
+use super::assembly::Assembly;
+use super::summary::DeckSummary;
+use super::types::Deck;
+use crate::Result;
+use crate::mesh::Mesh;
+use crate::model::{Model, Place, UnitSystem};
+use bodies::Bodies;
+use regions::Regions;
+
+pub use pairs::settle;
+
+/// What is known of a deck's units.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct KnownUnits {
+    /// The system, where it is named.
+    pub system: Option<UnitSystem>,
+    /// Metres per unit of length, where that is known.
+    pub length: Option<f64>,
+}
+
+/// A deck as the program analyses it.
+#[derive(Debug)]
+pub struct Converted {
+    /// Parts, contacts, loads and the rest.
+    pub model: Model,
+    /// Its mesh, m.
+    pub mesh: Mesh,
+    /// What was understood.
+    pub summary: DeckSummary,
+}
+
+/// What a conversion works with, and what it has so far.
+struct Conversion<'d> {
+    deck: &'d Deck,
+    assembly: Assembly<'d>,
+    units: UnitSystem,
+    bodies: Bodies,
+    regions: Regions,
+    notes: Vec<String>,
+}
+
+/// Converts a deck.
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input), `file:line: what. what to do`: names and numbers that mean nothing, elements
+/// and materials that cannot be analysed, units that cannot be found, constraints that the model cannot express.
+pub fn convert(deck: &Deck, known: KnownUnits) -> Result<Converted> {
+    let assembly = Assembly::new(deck)?;
+    let sections = bodies::sections(&assembly)?;
+    let units = materials::units(deck, &sections, known)?;
+    let (bodies, mesh) = Bodies::new(&assembly, &sections, &units)?;
+    let regions = Regions::new(mesh);
+    let notes = deck.notes.clone();
+    let mut conversion = Conversion { deck, assembly, units, bodies, regions, notes };
+    let model = conversion.model()?;
+    let Conversion { assembly, regions, notes, .. } = conversion;
+    let summary = DeckSummary::new(&assembly, &units, notes);
+    Ok(Converted { model, mesh: regions.mesh, summary })
+}
+
+impl Conversion<'_> {
+    fn model(&mut self) -> Result<Model> {
+        self.named_surfaces()?;
+        let contacts = self.contacts()?;
+        let state = history::State::of(self.deck);
+        let (mut fixes, mut loads) = (self.supports(&state)?, self.loads(&state)?);
+        let connectors = self.couplings(&state, &mut fixes, &mut loads)?;
+        self.node_sets()?;
+        let settings = self.settings();
+        let file = self.deck.files[0].clone();
+        Ok(Model {
+            title: self.deck.title.clone().unwrap_or_else(|| stem(&file)),
+            mesh_file: file.clone(),
+            files: self.deck.files.clone(),
+            file,
+            mesh_unit: self.units.length,
+            unit_system: None,
+            mesh_place: Place { file: 0, line: 1 },
+            parts: self.bodies.parts.clone(),
+            rotations: self.rotations(&state)?,
+            fixes,
+            contacts: self.with_friction_of(&state, contacts)?,
+            connectors,
+            loads,
+            band: settings.band,
+            friction_damping: settings.friction_damping,
+            swept: Vec::new(),
+            frictions: Vec::new(),
+            sweep_place: Place::default(),
+            reduction: None,
+        })
+    }
+}
+
+fn stem(file: &std::path::Path) -> String {
+    file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}

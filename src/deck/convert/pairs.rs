@@ -1,0 +1,146 @@
+//! Contact pairs.
+
+use super::Conversion;
+use super::history::State;
+use crate::Result;
+use crate::deck::types::{Behaviour, ContactPair, Interaction};
+use crate::mesh::Mesh;
+use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, names};
+
+/// Tables of a contact law are straight to this relative difference.
+const STRAIGHT: f64 = 1e-6;
+
+impl<'d> Conversion<'d> {
+    /// The contact pairs with their normal laws.
+    pub(super) fn contacts(&mut self) -> Result<Vec<Contact>> {
+        let mut contacts: Vec<Contact> = Vec::new();
+        for pair in &self.deck.contact_pairs {
+            let [slave, master] =
+                [self.surface_name(&pair.slave, pair.place)?, self.surface_name(&pair.master, pair.place)?];
+            let interaction = self.interaction(pair)?;
+            let name = format!("{slave} / {master}");
+            if contacts.iter().any(|other| other.name == name) {
+                return Err(self.assembly.error(pair.place, format_args!("the contact pair {name} is there already")));
+            }
+            let stiffness = self.stiffness(interaction, &slave, &master)?;
+            if pair.adjust {
+                self.notes.push(format!("ADJUST of {name} is not applied: the gaps are those of the mesh"));
+            }
+            contacts.push(Contact {
+                name,
+                slave,
+                master,
+                law: NormalLaw::Linear { stiffness },
+                friction: 0.0,
+                decay: None,
+                stick: None,
+                separation: !interaction.no_separation,
+                search_distance: None,
+                place: pair.place,
+            });
+        }
+        Ok(contacts)
+    }
+
+    fn interaction(&self, pair: &ContactPair) -> Result<&'d Interaction> {
+        let interactions = &self.deck.interactions;
+        interactions.iter().find(|interaction| interaction.name == pair.interaction).ok_or_else(|| {
+            let advice = names::advice(&pair.interaction, interactions.iter().map(|own| own.name.as_str()));
+            let name = self.deck.spelled(&pair.interaction);
+            self.assembly.error(pair.place, format_args!("there is no *SURFACE INTERACTION {name}. {advice}"))
+        })
+    }
+
+    /// The stiffness of the normal law, N/m3.
+    fn stiffness(&mut self, interaction: &Interaction, slave: &str, master: &str) -> Result<f64> {
+        let unit = self.units.foundation();
+        match &interaction.behaviour {
+            Behaviour::Linear(stiffness, _) => Ok(stiffness * unit),
+            Behaviour::Table(rows, place) => match slope(rows) {
+                Some(slope) => Ok(slope * unit),
+                None => {
+                    let what = "a table that is no straight line through the origin is not supported. Give LINEAR";
+                    Err(self.assembly.error(*place, what))
+                }
+            },
+            Behaviour::Hard => {
+                let proposed = self.proposed_stiffness(slave, master);
+                self.notes.push(format!("the contact {slave} / {master} gets a stiffness of {proposed:.3e} N/m3"));
+                Ok(proposed)
+            }
+        }
+    }
+
+    /// The contacts with the friction of the last step.
+    pub(super) fn with_friction_of(&mut self, state: &State, mut contacts: Vec<Contact>) -> Result<Vec<Contact>> {
+        for (contact, pair) in contacts.iter_mut().zip(&self.deck.contact_pairs) {
+            let own = self.interaction(pair)?.friction;
+            let friction = state.friction(&pair.interaction).or(own);
+            let Some(friction) = friction else { continue };
+            if friction.coefficient > LARGEST_FRICTION {
+                let what =
+                    format_args!("a friction coefficient of {} is above {LARGEST_FRICTION}", friction.coefficient);
+                return Err(self.assembly.error(friction.place, what));
+            }
+            contact.friction = friction.coefficient;
+            contact.stick =
+                friction.stick.or(own.and_then(|own| own.stick)).map(|stick| stick * self.units.foundation());
+        }
+        Ok(contacts)
+    }
+}
+
+/// The slope of a table of pressure over overlap, if it is a straight line through the origin. Rows without pressure
+/// are the gap.
+fn slope(rows: &[[f64; 2]]) -> Option<f64> {
+    let pressed: Vec<f64> = rows.iter().filter(|[p, _]| *p != 0.0).map(|[p, overlap]| p / overlap).collect();
+    let first = *pressed.first().filter(|slope| slope.is_finite() && **slope > 0.0)?;
+    let begins = rows.iter().filter(|[p, _]| *p == 0.0).all(|[_, overlap]| *overlap <= 0.0);
+    (begins && pressed.iter().all(|slope| (slope / first - 1.0).abs() < STRAIGHT)).then_some(first)
+}
+
+/// Gives the contacts of a deck what depends on the rotations: the turning side is the master, pairs that slide do not
+/// stick, and others with friction stick with half of the normal stiffness where the deck has none. Returns what was
+/// done.
+pub fn settle(model: &mut Model, mesh: &Mesh, is_of_deck: impl Fn(&Contact) -> bool) -> Vec<String> {
+    let mut notes = Vec::new();
+    let turns = |surface: &str, model: &Model| {
+        let part = mesh.part_of_surface(surface).map(|part| &mesh.parts[part as usize]);
+        model.rotations.iter().any(|rotation| Some(&rotation.part) == part)
+    };
+    for i in 0..model.contacts.len() {
+        let mut contact = model.contacts[i].clone();
+        if !is_of_deck(&contact) {
+            continue;
+        }
+        if turns(&contact.slave, model) && !turns(&contact.master, model) {
+            std::mem::swap(&mut contact.slave, &mut contact.master);
+            notes.push(format!("slave and master of {} are swapped: the turning side is the master", contact.name));
+        }
+        let (NormalLaw::Linear { stiffness } | NormalLaw::Cubic { k1: stiffness, .. }) = contact.law;
+        if model.sliding(&contact, mesh).is_some() {
+            contact.stick = None;
+        } else if contact.stick.is_none() && contact.friction > 0.0 {
+            contact.stick = Some(0.5 * stiffness);
+            notes.push(format!("{} sticks with {:.3e} N/m3, half of its stiffness", contact.name, 0.5 * stiffness));
+        }
+        model.contacts[i] = contact;
+    }
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slope;
+
+    #[test]
+    fn a_table_is_a_straight_line_through_the_origin_or_nothing() {
+        assert_eq!(slope(&[[0.0, 0.0], [10.0, 0.5], [40.0, 2.0]]), Some(20.0));
+        assert_eq!(slope(&[[0.0, -0.1], [0.0, 0.0], [10.0, 0.5]]), Some(20.0));
+        for bad in
+            [vec![[0.0, 0.0]], vec![[0.0, 0.0], [1.0, 1.0], [4.0, 2.0]], vec![[0.0, 0.1], [1.0, 0.2]], vec![[1.0, 0.0]]]
+        {
+            assert_eq!(slope(&bad), None, "{bad:?}");
+        }
+    }
+}

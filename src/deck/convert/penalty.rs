@@ -1,0 +1,45 @@
+//! The stiffness of a contact for which a deck has none: `HARD`, or nothing said.
+//!
+//! A penalty is stiff enough where the overlap is small beside the deformation of the elements next to it, and stiffer
+//! only costs digits. So it is a multiple of the stiffness per area of a layer of elements of the softer side:
+//!
+//! ```text
+//! k_n = 10 min(E_slave / h_slave, E_master / h_master)
+//! ```
+//!
+//! E is the smallest Young's modulus of the part, h the edge of a mean facet of the surface, taken for a square or, if it
+//! is a triangle, half of one.
+//! The factor is that of Abaqus's default penalty, "10 times the representative underlying element stiffness" (Abaqus
+//! Analysis User's Guide, "Contact constraint enforcement methods in Abaqus/Standard").
+
+use super::super::geometry::area_and_centroid;
+use super::Conversion;
+use super::materials::youngs;
+use crate::mesh::{Facet, Mesh, Surface};
+use nalgebra::Matrix6;
+
+/// Multiple of the stiffness of a layer of elements.
+const STIFFNESS_FACTOR: f64 = 10.0;
+
+impl Conversion<'_> {
+    /// The proposed stiffness of a contact between two surfaces of the mesh, N/m3.
+    pub(super) fn proposed_stiffness(&self, slave: &str, master: &str) -> f64 {
+        let mesh = &self.regions.mesh;
+        let layer = |surface: &str| {
+            let surface = &mesh.surfaces[surface];
+            let young = |part: &u32| {
+                let rows = &self.bodies.parts[*part as usize].material.elasticity;
+                youngs(&Matrix6::from_fn(|i, j| rows[i][j]))[0]
+            };
+            surface.parts.iter().map(young).fold(f64::INFINITY, f64::min) / facet_size(mesh, surface)
+        };
+        STIFFNESS_FACTOR * layer(slave).min(layer(master))
+    }
+}
+
+/// Edge of a mean facet, m: a quadrilateral is a square, a triangle half of one.
+fn facet_size(mesh: &Mesh, surface: &Surface) -> f64 {
+    let of_triangle = |facet: &Facet| if facet.corners().len() == 3 { 2.0 } else { 1.0 };
+    let squares: f64 = surface.facets.iter().map(|facet| of_triangle(facet) * area_and_centroid(mesh, facet).0).sum();
+    (squares / surface.facets.len() as f64).sqrt()
+}

@@ -1,0 +1,194 @@
+//! Supports, loads and rotations.
+
+use std::collections::BTreeMap;
+
+use super::Conversion;
+use super::bodies::UNUSED;
+use super::history::State;
+use crate::Result;
+use crate::algebra::{norm, scale, sub};
+use crate::deck::sets::Kind;
+use crate::deck::types::{ActionKind, Entry, Spin};
+use crate::model::{Fix, Load, LoadKind, Place, Rotation};
+
+/// A force on a node, by axis, with the step that it began in.
+type Forces = BTreeMap<u32, [(usize, f64); 3]>;
+/// A pressure with the step that it began in.
+type Pressure = (usize, f64, Place);
+
+/// Adds to a value of the same step, replaces one of an earlier step.
+fn add(known: &mut (usize, f64), step: usize, value: f64) {
+    *known = if known.0 == step { (step, known.1 + value) } else { (step, value) };
+}
+
+impl Conversion<'_> {
+    /// Displacements held at zero; those of reference nodes are left to the couplings.
+    pub(super) fn supports(&mut self, state: &State) -> Result<Vec<Fix>> {
+        let mut fixes: Vec<Fix> = Vec::new();
+        for (_, action) in state.actions() {
+            let ActionKind::Boundary(of, [first, last], value) = &action.what else { continue };
+            let nodes = self.bodies.used(&self.assembly.set(Kind::Node, 0, of, action.place)?);
+            // Solids have no rotations to hold, and nodes outside them no stiffness.
+            if *first > 3 || nodes.is_empty() {
+                continue;
+            }
+            if *value != 0.0 {
+                let what = "a displacement other than 0 is not supported. Press the parts together by a load";
+                return Err(self.assembly.error(action.place, what));
+            }
+            let name = self.set_name(of, "support", nodes);
+            let axes: [bool; 3] = std::array::from_fn(|i| (*first..=*last).contains(&(i as u8 + 1)));
+            match fixes.iter_mut().find(|fix| fix.nodes == name) {
+                Some(fix) => (0..3).for_each(|i| fix.axes[i] |= axes[i]),
+                None => fixes.push(Fix { nodes: name, axes, place: action.place }),
+            }
+        }
+        Ok(fixes)
+    }
+
+    /// The mesh's name of a set of nodes: the deck's, or `support 1` and so on.
+    fn set_name(&mut self, of: &Entry, word: &str, nodes: Vec<u32>) -> String {
+        let name = match of {
+            Entry::Name(name) => self.deck.spelled(name),
+            Entry::Number(number) => format!("node {number}"),
+            Entry::Range(..) => word.to_owned(),
+        };
+        self.regions.add_node_set(&name, nodes)
+    }
+
+    /// Forces on nodes of solids, and pressures.
+    pub(super) fn loads(&mut self, state: &State) -> Result<Vec<Load>> {
+        let mut loads = self.forces(state)?;
+        loads.extend(self.face_pressures(state)?);
+        let mut on_surfaces: BTreeMap<&str, Pressure> = BTreeMap::new();
+        for (step, action) in state.actions() {
+            let ActionKind::SurfacePressure(surface, value) = &action.what else { continue };
+            let known = on_surfaces.entry(surface).or_insert((step, 0.0, action.place));
+            let mut sum = (known.0, known.1);
+            add(&mut sum, step, *value);
+            *known = (sum.0, sum.1, action.place);
+        }
+        for (surface, (_, value, place)) in on_surfaces {
+            let on = self.surface_name(surface, place)?;
+            let kind = LoadKind::Pressure(value * self.units.stress());
+            loads.push(Load { name: format!("pressure on {on}"), on, kind, place });
+        }
+        Ok(loads)
+    }
+
+    /// Nodes with the same force are one load.
+    fn forces(&mut self, state: &State) -> Result<Vec<Load>> {
+        let (mut forces, mut places, mut named) = (Forces::new(), BTreeMap::new(), Vec::new());
+        for (step, action) in state.actions() {
+            let ActionKind::Force(of, axis, value) = &action.what else { continue };
+            let nodes = self.assembly.set(Kind::Node, 0, of, action.place)?;
+            let nodes: Vec<u32> = nodes.into_iter().filter(|&node| self.is_used(node)).collect();
+            if nodes.is_empty() {
+                continue;
+            }
+            if *axis > 3 {
+                return Err(self.assembly.error(action.place, "a moment on nodes of solids, which do not rotate"));
+            }
+            let nodes = self.bodies.used(&nodes);
+            for &node in &nodes {
+                add(&mut forces.entry(node).or_default()[usize::from(*axis) - 1], step, *value);
+                places.insert(node, action.place);
+            }
+            if let Entry::Name(name) = of {
+                named.push((self.deck.spelled(name), nodes));
+            }
+        }
+        // Bits of the vector, so that equal forces find each other.
+        let mut groups: BTreeMap<[u64; 3], Vec<u32>> = BTreeMap::new();
+        for (&node, force) in &forces {
+            groups.entry(force.map(|(_, value)| value.to_bits())).or_default().push(node);
+        }
+        let mut loads = Vec::new();
+        for (bits, nodes) in groups {
+            let total = bits.map(|bits| f64::from_bits(bits) * nodes.len() as f64 * self.units.force());
+            if total == [0.0; 3] {
+                continue;
+            }
+            let place = places[&nodes[0]];
+            let name = named.iter().find(|(_, own)| *own == nodes).map(|(name, _)| name.clone());
+            let on = self.regions.add_node_set(&name.unwrap_or_else(|| format!("load {}", loads.len() + 1)), nodes);
+            loads.push(Load { name: format!("force on {on}"), on, kind: LoadKind::ForceByNode(total), place });
+        }
+        Ok(loads)
+    }
+
+    /// Faces with the same pressure are one load.
+    fn face_pressures(&mut self, state: &State) -> Result<Vec<Load>> {
+        let mut pressures: BTreeMap<(u32, u8), Pressure> = BTreeMap::new();
+        for (step, action) in state.actions() {
+            let ActionKind::FacePressure(of, face, value) = &action.what else { continue };
+            let elements = self.assembly.set(Kind::Element, 0, of, action.place)?;
+            for at in self.assembly.with_face(&elements, *face, action.place)? {
+                let known = pressures.entry(at).or_insert((step, 0.0, action.place));
+                let mut sum = (known.0, known.1);
+                add(&mut sum, step, *value);
+                *known = (sum.0, sum.1, action.place);
+            }
+        }
+        let mut groups: BTreeMap<u64, Vec<(u32, u8)>> = BTreeMap::new();
+        for (&at, (_, value, _)) in &pressures {
+            groups.entry(value.to_bits()).or_default().push(at);
+        }
+        let mut loads = Vec::new();
+        for (bits, faces) in groups {
+            let place = pressures[&faces[0]].2;
+            let on = format!("pressure {}", loads.len() + 1);
+            self.add_surface(&on, &faces, place)?;
+            let kind = LoadKind::Pressure(f64::from_bits(bits) * self.units.stress());
+            loads.push(Load { name: on.clone(), on, kind, place });
+        }
+        Ok(loads)
+    }
+
+    /// Each part of which all nodes turn is a turning part.
+    pub(super) fn rotations(&self, state: &State) -> Result<Vec<Rotation>> {
+        let mut rotations: Vec<Rotation> = Vec::new();
+        for (action, of, spin) in state.rotations() {
+            let turning = self.assembly.set(Kind::Node, 0, of, action.place)?;
+            for part in self.turning_parts(&turning, action.place)? {
+                rotations.retain(|rotation| rotation.part != part);
+                if spin.speed != 0.0 {
+                    rotations.push(rotation(part, spin, self.units.length, self.units.time, action.place));
+                }
+            }
+        }
+        Ok(rotations)
+    }
+
+    fn turning_parts(&self, turning: &[u32], place: Place) -> Result<Vec<String>> {
+        let mesh = &self.regions.mesh;
+        let mut turns = vec![false; mesh.nodes.len()];
+        let nodes = turning.iter().map(|&node| self.bodies.node_of[node as usize]).filter(|&node| node != UNUSED);
+        nodes.for_each(|node| turns[node as usize] = true);
+        let mut whole = vec![true; mesh.parts.len()];
+        for element in mesh.elements.iter() {
+            whole[element.part as usize] &= element.nodes.iter().all(|&node| turns[node as usize]);
+        }
+        for element in mesh.elements.iter().filter(|element| whole[element.part as usize]) {
+            element.nodes.iter().for_each(|&node| turns[node as usize] = false);
+        }
+        let parts: Vec<String> =
+            mesh.parts.iter().zip(whole).filter(|(_, whole)| *whole).map(|(part, _)| part.clone()).collect();
+        if parts.is_empty() || turns.contains(&true) {
+            let what = "a rotation needs all nodes of each part that turns, and no others";
+            return Err(self.assembly.error(place, what));
+        }
+        Ok(parts)
+    }
+}
+
+fn rotation(part: String, spin: Spin, length: f64, time: f64, place: Place) -> Rotation {
+    let axis = sub(spin.to, spin.from);
+    Rotation {
+        part,
+        axis: scale(1.0 / norm(axis), axis),
+        through: spin.from.map(|x| x * length),
+        speed: spin.speed / time,
+        place,
+    }
+}

@@ -1,0 +1,436 @@
+//! What a small deck means, what it means in other forms, and what is wrong with broken ones.
+//!
+//! ```text
+//!   pad   element 2, nodes 11 to 20, above z = 0
+//!   -----
+//!   disc  element 1, nodes 1 to 10, below; turns about z
+//! ```
+
+use super::*;
+use crate::deck::parse;
+use crate::error::ErrorKind;
+use crate::model::{Contact, LoadKind, NormalLaw};
+use std::fmt::Write;
+
+const REST: &str = "*NSET, NSET=Hub, GENERATE
+7, 10
+*NSET, NSET=BACK
+14, 18, 19, 20
+*NSET, NSET=TURNING, GENERATE
+1, 10
+*SURFACE, NAME=Disc_face
+DISC, S1
+*SURFACE, NAME=Pad_face
+2, S1
+*MATERIAL, NAME=Steel
+*ELASTIC
+210000., 0.3
+*DENSITY
+7.85e-9
+*DAMPING, ALPHA=5., BETA=1e-7
+*SOLID SECTION, ELSET=DISC, MATERIAL=STEEL
+*SOLID SECTION, ELSET=PAD, MATERIAL=STEEL
+*SURFACE INTERACTION, NAME=I
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+20000.
+*FRICTION
+0.4
+*CONTACT PAIR, INTERACTION=I
+PAD_FACE, DISC_FACE
+*BOUNDARY
+HUB, 1, 3
+*STEP
+*STATIC
+*CLOAD
+BACK, 3, -25.
+*MOTION, ROTATION
+TURNING, 5., 0,0,0, 0,0,1
+*END STEP
+*STEP
+*COMPLEX FREQUENCY, FRICTION DAMPING=YES
+20, 100., 6000.
+*END STEP
+";
+
+/// Ten nodes from a number on: corners, then midsides.
+fn nodes(first: usize, corners: [[f64; 3]; 4]) -> String {
+    const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+    let middle = |[a, b]: [usize; 2]| [0, 1, 2].map(|i| 0.5 * (corners[a][i] + corners[b][i]));
+    let all = corners.into_iter().chain(EDGES.map(middle));
+    let mut out = String::new();
+    all.zip(first..).for_each(|([x, y, z], n)| writeln!(out, "{n}, {x}, {y}, {z}").unwrap());
+    out
+}
+
+fn good() -> String {
+    let disc = nodes(1, [[0.0; 3], [0.0, 10.0, 0.0], [10.0, 0.0, 0.0], [0.0, 0.0, -10.0]]);
+    let pad = nodes(11, [[0.0; 3], [10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0]]);
+    let element = |number: usize, first: usize| {
+        let nodes: Vec<String> = (first..first + 10).map(|node| node.to_string()).collect();
+        format!("{number}, {}\n", nodes.join(", "))
+    };
+    let (one, two) = (element(1, 1), element(2, 11));
+    format!(
+        "*HEADING\ntwo blocks\n*NODE\n{disc}{pad}*ELEMENT, TYPE=C3D10, ELSET=Disc\n{one}*ELEMENT, TYPE=C3D10M, ELSET=PAD\n{two}{REST}"
+    )
+}
+
+/// Reads a deck of these lines as the program does; messages without the folder.
+fn read(text: &str) -> std::result::Result<Converted, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.inp");
+    std::fs::write(&file, text).unwrap();
+    let prefix = format!("{}/", folder.path().display());
+    let read = parse(&file).and_then(|deck| convert(&deck, KnownUnits::default())).and_then(|mut converted| {
+        settle(&mut converted.model, &converted.mesh, |_| true);
+        converted.model.check_against(&converted.mesh)?;
+        Ok(converted)
+    });
+    read.map_err(|error| {
+        assert_eq!(error.kind(), ErrorKind::Input);
+        error.to_string().replace(&prefix, "")
+    })
+}
+
+/// The good deck with one thing exchanged.
+#[track_caller]
+fn with(old: &str, new: &str) -> std::result::Result<Converted, String> {
+    let text = good();
+    assert_eq!(text.matches(old).count(), 1, "{old:?}");
+    read(&text.replace(old, new))
+}
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * b.abs()
+}
+
+#[test]
+fn a_deck_in_millimetres_and_tonnes_is_a_model_in_si_units() {
+    let Converted { model, mesh, summary } = read(&good()).unwrap();
+    assert_eq!(
+        (mesh.nodes.len(), mesh.elements.len(), &mesh.parts[..]),
+        (20, 2, &["Disc".to_owned(), "PAD".to_owned()][..])
+    );
+    assert_eq!(mesh.nodes[1], [0.0, 0.01, 0.0]);
+    let material = &model.parts[0].material;
+    assert!(close(material.density, 7850.0) && close(model.parts[0].rayleigh.beta, 1e-7));
+    assert!(close(crate::model::isotropic(material).unwrap()[0], 210e9));
+    let Contact { name, slave, master, law, friction, stick, separation, .. } = &model.contacts[0];
+    assert_eq!((name.as_str(), slave.as_str(), master.as_str()), ("Pad_face / Disc_face", "Pad_face", "Disc_face"));
+    assert!(matches!(law, NormalLaw::Linear { stiffness } if close(*stiffness, 2e13)));
+    assert_eq!((*friction, *stick, *separation), (0.4, None, true));
+    assert_eq!((model.fixes[0].nodes.as_str(), model.fixes[0].axes), ("Hub", [true; 3]));
+    assert_eq!(mesh.node_sets["Hub"], [6, 7, 8, 9]);
+    let LoadKind::ForceByNode(force) = model.loads[0].kind else { panic!("{:?}", model.loads) };
+    assert_eq!((model.loads[0].on.as_str(), force), ("BACK", [0.0, 0.0, -100.0]));
+    let rotation = &model.rotations[0];
+    assert_eq!((rotation.part.as_str(), rotation.axis, rotation.speed), ("Disc", [0.0, 0.0, 1.0], 5.0));
+    assert_eq!((model.band, model.friction_damping, model.title.as_str()), ([100.0, 6000.0], true, "two blocks"));
+    assert_eq!(
+        (summary.units.as_str(), &summary.elements[..]),
+        ("mm-t-s", &[("C3D10".to_owned(), 1), ("C3D10M".to_owned(), 1)][..])
+    );
+}
+
+#[test]
+fn another_system_of_units_gives_the_same_model() {
+    let factor = |text: String, old: &str, new: &str| {
+        assert_eq!(text.matches(old).count(), 1, "{old:?}");
+        text.replace(old, new)
+    };
+    // mm-kg-ms: stresses in GPa, densities in kg/mm3, forces in kN, rates in 1/ms, frequencies in kHz.
+    let changes = [
+        ("210000., 0.3", "210., 0.3"),
+        ("7.85e-9", "7.85e-6"),
+        ("ALPHA=5., BETA=1e-7", "ALPHA=5e-3, BETA=1e-4"),
+        ("\n20000.\n", "\n20.\n"),
+        ("BACK, 3, -25.", "BACK, 3, -25e-3"),
+        ("TURNING, 5.", "TURNING, 5e-3"),
+        ("20, 100., 6000.", "20, .1, 6."),
+    ];
+    let text = changes.iter().fold(good(), |text, (old, new)| factor(text, old, new));
+    let (one, two) = (read(&good()).unwrap(), read(&text).unwrap());
+    assert_eq!(two.summary.units, "mm-kg-ms");
+    let numbers = |converted: &Converted| {
+        let model = &converted.model;
+        let (part, NormalLaw::Linear { stiffness }) = (&model.parts[0], model.contacts[0].law) else { panic!() };
+        let LoadKind::ForceByNode([_, _, force]) = model.loads[0].kind else { panic!() };
+        let c = part.material.elasticity[0][0];
+        [
+            c,
+            part.material.density,
+            part.rayleigh.alpha,
+            part.rayleigh.beta,
+            stiffness,
+            force,
+            model.rotations[0].speed,
+            model.band[1],
+        ]
+    };
+    assert!(
+        numbers(&one).iter().zip(numbers(&two)).all(|(a, b)| close(*a, b)),
+        "{:?} {:?}",
+        numbers(&one),
+        numbers(&two)
+    );
+}
+
+#[test]
+fn instances_are_moved_and_then_turned() {
+    let text = good();
+    let (mesh, rest) = text.split_once("*MATERIAL").unwrap();
+    let (heading, mesh) = mesh.split_once("*NODE").unwrap();
+    let sections = "*SOLID SECTION, ELSET=DISC, MATERIAL=STEEL\n*SOLID SECTION, ELSET=PAD, MATERIAL=STEEL\n";
+    let rest = rest.replace(sections, "").replace("PAD_FACE, DISC_FACE", "b-1.PAD_FACE, B-1.DISC_FACE");
+    let rest =
+        rest.replace("HUB, 1", "b-1.HUB, 1").replace("BACK, 3", "FOUR, 3").replace("TURNING, 5", "B-1.TURNING, 5");
+    let text = format!(
+        "{heading}*PART, NAME=brake\n*NODE{mesh}{sections}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=B-1, PART=Brake\n\
+         1., 2., 3.\n0,0,0, 0,0,1, 90.\n*END INSTANCE\n*NSET, NSET=FOUR, INSTANCE=B-1\nBACK\n*END ASSEMBLY\n*MATERIAL{rest}"
+    );
+    let Converted { model, mesh, summary } = read(&text).unwrap();
+    assert_eq!((summary.instances, &mesh.parts[..]), (1, &["B-1.Disc".to_owned(), "B-1.PAD".to_owned()][..]));
+    // (0, 10, 0) + (1, 2, 3), turned by a right angle: (-12, 1, 3) mm.
+    let x = mesh.nodes[1];
+    assert!([-0.012, 0.001, 0.003].iter().zip(x).all(|(a, b)| (a - b).abs() < 1e-15), "{x:?}");
+    assert_eq!((model.fixes[0].nodes.as_str(), model.loads[0].on.as_str()), ("B-1.Hub", "FOUR"));
+    assert_eq!((model.contacts[0].slave.as_str(), model.rotations[0].part.as_str()), ("B-1.Pad_face", "B-1.Disc"));
+    let message = read(&text.replace("INSTANCE=B-1\n", "INSTANCE=B-2\n")).unwrap_err();
+    assert!(message.contains("there is no instance B-2"), "{message}");
+    let message = read(&text.replace("PART=Brake", "PART=Brakes")).unwrap_err();
+    assert!(message.contains("there is no part Brakes (instance B-1)"), "{message}");
+}
+
+#[test]
+fn a_contact_without_a_stiffness_gets_ten_times_that_of_its_elements() {
+    let linear = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n20000.\n";
+    let Converted { model, summary, .. } = with(linear, "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n").unwrap();
+    // One facet of 50 mm2, half a square with an edge of 10 mm.
+    let NormalLaw::Linear { stiffness } = model.contacts[0].law else { panic!() };
+    assert!((stiffness / (10.0 * 210e9 / 0.01) - 1.0).abs() < 1e-12, "{stiffness}");
+    assert!(summary.notes.iter().any(|note| note.contains("gets a stiffness of 2.100e14 N/m3")), "{:?}", summary.notes);
+}
+
+#[test]
+fn pairs_that_do_not_slide_stick_and_the_turning_side_is_the_master() {
+    let motion = "*MOTION, ROTATION\nTURNING, 5., 0,0,0, 0,0,1\n";
+    let still = with(motion, "").unwrap().model;
+    assert!(close(still.contacts[0].stick.unwrap(), 1e13));
+    let given = with(&format!("0.4\n*CONTACT PAIR, INTERACTION=I\nPAD_FACE, DISC_FACE\n*BOUNDARY\nHUB, 1, 3\n*STEP\n*STATIC\n*CLOAD\nBACK, 3, -25.\n{motion}"),
+        "0.4, 3000.\n*CONTACT PAIR, INTERACTION=I\nPAD_FACE, DISC_FACE\n*BOUNDARY\nHUB, 1, 3\n*STEP\n*STATIC\n*CLOAD\nBACK, 3, -25.\n").unwrap().model;
+    assert!(close(given.contacts[0].stick.unwrap(), 3e12));
+    let swapped = with("PAD_FACE, DISC_FACE", "DISC_FACE, PAD_FACE").unwrap().model;
+    assert_eq!((swapped.contacts[0].slave.as_str(), swapped.contacts[0].master.as_str()), ("Pad_face", "Disc_face"));
+}
+
+#[test]
+fn friction_is_that_of_the_last_step() {
+    let changed = "*CHANGE FRICTION, INTERACTION=I\n*FRICTION\n0.55\n*COMPLEX FREQUENCY, FRICTION DAMPING=YES";
+    let model = with("*COMPLEX FREQUENCY, FRICTION DAMPING=YES", changed).unwrap().model;
+    assert_eq!(model.contacts[0].friction, 0.55);
+}
+
+#[test]
+fn pressures_act_on_faces_and_surfaces() {
+    let loads = |new: &str| {
+        let Converted { model, mesh, .. } = with("*CLOAD\nBACK, 3, -25.\n", new).unwrap();
+        let load = &model.loads[0];
+        let LoadKind::Pressure(pressure) = load.kind else { panic!("{load:?}") };
+        (pressure, mesh.surfaces[&load.on].facets.len(), mesh.surfaces[&load.on].parts[0])
+    };
+    let (pressure, n, part) = loads("*DLOAD\nPAD, P3, 2.5\n");
+    assert!(close(pressure, 2.5e6) && (n, part) == (1, 1));
+    let (pressure, n, part) =
+        loads("*SURFACE, NAME=ALL_PAD\nPAD,\n*DSLOAD\nALL_PAD, P, 1.\n*DSLOAD\nALL_PAD, P, 1.5\n");
+    assert!(close(pressure, 2.5e6) && (n, part) == (4, 1));
+}
+
+#[test]
+fn a_surface_of_nodes_is_the_facets_between_them() {
+    let nodes = "*SURFACE, NAME=Pad_face, TYPE=NODE\n11\n12\n13\n15\n16\n17\n";
+    let Converted { mesh, summary, .. } = with("*SURFACE, NAME=Pad_face\n2, S1\n", nodes).unwrap();
+    assert_eq!(mesh.surfaces["Pad_face"].facets.len(), 1);
+    assert!(summary.notes.iter().any(|note| note.contains("6 nodes is read as the 1 facets")), "{:?}", summary.notes);
+}
+
+/// A connector, a force and a support by couplings: the reference nodes 101 to 103.
+const COUPLINGS: &str = "*NODE
+101, 0., 0., 20.
+102, 0., 0., 20.
+103, 3.3333333333, 3.3333333333, 5.
+*SURFACE, NAME=Side
+PAD, S4
+*SURFACE, NAME=Hub_nodes, TYPE=NODE
+HUB
+*COUPLING, REF NODE=101, SURFACE=SIDE, CONSTRAINT NAME=C1
+*DISTRIBUTING
+*COUPLING, REF NODE=102, SURFACE=HUB_NODES, CONSTRAINT NAME=C2
+*DISTRIBUTING
+*ELEMENT, TYPE=SPRING2, ELSET=S
+901, 101, 102
+*SPRING, ELSET=S
+2, 2
+500.
+*ELEMENT, TYPE=DASHPOT2, ELSET=D
+902, 101, 102
+*DASHPOT, ELSET=D
+3, 3
+0.02
+*MATERIAL, NAME=Steel
+";
+
+#[test]
+fn springs_between_couplings_are_a_connector() {
+    let Converted { model, .. } = with("*MATERIAL, NAME=Steel\n", COUPLINGS).unwrap();
+    let connector = &model.connectors[0];
+    assert_eq!(
+        (connector.between.clone(), connector.at.unwrap()),
+        (["Side".to_owned(), "Hub_nodes".to_owned()], [0.0, 0.0, 0.02])
+    );
+    assert!(close(connector.stiffness[1], 5e5) && close(connector.damping[2], 20.0));
+    assert_eq!((connector.stiffness[0], connector.rotational_stiffness), (0.0, [0.0; 3]));
+    let far = COUPLINGS.replace("102, 0., 0., 20.", "102, 0., 0., 21.");
+    let message = with("*MATERIAL, NAME=Steel\n", &far).unwrap_err();
+    assert!(message.contains("a SPRING2 is supported between the reference nodes"), "{message}");
+}
+
+#[test]
+fn a_held_kinematic_coupling_is_a_support_and_a_distributing_one_spreads_a_force() {
+    let coupled = |kind: &str, action: &str| {
+        let text = format!(
+            "*NODE\n103, 3.3333333333, 3.3333333333, 5.\n*COUPLING, REF NODE=103, SURFACE=DISC_FACE\n{kind}\n{action}\n*MATERIAL, NAME=Steel\n"
+        );
+        with("*MATERIAL, NAME=Steel\n", &text).map(|converted| converted.model)
+    };
+    let held = coupled("*KINEMATIC\n1, 2", "*BOUNDARY\n103, 1, 6").unwrap();
+    assert_eq!((held.fixes[1].nodes.as_str(), held.fixes[1].axes), ("Disc_face", [true, true, false]));
+    let message = coupled("*KINEMATIC", "*BOUNDARY\n103, 1, 3").unwrap_err();
+    assert!(message.contains("where all six displacements of its reference node are held"), "{message}");
+    let spread = coupled("*DISTRIBUTING", "*CLOAD\n103, 3, -7.").unwrap();
+    assert_eq!(spread.loads[1].kind, LoadKind::ForceByArea([0.0, 0.0, -7.0]));
+    let message = coupled("*DISTRIBUTING", "*CLOAD\n103, 1, -7.").unwrap_err();
+    assert!(message.contains("where its line goes through the centroid"), "{message}");
+    let message = coupled("*DISTRIBUTING", "*BOUNDARY\n103, 1, 3").unwrap_err();
+    assert!(message.contains("a support of the reference node of a distributing coupling"), "{message}");
+}
+
+/// What is exchanged, what for, and how the message begins.
+const BROKEN: &[[&str; 3]] = &[
+    ["*HEADING", "*INCLUDE, INPUT=none.inp\n*HEADING", "a.inp:1: cannot read the included file"],
+    ["*HEADING", "*HEADNIG", "a.inp:1: the keyword *HEADNIG is not known. Did you mean *HEADING?"],
+    ["*HEADING", "*TIE, NAME=T\nA, B\n*HEADING", "a.inp:1: *TIE is not supported: ties are not supported yet"],
+    ["*HEADING", "*EQUATION\n2\n1,1,1.,2,1,-1.\n*HEADING", "a.inp:1: *EQUATION is not supported"],
+    ["*HEADING", "*NGEN\n1,2\n*HEADING", "a.inp:1: *NGEN is not supported: nodes and elements are not generated"],
+    ["*HEADING", "*AMPLITUDE, NAME=A, NMAE=B\n*HEADING", "a.inp:1: the parameter NMAE is not supported (*AMPLITUDE)"],
+    ["1, 0, 0, 0\n", "1, 0, 0, 0\n1, 0, 0, 1\n", "a.inp:5: node 1 is there already, with other coordinates"],
+    ["1, 0, 0, 0\n", "1, 0, 0, x\n", "a.inp:4: coordinate 3 of node 1 is \"x\", not a number"],
+    ["1, 0, 0, 0\n", "1, 0, 0, 1e999\n", "a.inp:4: coordinate 3 of node 1 is \"1e999\""],
+    ["1, 0, 0, 0\n", "0, 0, 0, 0\n", "a.inp:4: the number of a node is \"0\", not a whole number"],
+    ["1, 0, 0, 0\n", "99, 0, 0, 0\n", "a.inp:25: element 1 has node 1, which is not there"],
+    ["4, 0, 0, -10\n", "4, 0, 0, 10\n", "a.inp:25: 1 of 2 elements are inverted"],
+    ["1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10", "1, 1, 2, 3, 4, 5, 6, 7", "a.inp:25: element 1 has 7 nodes, but C3D10 has 10"],
+    ["1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10", "2, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10", "a.inp:27: element 2 is there already"],
+    [
+        "1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10",
+        "1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11",
+        "a.inp:25: the element has more nodes",
+    ],
+    ["TYPE=C3D10,", "TYPE=C3D11,", "a.inp:24: elements of the type C3D11 are not supported"],
+    ["TYPE=C3D10,", "TPYE=C3D10,", "a.inp:24: the parameter TPYE is not supported (*ELEMENT). Did you mean TYPE?"],
+    ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub\nHUB", "a.inp:29: the set Hub contains itself"],
+    ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub\nA\n*NSET, NSET=A\nHub", "a.inp:29: the set A contains itself"],
+    ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub, GENERATE\n70, 100", "a.inp:29: there is no node from 70 to 100"],
+    ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub\n7, 100", "a.inp:29: there is no node 100"],
+    ["HUB, 1, 3", "HUBB, 1, 3", "a.inp:54: there is no node set HUBB. Did you mean"],
+    ["HUB, 1, 3", "HUB, 1, 3, 0.1", "a.inp:54: a displacement other than 0 is not supported"],
+    ["HUB, 1, 3", "HUB, 11", "a.inp:54: the displacement \"11\" is not supported"],
+    ["DISC, S1", "DISK, S1", "a.inp:35: there is no element set DISK. Did you mean"],
+    ["DISC, S1", "DISC, S5", "a.inp:35: element 1 is a C3D10, which has no face 5"],
+    ["DISC, S1", "DISC, SPOS", "a.inp:35: the face \"SPOS\" is not supported"],
+    ["DISC, S1\n", "", "a.inp:34: the surface Disc_face is empty"],
+    ["NAME=Pad_face", "NAME=DISC_FACE", "a.inp:36: the surface DISC_FACE is there already, in line 34"],
+    ["*ELASTIC\n210000., 0.3\n", "", "a.inp:38: the material Steel has no *ELASTIC"],
+    ["*DENSITY\n7.85e-9\n", "", "a.inp:38: the material Steel has no *DENSITY"],
+    ["210000., 0.3", "210000., 0.5", "a.inp:40: no material has these constants"],
+    ["210000., 0.3", "-210000., 0.3", "a.inp:40: no material has these constants"],
+    ["7.85e-9", "7.85", "a.inp:44: no system of units makes solids of all materials: Steel has a modulus of"],
+    ["ELSET=PAD, MATERIAL=STEEL", "ELSET=PAD, MATERIAL=STEAL", "a.inp:45: there is no material STEAL. Did you mean"],
+    ["ELSET=PAD, MATERIAL", "ELSET=PADS, MATERIAL", "a.inp:45: there is no element set PADS. Did you mean"],
+    ["ELSET=PAD, MATERIAL", "ELSET=DISC, MATERIAL", "a.inp:45: element 1 is in two sections, of Disc and of Disc part"],
+    ["*SOLID SECTION, ELSET=PAD, MATERIAL=STEEL\n", "", "a.inp:27: element 2 is in no *SOLID SECTION"],
+    ["INTERACTION=I\n", "INTERACTION=J\n", "a.inp:52: there is no *SURFACE INTERACTION J"],
+    ["PAD_FACE, DISC_FACE", "PAD_FACE, DISC_FCE", "a.inp:52: there is no surface DISC_FCE. Did you mean"],
+    ["PAD_FACE, DISC_FACE", "PAD_FACE", "a.inp:52: the master surface is missing"],
+    ["PAD_FACE, DISC_FACE", "PAD_FACE, DISC_FACE\nPAD_FACE, DISC_FACE", "a.inp:53: the contact pair"],
+    ["0.4\n", "-0.4\n", "a.inp:50: the friction coefficient must be 0 or above"],
+    ["0.4\n", "4.\n", "a.inp:50: a friction coefficient of 4 is above 2"],
+    ["\n20000.\n", "\n-1.\n", "a.inp:48: the stiffness of the contact must be above 0"],
+    ["=LINEAR\n20000.", "=TABULAR\n0.,0.\n1.,1.\n4.,2.", "a.inp:48: a table that is no straight line"],
+    ["BACK, 3, -25.", "BACK, 4, -25.", "a.inp:58: a moment on nodes of solids"],
+    ["BACK, 3, -25.", "BACK, 3, ", "a.inp:58: the force is missing"],
+    ["TURNING, 5., 0,0,0, 0,0,1", "TURNING, 5., 0,0,0, 0,0,0", "a.inp:60: the two points of the axis of rotation"],
+    ["TURNING, 5., 0", "HUB, 5., 0", "a.inp:60: a rotation needs all nodes of each part that turns"],
+    ["*STATIC", "*DYNAMIC", "a.inp:56: *DYNAMIC is not supported"],
+    ["*STEP\n*STATIC", "*STEP\n*STEP\n*STATIC", "a.inp:56: a step within the step of line 55"],
+    ["20, 100., 6000.\n*END STEP\n", "20, 100., 6000.\n", "a.inp:62: the step does not end: the deck is cut off"],
+    ["*END STEP\n*STEP\n*COMPLEX", "\0*END STEP\n*STEP\n*COMPLEX", "a.inp:61: here is a zero byte: the file is binary"],
+];
+
+#[test]
+fn broken_decks_are_refused_with_one_message_at_its_place() {
+    let text = good();
+    let mut wrong = Vec::new();
+    for [old, new, begin] in BROKEN {
+        let n = text.matches(old).count();
+        let said = if n == 0 {
+            "nothing to exchange".to_owned()
+        } else {
+            read(&text.replacen(old, new, 1)).err().unwrap_or_default()
+        };
+        if !said.starts_with(begin) || said.lines().count() != 1 {
+            wrong.push(format!("{old:?} -> {new:?}\n   expected {begin:?}\n   found    {said:?}"));
+        }
+    }
+    assert!(BROKEN.len() >= 50 && wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A deck with bytes exchanged, lines left out and lines doubled is read or refused, and nothing panics.
+#[test]
+fn damaged_decks_never_panic() {
+    let text = good() + COUPLINGS;
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.inp");
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = |n: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % n as u64) as usize
+    };
+    const BYTES: &[u8] = b"0123456789,.-*=eE \n\"SCABx\0\xff";
+    let mut n_read = 0;
+    for _ in 0..1500 {
+        let mut lines: Vec<Vec<u8>> = text.lines().map(|line| line.as_bytes().to_vec()).collect();
+        for _ in 0..=random(3) {
+            let at = random(lines.len());
+            match random(4) {
+                0 => _ = lines.remove(at),
+                1 => lines.insert(at, lines[at].clone()),
+                2 => {
+                    let other = random(lines.len());
+                    lines.swap(at, other);
+                }
+                _ => {
+                    let column = random(lines[at].len().max(1));
+                    let byte = BYTES[random(BYTES.len())];
+                    let end = lines[at].len().min(column + 1);
+                    lines[at].splice(column.min(end)..end, [byte]);
+                }
+            }
+        }
+        std::fs::write(&file, lines.join(&b'\n')).unwrap();
+        let read = parse(&file).and_then(|deck| convert(&deck, KnownUnits::default()));
+        n_read += usize::from(read.is_ok());
+    }
+    assert!((100..1400).contains(&n_read), "{n_read} read");
+}

@@ -1,0 +1,62 @@
+//! Supports and steps.
+
+use std::fmt::Write;
+
+use super::{DeckWriter, number};
+use crate::model::{Load, LoadKind, Rotation};
+
+/// Modes that a step asks for, at most.
+const N_MODES: usize = 200;
+
+impl DeckWriter<'_> {
+    /// Supports, a static step with loads and rotations, and a step for the modes.
+    pub(super) fn history(&self, forces: &[(usize, [f64; 3])]) -> String {
+        let mut out = String::new();
+        for fix in &self.model.fixes {
+            out += "*BOUNDARY\n";
+            for axis in (0..3).filter(|&axis| fix.axes[axis]) {
+                writeln!(out, "{0},{1},{1}", self.names.region(&fix.nodes), axis + 1).expect("a string takes all");
+            }
+        }
+        out += "*STEP\n*STATIC\n";
+        self.model.loads.iter().for_each(|load| out += &self.load(load));
+        for (node, force) in forces {
+            out += &self.force(&node.to_string(), *force, 1.0);
+        }
+        self.model.rotations.iter().for_each(|rotation| out += &self.rotation(rotation));
+        let [low, high] = self.model.band.map(|hertz| number(hertz * self.units.time));
+        let procedure = match self.model.friction_damping {
+            true => "*COMPLEX FREQUENCY,FRICTION DAMPING=YES",
+            false => "*FREQUENCY",
+        };
+        out + &format!("*END STEP\n*STEP\n{procedure}\n{N_MODES},{low},{high}\n*END STEP\n")
+    }
+
+    fn load(&self, load: &Load) -> String {
+        let on = self.names.region(&load.on);
+        match load.kind {
+            LoadKind::ForceByNode(force) => {
+                let n = self.mesh.node_set(&load.on).map_or(1, |nodes| nodes.len());
+                self.force(on, force, n as f64)
+            }
+            LoadKind::Pressure(pressure) => format!("*DSLOAD\n{on},P,{}\n", number(pressure / self.units.stress())),
+            // By a coupling.
+            LoadKind::ForceByArea(_) => String::new(),
+        }
+    }
+
+    fn force(&self, on: &str, force: [f64; 3], n: f64) -> String {
+        let parts = (1..).zip(force).filter(|(_, value)| *value != 0.0);
+        let lines = parts.map(|(axis, value)| format!("{on},{axis},{}\n", number(value / n / self.units.force())));
+        let lines: String = lines.collect();
+        if lines.is_empty() { lines } else { format!("*CLOAD\n{lines}") }
+    }
+
+    fn rotation(&self, rotation: &Rotation) -> String {
+        let from = rotation.through.map(|x| x / self.units.length);
+        let to = [0, 1, 2].map(|i| from[i] + rotation.axis[i]);
+        let points: Vec<String> = from.iter().chain(&to).map(|&x| number(x)).collect();
+        let speed = number(rotation.speed * self.units.time);
+        format!("*MOTION,ROTATION\n{},{speed},{}\n", self.names.turning(&rotation.part), points.join(","))
+    }
+}

@@ -1,0 +1,242 @@
+//! A model as the text of a model file.
+
+use std::fmt::{Display, Write};
+
+use nalgebra::Matrix6;
+
+use super::elasticity::{from_compliance, isotropic_compliance};
+use super::read::UNITS;
+use super::{Contact, LoadKind, Material, Model, NormalLaw};
+
+/// Elasticities are isotropic to this relative difference.
+const ISOTROPIC: f64 = 1e-12;
+
+/// The text of a model file that says what `model` does, with its mesh in `mesh_file`.
+///
+/// Lengths that are coordinates of the mesh are written in the model's unit.
+pub fn write(model: &Model, mesh_file: &str) -> String {
+    let mut out = Text(String::new());
+    let unit = UNITS.iter().find(|(_, metres)| *metres == model.mesh_unit).map_or("m", |(name, _)| name);
+    out.line("title", quoted(&model.title));
+    out.table("[mesh]");
+    out.line("file", quoted(mesh_file));
+    out.line("unit", quoted(unit));
+    parts(&mut out, model);
+    for fix in &model.fixes {
+        let axes: String = "xyz".chars().zip(fix.axes).filter(|(_, held)| *held).map(|(axis, _)| axis).collect();
+        out.table("[[fix]]");
+        out.line("nodes", quoted(&fix.nodes));
+        out.line("axes", quoted(&axes));
+    }
+    for rotation in &model.rotations {
+        out.table("[[rotation]]");
+        out.line("part", quoted(&rotation.part));
+        out.line("axis", list(&rotation.axis));
+        out.line("through", list(&rotation.through.map(|x| x / model.mesh_unit)));
+        out.line("speed", number(rotation.speed));
+    }
+    model.contacts.iter().for_each(|own| contact(&mut out, own, model.mesh_unit));
+    connectors(&mut out, model);
+    loads(&mut out, model);
+    analysis(&mut out, model);
+    out.0
+}
+
+/// A text that grows by tables and keys.
+struct Text(String);
+
+impl Text {
+    fn table(&mut self, header: impl Display) {
+        self.0 += &format!("\n{header}\n");
+    }
+
+    fn line(&mut self, key: &str, value: impl Display) {
+        self.0 += &format!("{key} = {value}\n");
+    }
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// The shortest text that is read as the same number.
+fn number(x: f64) -> String {
+    const SHORT: usize = 7;
+    let (plain, exponent) = (format!("{x:?}"), format!("{x:e}"));
+    if plain.len() <= SHORT.max(exponent.len()) { plain } else { exponent }
+}
+
+fn list(numbers: &[f64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(|&x| number(x)).collect();
+    format!("[{}]", numbers.join(", "))
+}
+
+/// Materials, each once, and parts.
+fn parts(out: &mut Text, model: &Model) {
+    let mut written: Vec<(String, &Material)> = Vec::new();
+    let mut names = Vec::new();
+    for part in &model.parts {
+        let same = |own: &Material| own.density == part.material.density && own.elasticity == part.material.elasticity;
+        if let Some((name, _)) = written.iter().find(|(_, own)| own.name == part.material.name && same(own)) {
+            names.push(name.clone());
+            continue;
+        }
+        let is_taken = written.iter().any(|(name, _)| *name == part.material.name);
+        let name =
+            if is_taken { format!("{} of {}", part.material.name, part.name) } else { part.material.name.clone() };
+        material(out, &name, &part.material);
+        written.push((name.clone(), &part.material));
+        names.push(name);
+    }
+    for (part, material) in model.parts.iter().zip(names) {
+        out.table(format!("[part.{}]", quoted(&part.name)));
+        out.line("material", quoted(&material));
+        let (alpha, beta) = (part.rayleigh.alpha, part.rayleigh.beta);
+        if alpha != 0.0 || beta != 0.0 {
+            out.line("rayleigh", format_args!("{{ alpha = {}, beta = {} }}", number(alpha), number(beta)));
+        }
+    }
+}
+
+fn material(out: &mut Text, name: &str, material: &Material) {
+    out.table(format!("[material.{}]", quoted(name)));
+    match isotropic(material) {
+        Some([young, poisson]) => {
+            out.line("young", number(young));
+            out.line("poisson", number(poisson));
+        }
+        None => {
+            let rows: Vec<String> = material.elasticity.iter().map(|row| format!("    {},\n", list(row))).collect();
+            out.line("kind", quoted("full"));
+            out.line("elasticity", format_args!("[\n{}]", rows.concat()));
+        }
+    }
+    out.line("density", number(material.density));
+}
+
+/// Young's modulus (Pa) and Poisson's ratio of an isotropic material.
+pub fn isotropic(material: &Material) -> Option<[f64; 2]> {
+    let given = Matrix6::from_fn(|i, j| material.elasticity[i][j]);
+    // lambda = C_xxyy, G = C_xyxy; E = G (3 lambda + 2 G) / (lambda + G), nu = lambda / (2 (lambda + G)).
+    let (lambda, shear) = (given[(0, 1)], given[(3, 3)]);
+    let young = shear * (3.0 * lambda + 2.0 * shear) / (lambda + shear);
+    let poisson = rounded(lambda / (2.0 * (lambda + shear)));
+    let young = rounded(young);
+    let back = from_compliance(&isotropic_compliance(young, poisson))?;
+    ((back - given).norm() <= ISOTROPIC * given.norm()).then_some([young, poisson])
+}
+
+/// A number without the digits that rounding has changed.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.13e}").parse().unwrap_or(x)
+}
+
+fn contact(out: &mut Text, contact: &Contact, unit: f64) {
+    out.table("[[contact]]");
+    out.line("name", quoted(&contact.name));
+    out.line("slave", quoted(&contact.slave));
+    out.line("master", quoted(&contact.master));
+    match contact.law {
+        NormalLaw::Linear { stiffness } => out.line("law", format_args!("{{ linear = {} }}", number(stiffness))),
+        NormalLaw::Cubic { k1, k3 } => out.line("law", format_args!("{{ cubic = {} }}", list(&[k1, k3]))),
+    }
+    match contact.decay {
+        None => out.line("friction", number(contact.friction)),
+        Some(decay) => {
+            let [at_rest, kinetic] = [1.0, decay.kinetic_ratio].map(|ratio| number(ratio * contact.friction));
+            let decay = number(decay.decay);
+            out.line("friction", format_args!("{{ static = {at_rest}, kinetic = {kinetic}, decay = {decay} }}"));
+        }
+    }
+    if let Some(stick) = contact.stick {
+        out.line("stick", number(stick));
+    }
+    out.line("separation", contact.separation);
+    if let Some(distance) = contact.search_distance {
+        out.line("search", number(distance / unit));
+    }
+}
+
+fn connectors(out: &mut Text, model: &Model) {
+    for connector in &model.connectors {
+        let [a, b] = connector.between.each_ref().map(|name| quoted(name));
+        out.table("[[connector]]");
+        out.line("name", quoted(&connector.name));
+        out.line("between", format_args!("[{a}, {b}]"));
+        if let Some(at) = connector.at {
+            out.line("at", list(&at.map(|x| x / model.mesh_unit)));
+        }
+        out.line("stiffness", list(&connector.stiffness));
+        out.line("rotational_stiffness", list(&connector.rotational_stiffness));
+        out.line("damping", list(&connector.damping));
+    }
+}
+
+fn loads(out: &mut Text, model: &Model) {
+    for load in &model.loads {
+        out.table("[[load]]");
+        out.line("name", quoted(&load.name));
+        out.line("on", quoted(&load.on));
+        match load.kind {
+            LoadKind::Pressure(pressure) => out.line("pressure", number(pressure)),
+            LoadKind::ForceByNode(force) => out.line("force", list(&force)),
+            LoadKind::ForceByArea(force) => {
+                out.line("force", list(&force));
+                out.line("spread", quoted("area"));
+            }
+        }
+    }
+}
+
+fn analysis(out: &mut Text, model: &Model) {
+    out.table("[stability]");
+    out.line("band", list(&model.band));
+    out.line("friction_damping", model.friction_damping);
+    if !model.frictions.is_empty() {
+        let mut contacts = String::new();
+        if !model.swept.is_empty() {
+            let names: Vec<String> = model.swept.iter().map(|name| quoted(name)).collect();
+            write!(contacts, "contacts = [{}], ", names.join(", ")).expect("a string takes all");
+        }
+        out.table("[sweep]");
+        out.line("friction", format_args!("{{ {contacts}values = {} }}", list(&model.frictions)));
+    }
+    if let Some(reduction) = &model.reduction {
+        out.table("[reduction]");
+        out.line("contacts", reduction.contacts);
+        out.line("band", list(&reduction.band));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{EXAMPLE, parse};
+    use std::path::Path;
+
+    #[test]
+    fn the_documented_example_is_written_and_read_back() {
+        let model = parse(EXAMPLE, Path::new("brake.toml")).unwrap();
+        let text = write(&model, "brake.msh");
+        let back = parse(&text, Path::new("brake.toml")).unwrap();
+        // All but the places is the same, to rounding of lengths and of isotropic elasticities.
+        assert_eq!(write(&back, "brake.msh"), text);
+        assert_eq!((back.fixes.len(), back.contacts.len(), back.loads.len()), (1, 3, 2));
+        for (one, two) in model.parts.iter().zip(&back.parts) {
+            let (a, b) = (one.material.elasticity.as_flattened(), two.material.elasticity.as_flattened());
+            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-12 * a.abs().max(1e9)), "{}", one.name);
+            assert_eq!((one.rayleigh, one.material.density), (two.rayleigh, two.material.density));
+        }
+        assert_eq!(back.contacts[1].law, model.contacts[1].law);
+        assert_eq!((back.frictions, back.swept, back.reduction.is_some()), (model.frictions, model.swept, true));
+        assert!(text.contains("young = 1.1e11"), "{text}");
+    }
+
+    #[test]
+    fn numbers_are_short_and_exact() {
+        assert_eq!(
+            [0.5, 2e13, 0.1 + 0.2, -0.0, 7100.0, 1e-9].map(number),
+            ["0.5", "2e13", "0.30000000000000004", "-0.0", "7100.0", "1e-9"]
+        );
+    }
+}

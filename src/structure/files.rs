@@ -1,0 +1,67 @@
+//! A model and its mesh from their files: a model file with a Gmsh mesh, with a deck, or a deck alone.
+
+use std::fs::File;
+use std::path::Path;
+
+use crate::deck::{self, Converted, DeckSummary, KnownUnits};
+use crate::mesh::{self, Mesh};
+use crate::model::{self, Model, UnitSystem, is_deck};
+use crate::native::Comm;
+use crate::{Error, Result};
+
+/// A model with its whole mesh.
+pub struct ModelFiles {
+    /// The model.
+    pub model: Model,
+    /// Its mesh, m.
+    pub mesh: Mesh,
+    /// What was understood of the deck, where there is one.
+    pub deck: Option<DeckSummary>,
+}
+
+impl ModelFiles {
+    /// Reads a model file or a deck, and the mesh. `units` is the system of units of a deck that is read alone, where
+    /// it is not to be found from densities and moduli. Not collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file and line, whatever is wrong.
+    pub fn read(path: &Path, units: Option<UnitSystem>) -> Result<ModelFiles> {
+        if is_deck(path) {
+            let known = KnownUnits { system: units, length: None };
+            return Ok(ModelFiles::of_deck(deck::read(path, known)?, |_| true));
+        }
+        let model = model::read(path)?;
+        if let Err(reason) = File::open(&model.mesh_file) {
+            let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
+            let advice = "Give its path in [mesh] file, relative to the model file";
+            return Err(model.error(model.mesh_place, format_args!("{what}. {advice}")));
+        }
+        if !is_deck(&model.mesh_file) {
+            let mesh = mesh::read(&model.mesh_file, model.mesh_unit)?;
+            return Ok(ModelFiles { model, mesh, deck: None });
+        }
+        let system = model.unit_system.as_deref().and_then(|name| UnitSystem::named(name).ok());
+        let mut converted = deck::read(&model.mesh_file, KnownUnits { system, length: Some(model.mesh_unit) })?;
+        converted.model = model.over(converted.model)?;
+        Ok(ModelFiles::of_deck(converted, |contact| contact.place.file > 0))
+    }
+
+    fn of_deck(converted: Converted, is_of_deck: impl Fn(&model::Contact) -> bool) -> ModelFiles {
+        let Converted { mut model, mesh, mut summary } = converted;
+        summary.notes.extend(deck::settle(&mut model, &mesh, is_of_deck));
+        ModelFiles { model, mesh, deck: Some(summary) }
+    }
+
+    /// The root reads, and gives all ranks the model; it keeps the mesh. Collective.
+    ///
+    /// # Errors
+    /// As [`ModelFiles::read`], on all ranks.
+    pub fn shared(comm: &Comm, path: &Path) -> Result<(Model, Option<Mesh>, Option<DeckSummary>)> {
+        let root =
+            || ModelFiles::read(path, None).map(|ModelFiles { model, mesh, deck }| (Some((model, deck)), Some(mesh)));
+        let (known, mesh) = comm.agree(if comm.is_root() { root() } else { Ok((None, None)) })?;
+        let known = if comm.size() > 1 { comm.broadcast_value(0, known) } else { known };
+        let (model, deck) = known.ok_or_else(|| Error::input(format!("{}: no model", path.display())))?;
+        Ok((model, mesh, deck))
+    }
+}

@@ -1,0 +1,75 @@
+//! Decks of Abaqus and CalculiX on the command line.
+
+use crate::support::program::{Place, assert_refused};
+
+/// The pad on a disc as a deck `brake.inp`, without its model file and mesh.
+fn place() -> Place {
+    let place = Place::blocks();
+    let said = place.run(&["convert", "brake.toml", "-o", "brake.inp"]);
+    assert_eq!((said.code, said.out.as_str()), (0, "written: brake.inp\n"), "{}", said.err);
+    std::fs::remove_file(place.path("blocks.msh")).unwrap();
+    std::fs::remove_file(place.path("brake.toml")).unwrap();
+    place
+}
+
+#[test]
+fn check_prints_what_was_understood_of_a_deck() {
+    let place = place();
+    let deck = place.read("brake.inp").replace("*STEP\n*FREQUENCY", "*STEP\n*NODE PRINT,NSET=A\nU\n*FREQUENCY");
+    place.write("brake.inp", deck);
+    let said = place.run(&["check", "brake.inp"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    for text in ["lines in brake.inp", " C3D10\n", "units: mm-t-s", "*NODE PRINT (brake.inp:", "pad_bottom / disc_top"]
+    {
+        assert!(said.out.contains(text), "{text:?} is not in {}", said.out);
+    }
+    let json = place.run(&["check", "brake.inp", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    assert_eq!(document["deck"]["units"], "mm-t-s");
+    let two = place.run_on(2, &["check", "brake.inp"]);
+    assert_eq!((two.code, two.out.lines().next()), (0, said.out.lines().next()), "{}", two.err);
+}
+
+#[test]
+fn a_deck_squeals_as_its_model_does() {
+    let place = Place::blocks();
+    assert_eq!(place.run(&["convert", "brake.toml", "-o", "deck.inp"]).code, 0);
+    let modes = |model: &str| {
+        let said = place.run(&["stability", model, "--friction", "0.3", "--no-branches"]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        said.out.lines().filter(|line| line.trim_start().starts_with("0.3")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let expected = modes("brake.toml");
+    assert!(!expected.is_empty());
+    assert_eq!(modes("deck.inp"), expected);
+    // Named as the mesh of a model file, for what no deck says.
+    let short = "[mesh]\nfile = \"deck.inp\"\nunit = \"mm\"\n[stability]\nband = [0, 20000]\n\
+                 [sweep]\nfriction = { values = [0.3] }\n";
+    place.write("short.toml", short);
+    let said = place.run(&["check", "short.toml"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    // Back to a model file.
+    let said = place.run(&["convert", "deck.inp", "-o", "back.toml"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(modes("back.toml"), expected);
+}
+
+#[test]
+fn what_cannot_be_converted_or_analysed_is_refused() {
+    let place = place();
+    let refused = |arguments: &[&str], says: &[&str]| assert_refused(&place.run(arguments), says);
+    refused(&["convert", "brake.inp", "-o", "brake.msh"], &["brake.msh: the name must end with .toml or .inp"]);
+    refused(&["convert", "brake.inp", "-o", "brake.inp"], &["brake.inp exists. Use --force"]);
+    refused(&["check", "none.inp"], &["none.inp: cannot read the deck: No such file"]);
+    refused(&["convert", "brake.inp", "-o", "a.toml", "--units", "mm"], &["mm-t-s, m-kg-s"]);
+    place.write("own.toml", "title = \"mine\"\n");
+    refused(&["convert", "brake.inp", "-o", "own.toml", "--force"], &["is not a file that squeal convert has written"]);
+    let text = place.read("brake.inp");
+    place.write("tie.inp", text.clone() + "*TIE, NAME=T\nA, B\n");
+    refused(&["stability", "tie.inp"], &["tie.inp:", "*TIE is not supported: ties are not supported yet"]);
+    place.write("short.toml", "[mesh]\nfile = \"brake.inp\"\nunit = \"m\"\n[stability]\nband = [0, 9]\n");
+    refused(&["check", "short.toml"], &["brake.inp:", "no system of units with a unit of length of 1 m"]);
+    let parts = "[[rotation]]\npart = \"disk\"\naxis = [0, 0, 1]\nspeed = 1\n[stability]\nband = [0, 9]\n";
+    place.write("short.toml", format!("[mesh]\nfile = \"brake.inp\"\nunit = \"mm-t-s\"\n{parts}"));
+    refused(&["check", "short.toml"], &["short.toml:5: there is no part \"disk\" to turn. Did you mean \"disc\"?"]);
+}
