@@ -338,7 +338,7 @@ const BROKEN: &[[&str; 3]] = &[
     ["TYPE=C3D10,", "TYPE=C3D11,", "a.inp:24: elements of the type C3D11 are not supported"],
     ["TYPE=C3D10,", "TPYE=C3D10,", "a.inp:24: the parameter TPYE is not supported (*ELEMENT). Did you mean TYPE?"],
     ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub\nHUB", "a.inp:29: the set Hub contains itself"],
-    ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub\nA\n*NSET, NSET=A\nHub", "a.inp:29: the set A contains itself"],
+    ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub\nA\n*NSET, NSET=A\nHub", "a.inp:31: the set Hub contains itself"],
     ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub, GENERATE\n70, 100", "a.inp:29: there is no node from 70 to 100"],
     ["NSET=Hub, GENERATE\n7, 10", "NSET=Hub\n7, 100", "a.inp:29: there is no node 100"],
     ["HUB, 1, 3", "HUBB, 1, 3", "a.inp:54: there is no node set HUBB. Did you mean"],
@@ -397,7 +397,7 @@ fn broken_decks_are_refused_with_one_message_at_its_place() {
 /// A deck with bytes exchanged, lines left out and lines doubled is read or refused, and nothing panics.
 #[test]
 fn damaged_decks_never_panic() {
-    let text = good() + COUPLINGS;
+    let text = good().replace("*MATERIAL, NAME=Steel\n", COUPLINGS);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.inp");
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
