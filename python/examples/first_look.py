@@ -8,7 +8,7 @@ import sys
 import squeal
 
 results = squeal.read_results(sys.argv[1] if len(sys.argv) > 1 else "results/demo")
-print(results.about["title"], "-", results.about["n_nodes"], "nodes")
+print(results.about["title"], "-", results.about["nodes"], "nodes")
 
 # %% Which modes are unstable, and where
 frame = results.modes()

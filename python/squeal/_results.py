@@ -7,7 +7,7 @@ import numpy as np
 
 from ._file import opened, table
 
-FORMAT, VERSION = "squeal results", 1
+FORMAT, VERSION = "squeal results", 2
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ def _value(group) -> Value:
         ),
         pressure=group["pressure"][...],
         status=group["status"][...],
-        record=table(group, "record"),
+        record=table(group, "record") | table(group, "sources"),
     )
 
 

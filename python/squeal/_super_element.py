@@ -6,12 +6,12 @@ import numpy as np
 
 from ._file import opened, table
 
-FORMAT, VERSION = "squeal super-element", 2
+FORMAT, VERSION = "squeal super-element", 3
 
 
 @dataclass(frozen=True)
 class SuperElement:
-    """A super-element. Its n coordinates: 3 a retained point, fixed-interface modes, inertia modes."""
+    """A super-element. Its n coordinates: 3 a retained point, fixed-interface modes, residual modes."""
 
     about: dict
     """Its origin (model, mesh, friction, band), the sliding pairs, the parts."""

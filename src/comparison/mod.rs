@@ -100,7 +100,7 @@ const SAME_FRICTION: f64 = 1e-9;
 /// use squeal::results::file;
 ///
 /// let (full, reduced) = (file::read("full/results.h5".as_ref())?, file::read("reduced/results.h5".as_ref())?);
-/// for value in &compare(&full, &reduced)?.frictions {
+/// for value in &compare(&full, &reduced)?.values {
 ///     println!("mu = {}: {} modes are the same", value.friction, value.pairs.len());
 /// }
 /// # Ok::<(), squeal::Error>(())

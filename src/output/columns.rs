@@ -255,7 +255,9 @@ fn text(cell: &Json) -> String {
         Json::Bool(is_true) => u8::from(*is_true).to_string(),
         Json::String(text) => text.clone(),
         Json::Number(number) if number.is_f64() => match number.as_f64().unwrap_or(f64::NAN) {
-            x if x == 0.0 || PLAIN.contains(&x.abs()) => x.to_string(),
+            // Zero has no sign.
+            x if x == 0.0 => "0".into(),
+            x if PLAIN.contains(&x.abs()) => x.to_string(),
             x => format!("{x:e}"),
         },
         other => other.to_string(),
@@ -282,8 +284,8 @@ mod tests {
             unstable: bool,
         }
         let row = |x| AtFriction { friction: 0.1 + 0.2, row: Row { name: "a, b", count: 3, x, unstable: true } };
-        let text = table("mu", vec![row(Some(1.25e-17)), row(None), row(Some(6e10)), row(Some(-0.5))]);
-        let expected = ["1.25e-17", "", "6e10", "-0.5"].map(|x| format!("0.30000000000000004,\"a, b\",3,{x},1\n"));
+        let text = table("mu", vec![row(Some(1.25e-17)), row(None), row(Some(6e10)), row(Some(-0.5)), row(Some(-0.0))]);
+        let expected = ["1.25e-17", "", "6e10", "-0.5", "0"].map(|x| format!("0.30000000000000004,\"a, b\",3,{x},1\n"));
         assert_eq!(text, "mu,name,count,x,unstable\n".to_owned() + &expected.concat());
     }
 

@@ -19,6 +19,7 @@ test("packed numbers are little-endian", () => {
 test("numbers have a true minus sign", () => {
   assert.equal(fixed(-1.25, 1), "\u22121.3");
   assert.deepEqual([signed(2, 1), signed(-2, 1), signed(0, 1)], ["+2.0", "\u22122.0", "0.0"]);
+  assert.deepEqual([signed(-0.004, 2), signed(0.004, 2), fixed(-1e-9, 1)], ["0.00", "0.00", "0.0"]);
   assert.equal(percent(-0.012), "\u22121.2\u00a0%");
 });
 

@@ -72,9 +72,7 @@ function markChosen(name) {
   document.querySelectorAll(".plot .picked").forEach((mark) => mark.classList.remove("picked"));
   document.querySelectorAll(`.plot [data-mode="${name}"]`).forEach((mark) => mark.classList.add("picked"));
   if (mode.branch !== null) {
-    document
-      .querySelectorAll(`.plot [data-branch="${mode.branch}"]`)
-      .forEach((line) => line.classList.add("picked"));
+    document.querySelectorAll(`.plot [data-branch="${mode.branch}"]`).forEach((line) => line.classList.add("picked"));
   }
   byId("chosen").textContent = `Chosen: ${modeLabel(mode)}`;
 }

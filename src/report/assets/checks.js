@@ -30,12 +30,7 @@ function fillChecks(at) {
       (1e4 * row.closed_area_m2).toFixed(2),
       (1e-6 * row.peak_pressure_pa).toFixed(2),
     ];
-    return make(
-      "tr",
-      {},
-      make("td", { class: "left" }, row.pair),
-      ...cells.map((cell) => make("td", {}, cell)),
-    );
+    return make("tr", {}, make("td", { class: "left" }, row.pair), ...cells.map((cell) => make("td", {}, cell)));
   });
   const steps = value.steps.map(({ label, converged, iterations }) => {
     const { relative_residual: residual } = iterations[iterations.length - 1];

@@ -27,10 +27,17 @@ function startExplain() {
 }
 
 function explained(mode) {
-  const sources = mode.explained;
-  const energies = sources.filter((s) => Math.max(s.kinetic_share, Math.abs(s.strain_share)) > 0.01);
+  const sources = mode.explained.map((s) => ({
+    ...s,
+    kinetic: s.kinetic_share,
+    strain: s.strain_share,
+    input: s.energy_input_per_s,
+    dissipation: s.dissipation_per_s,
+  }));
+  const energies = sources.filter((s) => Math.max(s.kinetic, Math.abs(s.strain)) > 0.01);
   const powers = sources.filter(
-    (s) => Math.max(Math.abs(s.energy_input_per_s), Math.abs(s.dissipation_per_s)) > 0.01 * Math.max(...sources.map((t) => Math.abs(t.energy_input_per_s))),
+    (s) =>
+      Math.max(Math.abs(s.input), Math.abs(s.dissipation)) > 0.01 * Math.max(...sources.map((t) => Math.abs(t.input))),
   );
   return [
     make(
@@ -42,7 +49,7 @@ function explained(mode) {
         ["b", "strain"],
       ]),
     ),
-    energyBars(energies.sort((a, b) => b.kinetic_share + b.strain_share - a.kinetic_share - a.strain_share)),
+    energyBars(energies.sort((a, b) => b.kinetic + b.strain - a.kinetic - a.strain)),
     make(
       "h4",
       {},
@@ -53,7 +60,7 @@ function explained(mode) {
       ]),
     ),
     powerBars(
-      powers.sort((a, b) => Math.abs(b.energy_input_per_s + b.dissipation_per_s) - Math.abs(a.energy_input_per_s + a.dissipation_per_s)),
+      powers.sort((a, b) => Math.abs(b.input + b.dissipation) - Math.abs(a.input + a.dissipation)),
       mode,
     ),
     slopes(sources),
@@ -61,7 +68,11 @@ function explained(mode) {
 }
 
 const key = (entries) =>
-  make("span", { class: "key" }, ...entries.flatMap(([style, text]) => [make("i", { class: style }), text]));
+  make(
+    "span",
+    { class: "key" },
+    ...entries.map(([style, text]) => make("span", {}, make("i", { class: style }), text)),
+  );
 
 /** A bar from one place to another, in percent of its track. */
 function bar(style, from, to) {
@@ -78,22 +89,22 @@ function energyBars(sources) {
       "tr",
       {},
       make("td", { class: "left" }, s.name),
-      make("td", { class: "bar" }, make("div", { class: "twin" }, track("a", s.kinetic_share), track("b", s.strain_share))),
-      make("td", {}, percent(s.kinetic_share)),
-      make("td", {}, percent(s.strain_share)),
+      make("td", { class: "bar" }, make("div", { class: "twin" }, track("a", s.kinetic), track("b", s.strain))),
+      make("td", {}, percent(s.kinetic)),
+      make("td", {}, percent(s.strain)),
     ),
   );
   return make("table", { class: "bars" }, make("tbody", {}, ...rows));
 }
 
 function powerBars(sources, mode) {
-  const most = Math.max(...sources.flatMap((s) => [s.energy_input_per_s, s.energy_input_per_s + s.dissipation_per_s, 0]));
-  const least = Math.min(...sources.flatMap((s) => [s.energy_input_per_s, s.dissipation_per_s, s.energy_input_per_s + s.dissipation_per_s, 0]));
+  const most = Math.max(...sources.flatMap((s) => [s.input, s.input + s.dissipation, 0]));
+  const least = Math.min(...sources.flatMap((s) => [s.input, s.dissipation, s.input + s.dissipation, 0]));
   const place = (x) => (100 * (x - least)) / (most - least || 1);
   const rows = sources.map((s) => {
     const track = make("div", { class: "track" });
-    if (s.energy_input_per_s) track.append(bar(s.energy_input_per_s > 0 ? "input" : "dissipation", place(0), place(s.energy_input_per_s)));
-    if (s.dissipation_per_s) track.append(bar("dissipation", place(0), place(s.dissipation_per_s)));
+    if (s.input) track.append(bar(s.input > 0 ? "input" : "dissipation", place(0), place(s.input)));
+    if (s.dissipation) track.append(bar("dissipation", place(0), place(s.dissipation)));
     const zero = make("i", { class: "zero" });
     zero.style.left = `${place(0)}%`;
     track.append(zero);
@@ -102,7 +113,7 @@ function powerBars(sources, mode) {
       {},
       make("td", { class: "left" }, s.name),
       make("td", { class: "bar" }, track),
-      make("td", {}, signed(s.energy_input_per_s + s.dissipation_per_s, 2)),
+      make("td", {}, signed(s.input + s.dissipation, 2)),
     );
   });
   const total = make(

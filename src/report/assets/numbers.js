@@ -8,9 +8,9 @@ function unpacked(text, Type) {
   return new Type(buffer.buffer);
 }
 
-/** A number with so many decimals and a true minus sign. */
-const fixed = (x, decimals) => x.toFixed(decimals).replace("-", "\u2212");
-const signed = (x, decimals) => (x > 0 ? "+" : "") + fixed(x, decimals);
+/** A number with so many decimals and a true minus sign; what is rounded to zero has no sign. */
+const fixed = (x, decimals) => (Number(x.toFixed(decimals)) || 0).toFixed(decimals).replace("-", "\u2212");
+const signed = (x, decimals) => (Number(x.toFixed(decimals)) > 0 ? "+" : "") + fixed(x, decimals);
 const percent = (x, decimals = 1) => `${fixed(100 * x, decimals)}\u00a0%`;
 
 const VIRIDIS = [
