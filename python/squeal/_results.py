@@ -58,7 +58,9 @@ class Value:
     status: np.ndarray
     """There: 0 open, 1 slip, 2 stick, -1 no contact point."""
     record: dict
-    """Seconds, checks of the equilibrium, count of modes, forces of the contact pairs, Newton steps, energy sources."""
+    """Seconds, checks of the equilibrium, count of modes, forces of the contact pairs, Newton steps."""
+    sources: list
+    """What explains the unstable modes: a dict each, `mode` its place in `modes`."""
 
 
 @dataclass(frozen=True)
@@ -162,11 +164,11 @@ _POINT = [("branch", "u4"), ("mode", "u4"), ("friction", "f8"), ("growth_rate", 
 
 
 def _value(group) -> Value:
-    rows = group["modes"][...]
+    rows, record = group["modes"][...], table(group, "record")
     shapes = _complex(group["shapes"][...])
     return Value(
-        friction=float(group.attrs["friction"]),
-        requested=bool(group.attrs["asked"]),
+        friction=record["friction"],
+        requested=record["asked"],
         modes=Modes(
             eigenvalue=rows["growth_rate"] + 1j * rows["omega"],
             backward_error=rows["backward_error"],
@@ -176,7 +178,8 @@ def _value(group) -> Value:
         ),
         pressure=group["pressure"][...],
         status=group["status"][...],
-        record=table(group, "record") | table(group, "sources"),
+        record=record,
+        sources=table(group, "sources").get("sources", []),
     )
 
 
