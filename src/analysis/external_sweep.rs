@@ -167,3 +167,82 @@ impl<'a> ExternalSweep<'a> {
         Ok(if is_positive { None } else { Some("M is not positive definite") })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matrices::family::Coefficient;
+    use crate::matrices::{Role, Term};
+    use crate::native::Session;
+
+    /// Looks at an analysis up to 2 Hz of matrices of two rows.
+    fn with_sweep<T>(m: [f64; 4], k: [f64; 4], look: impl FnOnce(&mut ExternalSweep) -> T) -> T {
+        let (comm, place) = (Session::start(&[]).unwrap(), tempfile::TempDir::new().unwrap());
+        let term = |(role, a, name): (Role, [f64; 4], &str)| {
+            let entries: String = (0..4).map(|i| format!("{} {} {}\n", 1 + i / 2, 1 + i % 2, a[i])).collect();
+            let file = place.path().join(name);
+            std::fs::write(&file, format!("%%MatrixMarket matrix coordinate real general\n2 2 4\n{entries}")).unwrap();
+            Term { role, file, factor: Coefficient::one() }
+        };
+        let terms: Vec<Term> = [(Role::Mass, m, "m.mtx"), (Role::Stiffness, k, "k.mtx")].map(term).into();
+        let given = ExternalMatrices::read(&comm, &terms, TAU).unwrap();
+        look(&mut ExternalSweep::new(&given, [0.0, 2.0]))
+    }
+
+    const UNIT: [f64; 4] = [1.0, 0.0, 0.0, 1.0];
+    const SPRINGS: [f64; 4] = [40.0, -10.0, -10.0, 40.0];
+
+    #[test]
+    fn a_regular_stiffness_is_inverted_as_it_is() {
+        with_sweep(UNIT, SPRINGS, |sweep| assert_eq!(sweep.modes(0.0, &mut ()).unwrap().shift, 0.0));
+    }
+
+    #[test]
+    fn a_singular_stiffness_moves_the_shift() {
+        with_sweep(UNIT, [10.0, -10.0, -10.0, 10.0], |sweep| {
+            let found = sweep.modes(0.0, &mut ()).unwrap();
+            assert!((found.shift - 0.31 * TAU * 2.0).abs() < 1e-12 && found.condition <= GOOD);
+            assert!(found.band.modes.iter().any(|mode| (mode.lambda.im - 20_f64.sqrt()).abs() < 1e-9));
+        });
+    }
+
+    #[test]
+    fn a_common_null_vector_is_refused() {
+        let ones = [1.0; 4];
+        let error = with_sweep(ones, ones, |sweep| sweep.modes(0.0, &mut ()).err().unwrap().to_string());
+        assert!(error.contains("the pencil is singular"), "{error}");
+    }
+
+    #[test]
+    fn modes_are_followed_in_the_norm_of_a_positive_mass_alone() {
+        with_sweep(UNIT, SPRINGS, |sweep| assert_eq!(sweep.cannot_follow(0.0).unwrap(), None));
+    }
+
+    #[test]
+    fn an_indefinite_mass_is_no_norm() {
+        with_sweep([1.0, 0.0, 0.0, -1.0], SPRINGS, |sweep| {
+            assert_eq!(sweep.cannot_follow(0.0).unwrap(), Some("M is not positive definite"));
+        });
+    }
+
+    #[test]
+    fn an_unsymmetric_mass_is_no_norm_and_leaves_no_count() {
+        with_sweep([1.0, 0.5, 0.0, 1.0], SPRINGS, |sweep| {
+            assert_eq!(sweep.cannot_follow(0.0).unwrap(), Some("M is not symmetric"));
+            assert_eq!(sweep.evidence(), Evidence::Repetition { estimated: false });
+        });
+    }
+
+    #[test]
+    fn the_sturm_count_is_evidence_for_symmetric_matrices_alone() {
+        with_sweep(UNIT, [40.0, 10.0, -10.0, 40.0], |sweep| {
+            assert_eq!(sweep.evidence(), Evidence::Repetition { estimated: true });
+        });
+    }
+
+    #[test]
+    fn eigenvalues_of_few_rows_are_stable_to_more_digits() {
+        let lambda = Complex64::new(0.0, 1e4);
+        assert_eq!((threshold(SMALL)(lambda), threshold(SMALL + 1)(lambda)), (1e-9 * 1e4, 1e-6 * 1e4));
+    }
+}

@@ -166,3 +166,25 @@ impl Points {
         Points { nodes: own.into_iter().zip(&closest).map(mine).collect(), distance }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::GapOperator;
+    use crate::equilibrium::testing;
+    use crate::native::Session;
+
+    #[test]
+    fn a_free_chain_has_its_rigid_motions_and_its_elastic_modes() {
+        let comm = Session::start(&[]).unwrap();
+        // Two unit masses with a spring along each axis.
+        let spring = |i: usize, j: usize| if i == j { 40.0 } else { -40.0 };
+        let k = DMatrix::from_fn(6, 6, |i, j| if i % 3 == j % 3 { spring(i, j) } else { 0.0 });
+        let matrices = Mck { m: DMatrix::identity(6, 6), c: DMatrix::zeros(6, 6), k };
+        let system = testing::system(&comm, matrices, &GapOperator::new(), &[]);
+        let found = solve(&system, [1.0, 2.0], &mut ()).unwrap();
+        let elastic = found.modes.iter().filter(|mode| mode.frequency() > 1.0);
+        assert!(elastic.clone().all(|mode| (mode.lambda.im - 80_f64.sqrt()).abs() < 1e-6));
+        assert_eq!((elastic.count(), found.count.agrees()), (3, true));
+    }
+}

@@ -34,6 +34,8 @@ mod stability;
 mod statics;
 mod study;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 pub use check::{matrix_summary, model_summary};
 pub use explain::{explain, explain_full};

@@ -274,3 +274,31 @@ impl Record {
         write_whole(&place.join(PARTS), |out| out.write_all(text.as_bytes()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_made_again_where_its_file_is_missing_or_its_identity_is_another() {
+        let place = tempfile::TempDir::new().unwrap();
+        let part =
+            Part { name: "making".into(), product: "a.se.h5".into(), options: String::new(), work: Work::Reduce };
+        let mut record = Record::default();
+        record.parts.insert(part.product.clone(), Done { identity: "model 1".into(), seconds: 2.0 });
+        assert!(!record.has(&part, "model 1", place.path()), "no file");
+        std::fs::write(place.path().join(&part.product), "").unwrap();
+        assert!(record.has(&part, "model 1", place.path()) && !record.has(&part, "model 2", place.path()));
+        record.write(place.path()).unwrap();
+        assert!(Record::open(place.path()).unwrap().has(&part, "model 1", place.path()));
+    }
+
+    #[test]
+    fn a_folder_with_something_else_is_no_study() {
+        let place = tempfile::TempDir::new().unwrap();
+        assert!(Record::open(&place.path().join("new")).unwrap().parts.is_empty());
+        std::fs::write(place.path().join("thesis.tex"), "").unwrap();
+        let error = Record::open(place.path()).err().unwrap().to_string();
+        assert!(error.contains("is not the folder of a study"), "{error}");
+    }
+}
