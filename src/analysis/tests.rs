@@ -116,6 +116,8 @@ fn an_analysis_that_was_stopped_resumes_after_its_last_value() {
         assert!((mu - value).abs() < 1e-6 && found.len() == expected.len(), "{mu}");
         assert!(found.iter().zip(expected).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{mu}");
     }
+    let is_first = |value: &crate::results::Value| value.steps.iter().any(|step| step.label == "settle");
+    assert!(is_first(&resumed.values[0]) && !is_first(&resumed.values[2]), "the path continues where it was");
     assert!(resumed.costs.contains("without 2 values") && !whole.costs.contains("without"));
 }
 
@@ -139,7 +141,7 @@ fn an_analysis_begun_otherwise_is_refused_or_begins_again_by_force() {
 }
 
 #[test]
-fn a_damaged_value_is_refused_before_anything_is_computed() {
+fn a_damaged_value_is_refused_before_anything_is_computed_unless_by_force() {
     let (comm, place) = (Session::start(&[]).unwrap(), TempDir::new().unwrap());
     let folder = place.path().join("run");
     let mut counter = Counter { stop_after: Some(1), ..Counter::default() };
@@ -148,6 +150,10 @@ fn a_damaged_value_is_refused_before_anything_is_computed() {
     let mut second = Counter::default();
     let error = analyse(&comm, &folder, StabilityOptions::default(), &mut second).err().unwrap();
     assert!(error.kind() == ErrorKind::Input && second.n_finished == 0, "{error}");
+    let output = Some(Output { force: true, ..Output::default() });
+    let (mut forced, by_force) = (Counter::default(), StabilityOptions { output, ..StabilityOptions::default() });
+    analyse(&comm, &folder, by_force, &mut forced).unwrap();
+    assert_eq!((forced.n_replayed, forced.n_finished), (0, VALUES.len()), "force begins again");
 }
 
 #[test]
@@ -207,6 +213,9 @@ fn modes_of_the_band_alone_are_results_and_unstable_ones_are_explained_where_a_v
     let results = analyse(&comm, &place.path().join("run"), options, &mut counter).unwrap();
     assert!(counter.n_inserted > 0, "a Hopf point is bracketed by values that were not asked for");
     assert_eq!(results.values.iter().filter(|value| !value.asked).count(), counter.n_inserted);
+    let names = std::fs::read_dir(place.path().join("run")).unwrap();
+    let n_fields = names.filter(|name| name.as_ref().unwrap().file_name().to_string_lossy().starts_with("equilibrium"));
+    assert_eq!(n_fields.count(), 2, "fields of the values asked for");
     for value in &results.values {
         for mode in &value.modes {
             assert!((4.0..=8.0).contains(&(mode.lambda.im / std::f64::consts::TAU)));
