@@ -33,7 +33,7 @@ fn pressed_by(force: f64) -> Structure {
             mesh_hash: String::new(),
             program: String::new(),
             friction: VALUES[0],
-            n_equations: 3 * N,
+            n_dofs: 3 * N,
             band: [0.0, 10.0],
             limit: 100.0,
             friction_damping: false,
