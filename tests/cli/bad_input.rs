@@ -72,6 +72,16 @@ fn a_mesh_that_cannot_be_read() {
 }
 
 #[test]
+fn elements_that_are_too_stiff_are_warned_of() {
+    let linear = Place::with_blocks(|text| text, &PadOnDisc { quadratic: false, ..PadOnDisc::default() });
+    let said = linear.run(&["check", "brake.toml"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let all = said.out + &said.err;
+    assert!(all.contains("part \"disc\" has 54 elements C3D4, too stiff for squeal"), "{all}");
+    assert!(all.contains("part \"pad\""), "{all}");
+}
+
+#[test]
 fn elements_that_cannot_be_computed() {
     let inverted = Place::with_blocks(|text| text, &PadOnDisc { inverted: true, ..PadOnDisc::default() });
     assert_snapshot!(refused_on_two(&inverted, &["static", "brake.toml"]));

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
+use crate::support::data;
 use crate::support::program::{Finished, Place, run_test_on_two_ranks};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -15,9 +16,8 @@ fn numbers(table: &str) -> Vec<Vec<f64>> {
 }
 
 /// Frequency (Hz) and growth rate (1/s) of all modes, and the contact table, on some ranks.
-fn stability(ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
-    let place = Place::pads();
-    let arguments = ["stability", "brake.toml", "--band", "0:1500", "-o", "run"];
+fn stability(place: &Place, band: &str, ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let arguments = ["stability", "brake.toml", "--band", band, "-o", "run", "--force"];
     let Finished { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
     assert_eq!(code, 0, "{err}");
     assert!(!place.path("pieces").exists(), "{ranks} ranks wrote beside their folder");
@@ -25,22 +25,41 @@ fn stability(ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     (modes, numbers(&place.read("run/contact.csv")).concat())
 }
 
+/// Requires the same modes and contact tables, to 1e-9.
+fn assert_same((modes, contact): &(Vec<[f64; 2]>, Vec<f64>), (others, other_contact): &(Vec<[f64; 2]>, Vec<f64>)) {
+    assert_eq!(others.len(), modes.len());
+    for ([f, s], [g, t]) in modes.iter().zip(others) {
+        let omega = std::f64::consts::TAU * f;
+        let difference = (std::f64::consts::TAU * (f - g)).hypot(s - t);
+        assert!(difference <= 1e-9 * omega, "{f} Hz {s} /s on one rank, {g} Hz {t} /s on several");
+    }
+    assert_eq!(other_contact.len(), contact.len());
+    for (a, b) in contact.iter().zip(other_contact) {
+        assert!((a - b).abs() <= 1e-9 * a.abs(), "{a} on one rank, {b} on several");
+    }
+}
+
 #[test]
 fn two_and_three_ranks_find_what_one_finds() {
-    let (modes, contact) = stability(1);
-    assert!(modes.iter().any(|[_, growth]| *growth > 1.0), "a pair flutters: {modes:?}");
-    for ranks in [2, 3] {
-        let (others, other_contact) = stability(ranks);
-        assert_eq!(others.len(), modes.len());
-        for ([f, s], [g, t]) in modes.iter().zip(&others) {
-            let omega = std::f64::consts::TAU * f;
-            let difference = (std::f64::consts::TAU * (f - g)).hypot(s - t);
-            assert!(difference <= 1e-9 * omega, "{f} Hz {s} /s on one rank, {g} Hz {t} /s on {ranks}");
-        }
-        assert_eq!(other_contact.len(), contact.len());
-        for (a, b) in contact.iter().zip(&other_contact) {
-            assert!((a - b).abs() <= 1e-9 * a.abs(), "{a} on one rank, {b} on {ranks}");
-        }
+    let place = Place::pads();
+    let alone = stability(&place, "0:1500", 1);
+    assert!(alone.0.iter().any(|[_, growth]| *growth > 1.0), "a pair flutters: {:?}", alone.0);
+    [2, 3].into_iter().for_each(|ranks| assert_same(&alone, &stability(&place, "0:1500", ranks)));
+}
+
+/// A disc of hexahedra and wedges under a pad of tetrahedra: the same on two ranks, and the modes of tetrahedra alone to
+/// what coarse meshes leave.
+#[test]
+fn a_mixed_mesh_gives_the_same_on_two_ranks_and_nearly_what_tetrahedra_give() {
+    let tetrahedra = stability(&Place::blocks(), "0:25000", 1);
+    let place = Place::blocks();
+    std::fs::copy(data("mixed.msh"), place.path("blocks.msh")).unwrap();
+    let alone = stability(&place, "0:25000", 1);
+    assert_same(&alone, &stability(&place, "0:25000", 2));
+    assert!(alone.0.len() >= 3);
+    for (i, ([f, _], [g, _])) in alone.0.iter().zip(&tetrahedra.0).enumerate() {
+        println!("mode {i}: {f} Hz, of tetrahedra {g} Hz");
+        assert!((f / g - 1.0).abs() < 0.03, "mode {i}: {f} Hz, of tetrahedra {g} Hz");
     }
 }
 

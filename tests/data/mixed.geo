@@ -1,0 +1,27 @@
+// A disc of 20-node hexahedra and wedges, a pad of 10-node tetrahedra on it, millimetres: gmsh -3.
+Mesh.ElementOrder = 2;
+Mesh.SecondOrderIncomplete = 1;
+Mesh.MshFileVersion = 4.1;
+Mesh.MeshSizeMax = 20;
+Point(1) = {0, 0, 0}; Point(2) = {30, 0, 0}; Point(3) = {30, 20, 0}; Point(4) = {0, 20, 0};
+Point(5) = {30, 30, 0}; Point(6) = {0, 30, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Line(5) = {3, 5}; Line(6) = {5, 6}; Line(7) = {6, 4};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Curve Loop(2) = {-3, 5, 6, 7}; Plane Surface(2) = {2};
+Transfinite Curve {1, 3, 6} = 4; Transfinite Curve {2, 4} = 3; Transfinite Curve {5, 7} = 2;
+Transfinite Surface {1}; Recombine Surface {1};
+Transfinite Surface {2};
+hexahedra[] = Extrude {0, 0, 10} { Surface{1}; Layers{1}; Recombine; };
+wedges[] = Extrude {0, 0, 10} { Surface{2}; Layers{1}; Recombine; };
+Point(101) = {5, 5, 10}; Point(102) = {25, 5, 10}; Point(103) = {25, 25, 10}; Point(104) = {5, 25, 10};
+Line(101) = {101, 102}; Line(102) = {102, 103}; Line(103) = {103, 104}; Line(104) = {104, 101};
+Transfinite Curve {101, 102, 103, 104} = 4;
+Curve Loop(101) = {101, 102, 103, 104}; Plane Surface(101) = {101};
+pad[] = Extrude {0, 0, 10} { Surface{101}; };
+Physical Volume("disc") = {hexahedra[1], wedges[1]};
+Physical Volume("pad") = {pad[1]};
+Physical Surface("disc_bottom") = {1, 2};
+Physical Surface("disc_top") = {hexahedra[0], wedges[0]};
+Physical Surface("pad_bottom") = {101};
+Physical Surface("pad_top") = {pad[0]};
