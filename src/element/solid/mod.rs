@@ -1,6 +1,6 @@
 //! Matrices and integrals of solid elements, all from one family of tables.
 //!
-//! Geometry and displacement share the shape functions, `x = sum_a N_a x_a`, `u = sum_a N_a u_a`. A [`Family`] holds
+//! Geometry and displacement share the shape functions, `x = sum_a N_a x_a`, `u = sum_a N_a u_a`. A `Family` holds
 //! the shape functions and gradients of a shape at the points of two rules; stiffness, mass, volume and mean strain are
 //! sums over these points. Two kinds have a stiffness of their own: `incompatible` (C3D8I) and `mean_strain` (C3D8R).
 //!
