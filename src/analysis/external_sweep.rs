@@ -210,7 +210,7 @@ mod tests {
     fn a_common_null_vector_is_refused() {
         let ones = [1.0; 4];
         let error = with_sweep(ones, ones, |sweep| sweep.modes(0.0, &mut ()).err().unwrap().to_string());
-        assert!(error.contains("the pencil is singular"), "{error}");
+        assert!(error.contains("the eigenproblem is singular"), "{error}");
     }
 
     #[test]
