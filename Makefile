@@ -34,7 +34,7 @@ test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## run all 
 	node --test tests/page/*.test.mjs
 	$(MAKE) python-test
 
-python-test: setup build ## the Python package, beside the tables of the same run
+python-test: setup build ## test the Python package with the tables of the same run
 	@scripts/setup.sh --tests
 	SQUEAL=$(CURDIR)/$(BINARY) MODEL=tests/data/pads_on_disc.toml PYTHONPATH=python /usr/bin/python3 -m pytest -q -p no:cacheprovider python/tests
 
