@@ -120,7 +120,7 @@ fn tables_have_the_columns_they_promise(place: &Place, files: &[String]) {
     assert_eq!(unstable, 1);
     assert_eq!(files.iter().filter(|file| file.starts_with("mode_")).count(), unstable);
     let (header, contact) = columns("run/contact.csv");
-    let forces = "normal_force_n,tangential_force_n,closed_area_m2,peak_pressure_pa,peak_force_n";
+    let forces = "normal_force_n,tangential_force_n,closed_area_m2,peak_pressure_pa,peak_force_n,rounding_n";
     assert_eq!(header, format!("friction,pair,open,stick,slip,{forces}"));
     let pairs: Vec<[&str; 2]> = contact.iter().map(|row| [row[0].as_str(), row[1].as_str()]).collect();
     let (inner, outer) = ("disc / inner pad", "disc / outer pad");
