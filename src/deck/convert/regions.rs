@@ -59,12 +59,22 @@ impl Regions {
 impl Conversion<'_> {
     /// All surfaces of element faces; those of nodes where something uses them.
     pub(super) fn named_surfaces(&mut self) -> Result<()> {
+        let mut all: Vec<(String, Vec<Facet>, Place)> = Vec::new();
         for name in self.assembly.surface_names() {
-            let (_, surface) = self.assembly.surface(&name, Place::default())?;
-            if !surface.of_nodes {
-                let place = surface.place;
-                self.surface_name(&name, place)?;
+            let (space, definition) = self.assembly.surface(&name, Place::default())?;
+            if definition.of_nodes {
+                continue;
             }
+            if let Faces::OfElements(faces) = self.assembly.faces(space, definition)? {
+                all.push((name, self.facets(&faces), definition.place));
+            }
+        }
+        let mesh = &self.regions.mesh;
+        let skin = Skin::new(mesh.nodes.len(), &mesh.elements, all.iter().flat_map(|(_, facets, _)| facets));
+        for (name, facets, place) in all {
+            let spelled = self.regions.free_name(&self.deck.spelled(&name), "surface");
+            self.insert_surface(&spelled, &facets, &skin, place)?;
+            self.regions.surfaces.insert(name, spelled);
         }
         Ok(())
     }
@@ -96,15 +106,23 @@ impl Conversion<'_> {
 
     /// Adds a surface of element faces.
     pub(super) fn add_surface(&mut self, name: &str, faces: &[(u32, u8)], place: Place) -> Result<()> {
-        let mut facets: Vec<Facet> = Vec::new();
-        for &(element, face) in faces {
-            let nodes = self.assembly.face(element, face).unwrap_or_default();
-            if !nodes.is_empty() && nodes.iter().all(|&node| self.is_used(node)) {
-                facets.push(nodes.iter().map(|&node| self.bodies.node_of[node as usize]).collect());
-            }
-        }
-        let mesh = &mut self.regions.mesh;
+        let facets = self.facets(faces);
+        let mesh = &self.regions.mesh;
         let skin = Skin::new(mesh.nodes.len(), &mesh.elements, facets.iter());
+        self.insert_surface(name, &facets, &skin, place)
+    }
+
+    /// Faces of elements in nodes of the mesh.
+    fn facets(&self, faces: &[(u32, u8)]) -> Vec<Facet> {
+        let facet = |&(element, face): &(u32, u8)| {
+            let nodes = self.assembly.face(element, face)?;
+            let nodes = nodes.into_iter().map(|node| self.bodies.node_of[node as usize]);
+            nodes.clone().all(|node| node != UNUSED).then(|| nodes.collect())
+        };
+        faces.iter().filter_map(facet).collect()
+    }
+
+    fn insert_surface(&mut self, name: &str, facets: &[Facet], skin: &Skin, place: Place) -> Result<()> {
         let mut surface = Surface::default();
         for face in facets.iter().filter_map(|facet| skin.face(facet)) {
             if face.inner {
@@ -116,7 +134,7 @@ impl Conversion<'_> {
         if surface.facets.is_empty() {
             return Err(self.assembly.error(place, format_args!("the surface {name} has no facet of a solid")));
         }
-        mesh.surfaces.insert(name.to_owned(), surface);
+        self.regions.mesh.surfaces.insert(name.to_owned(), surface);
         Ok(())
     }
 
