@@ -7,8 +7,8 @@
 //! k_n = 10 min(E_slave / h_slave, E_master / h_master)
 //! ```
 //!
-//! E is the smallest Young's modulus of the part, h the edge of a mean facet of the surface, taken for a square or, if it
-//! is a triangle, half of one.
+//! E is the smallest Young's modulus of the part, h the edge of a mean facet of the surface, taken for a square or, if
+//! it is a triangle, half of one.
 //! The factor is that of Abaqus's default penalty, "10 times the representative underlying element stiffness" (Abaqus
 //! Analysis User's Guide, "Contact constraint enforcement methods in Abaqus/Standard").
 

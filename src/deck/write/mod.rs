@@ -22,7 +22,8 @@ const NODES_ON_FIRST_LINE: usize = 15;
 /// Entries of a set on a line.
 const PER_LINE: usize = 12;
 
-/// Writes a model with its whole mesh; `mark` is a comment. Returns what of the model a deck cannot say, a sentence each.
+/// Writes a model with its whole mesh; `mark` is a comment. Returns what of the model a deck cannot say, a sentence
+/// each.
 ///
 /// # Errors
 /// The system's.
