@@ -1,20 +1,14 @@
-//! Areas and centroids of facets, by their corners.
+//! Areas and centroids of facets.
 
-use crate::algebra::{cross, norm, sub};
+use crate::element::facet::area;
 use crate::mesh::{Facet, Mesh, Surface};
 
-/// Area (m2) and centroid (m) of a facet with straight edges; a quadrilateral is two triangles.
+/// Area (m2) and centroid (m) of a facet: the mean of its midsides, or of its corners where it has none, as contact and
+/// connectors weight them.
 pub fn area_and_centroid(mesh: &Mesh, facet: &Facet) -> (f64, [f64; 3]) {
-    let corners = facet.corners();
-    let x = |i: usize| mesh.nodes[corners[i] as usize];
-    let (mut area, mut moment) = (0.0, [0.0; 3]);
-    for second in 1..corners.len() - 1 {
-        let [a, b, c] = [x(0), x(second), x(second + 1)];
-        let own = 0.5 * norm(cross(sub(b, a), sub(c, a)));
-        area += own;
-        (0..3).for_each(|i| moment[i] += own * (a[i] + b[i] + c[i]) / 3.0);
-    }
-    (area, moment.map(|m| m / area))
+    let bearing = if facet.midsides().is_empty() { facet.corners() } else { facet.midsides() };
+    let mean = |i: usize| bearing.iter().map(|&n| mesh.nodes[n as usize][i]).sum::<f64>() / bearing.len() as f64;
+    (area(&facet.positions(&mesh.nodes)), [0, 1, 2].map(mean))
 }
 
 /// Area (m2) and centroid (m) of a surface.
