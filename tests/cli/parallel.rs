@@ -50,8 +50,8 @@ fn two_and_three_ranks_find_what_one_finds() {
 /// Frequencies, Hz, of the model on 10-node tetrahedra of 5 mm.
 const OF_TETRAHEDRA: [f64; 3] = [32254.65, 32417.56, 45690.85];
 
-/// A disc of hexahedra and wedges under a pad of tetrahedra: the same on two ranks, and the modes of tetrahedra alone to
-/// what coarse meshes leave.
+/// A disc of hexahedra and wedges under a pad of tetrahedra: the same on two ranks, and the modes of tetrahedra alone
+/// to what coarse meshes leave.
 #[test]
 fn a_mixed_mesh_gives_the_same_on_two_ranks_and_nearly_what_tetrahedra_give() {
     let place = Place::blocks();
