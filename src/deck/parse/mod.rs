@@ -21,6 +21,15 @@ use crate::Result;
 
 /// Reads a deck with the files that it includes. What it means is not checked: names may mean nothing.
 ///
+/// ```
+/// let folder = tempfile::tempdir().unwrap();
+/// let file = folder.path().join("disc.inp");
+/// std::fs::write(&file, "*Material, name=Iron\n*Elastic\n1.1e5, 0.27\n*Density\n7.1e-9\n").unwrap();
+/// let deck = squeal::deck::parse(&file)?;
+/// assert_eq!((deck.n_lines, deck.materials.len()), (5, 1));
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`](crate::Error::Input), `file:line: what. what to do`, for the first line that cannot be read and for
 /// the first keyword that changes the physics and is not supported.
