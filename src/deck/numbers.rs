@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 /// A table where the numbers are dense, a map where they are not.
+#[derive(Default)]
 pub struct Numbers {
     table: Vec<u32>,
     map: HashMap<u32, u32>,
@@ -14,12 +15,6 @@ const NOTHING: u32 = u32::MAX;
 const SPARSEST: usize = 8;
 /// Numbers below this are always dense.
 const SMALL: usize = 1 << 16;
-
-impl Default for Numbers {
-    fn default() -> Numbers {
-        Numbers { table: Vec::new(), map: HashMap::new() }
-    }
-}
 
 impl Numbers {
     /// Makes space for numbers that follow.

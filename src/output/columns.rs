@@ -256,7 +256,7 @@ fn text(cell: &Json) -> String {
         Json::String(text) => text.clone(),
         Json::Number(number) if number.is_f64() => match number.as_f64().unwrap_or(f64::NAN) {
             // Zero has no sign.
-            x if x == 0.0 => "0".into(),
+            0.0 => "0".into(),
             x if PLAIN.contains(&x.abs()) => x.to_string(),
             x => format!("{x:e}"),
         },

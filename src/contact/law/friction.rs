@@ -143,8 +143,9 @@ pub fn check_derivatives(function: &dyn FrictionFunction, speeds: &[f64], pressu
         let by_v = ("v", v, by_speed, difference(&|x| function.factor(x * v, q)));
         let by_q = ("q", q, by_pressure, difference(&|x| function.factor(v, x * q)));
         for (name, x, derivative, numerical) in [by_v, by_q] {
-            // Written so that NaN fails.
-            if !((x * derivative - numerical).abs() <= DERIVATIVE_TOLERANCE * value.max(numerical.abs())) {
+            // False for NaN.
+            let agrees = (x * derivative - numerical).abs() <= DERIVATIVE_TOLERANCE * value.max(numerical.abs());
+            if !agrees {
                 let numerical = numerical / x;
                 return refuse(format!("dphi/d{name} = {derivative:e}, but differences of phi give {numerical:e},"));
             }

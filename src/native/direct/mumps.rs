@@ -157,6 +157,7 @@ impl Mumps {
     }
 
     /// A global real information number, numbered from 1.
+    #[allow(clippy::useless_conversion)] // single or double precision
     pub fn rinfog(&self, number: i32) -> f64 {
         both!(&self.data, id => id.rinfog[number as usize - 1].into())
     }
