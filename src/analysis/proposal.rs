@@ -9,6 +9,8 @@ use std::path::Path;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::contact::search::{Alone, Options, find};
+use crate::contact::surface_points::surface_points;
+use crate::deck::convert::STIFFNESS_FACTOR;
 use crate::element::solid::{MassProperties, mass_properties};
 use crate::mesh::Mesh;
 
@@ -129,13 +131,11 @@ fn touching(mesh: &Mesh, turning: Option<u32>) -> Vec<Touching> {
 /// Whether two surfaces touch.
 fn touch(mesh: &Mesh, slave: &str, master: &str, sliding: bool) -> Option<Touching> {
     let (a, b) = (&mesh.surfaces[slave], &mesh.surfaces[master]);
-    let covered = |a, b| {
-        let found = find(a, b, &mesh.nodes, &Options::default(), &Alone);
-        (found.points.iter().map(|point| point.weight).sum::<f64>(), found.area)
-    };
-    let ((met, area), (_, other)) = (covered(a, b), covered(b, a));
-    let size = (2.0 * area / a.facets.len() as f64).sqrt();
-    (met > TOUCHING * area.min(other)).then(|| Touching { slave: slave.into(), master: master.into(), sliding, size })
+    let found = find(a, b, &mesh.nodes, &Options::default(), &Alone);
+    let met: f64 = found.points.iter().map(|point| point.weight).sum();
+    let (_, other) = surface_points(b, &mesh.nodes);
+    let touch = met > TOUCHING * found.area.min(other);
+    touch.then(|| Touching { slave: slave.into(), master: master.into(), sliding, size: a.facet_size(found.area) })
 }
 
 fn material_of(part: &str) -> &'static str {
@@ -194,11 +194,11 @@ fn rotation(text: &mut String, mesh: &Mesh, turning: Option<&Turning>) {
 
 fn contacts(text: &mut String, pairs: &[Touching], metres: f64) {
     for Touching { slave, master, sliding, size } in pairs {
-        // E/h of the lining, to one digit: as stiff as one layer of its elements.
-        let stiffness = PROPERTIES[1].1 / (size * metres);
+        // As for a deck without a stiffness, to one digit.
+        let stiffness = STIFFNESS_FACTOR * PROPERTIES[1].1 / (size * metres);
         let _ = write!(
             text,
-            "\n[[contact]]\nslave = {slave:?}\nmaster = {master:?}\nlaw = {{ linear = {stiffness:.0e} }}   # N/m3, about E/h of a lining; choose\n"
+            "\n[[contact]]\nslave = {slave:?}\nmaster = {master:?}\nlaw = {{ linear = {stiffness:.0e} }}   # N/m3, about 10 E/h of a lining; choose\n"
         );
         *text += match sliding {
             true => "friction = 0.4\n",

@@ -42,9 +42,10 @@ pub struct Interpolated {
 
 /// A contact point before it meets a master.
 #[derive(Debug, Clone, Default)]
-pub(super) struct SurfacePoint {
+pub struct SurfacePoint {
     /// The slave's nodes that it moves with.
     pub slave: Interpolated,
+    /// Where it is, m.
     pub position: Vector3<f64>,
     /// Area that it stands for, m2.
     pub weight: f64,
@@ -88,7 +89,7 @@ fn coordinates(shape: FacetShape) -> Vec<[f64; 2]> {
 }
 
 /// The contact points of a surface by rising place, and the surface's area (m2), which is the sum of their weights.
-pub(super) fn surface_points(surface: &Surface, nodes: &[[f64; 3]]) -> (BTreeMap<Place, SurfacePoint>, f64) {
+pub fn surface_points(surface: &Surface, nodes: &[[f64; 3]]) -> (BTreeMap<Place, SurfacePoint>, f64) {
     let mut found: BTreeMap<Place, SurfacePoint> = BTreeMap::new();
     let mut total = 0.0;
     for (index, facet) in surface.facets.iter().enumerate() {

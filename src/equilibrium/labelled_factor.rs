@@ -1,8 +1,8 @@
 //! An LU factor with a label: the matrix that it is of.
 //!
 //! One factor serves the steps to an equilibrium and the modes about it, so that there is one symbolic analysis and one
-//! place in memory. Who needs the factor of a matrix compares labels and factorises where they differ; so nobody has to
-//! say who used the factor before.
+//! place in memory. Who needs the factor of a matrix compares labels and factorises where they differ; so it does not
+//! matter what used the factor before.
 
 use crate::Result;
 use crate::contact::Response;

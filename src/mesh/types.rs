@@ -33,6 +33,15 @@ pub struct Surface {
     pub inner: Vec<u32>,
 }
 
+impl Surface {
+    /// Edge of a mean facet of the surface, which has this area (m2), m: a quadrilateral is a square, a triangle half
+    /// of one.
+    pub fn facet_size(&self, area: f64) -> f64 {
+        let halves: usize = self.facets.iter().map(|facet| facet.corners().len() - 2).sum();
+        (2.0 * area / halves as f64).sqrt()
+    }
+}
+
 impl Mesh {
     /// The nodes of a surface or node set, sorted, each once; none where nothing has this name.
     pub fn node_set(&self, name: &str) -> Option<Vec<u32>> {

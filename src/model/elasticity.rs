@@ -68,6 +68,13 @@ pub fn from_compliance(compliance: &Matrix6<f64>) -> Option<Matrix6<f64>> {
     compliance.cholesky().map(|factor| symmetric(&factor.inverse()))
 }
 
+/// The smallest and the largest of the three Young's moduli, Pa: the inverse diagonal of the compliance.
+pub fn youngs(elasticity: &Matrix6<f64>) -> [f64; 2] {
+    let compliance = elasticity.try_inverse().unwrap_or_else(Matrix6::zeros);
+    let all = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);
+    [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)]
+}
+
 /// Whether a symmetric matrix is positive definite beyond rounding.
 ///
 /// Cholesky on the matrix scaled to a unit diagonal, `A_ij / sqrt(A_ii A_jj)`, with pivots above 1e-12.

@@ -3,8 +3,10 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
+use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 
+use super::elasticity::youngs;
 use super::{Place, names};
 use crate::{Error, Result};
 
@@ -107,6 +109,13 @@ pub struct Material {
     pub density: f64,
     /// Elasticity, Pa, row-major, in Voigt order xx yy zz xy yz zx with engineering shear strains, in global axes.
     pub elasticity: [[f64; 6]; 6],
+}
+
+impl Material {
+    /// The smallest and the largest of the three Young's moduli, Pa.
+    pub fn youngs(&self) -> [f64; 2] {
+        youngs(&Matrix6::from_fn(|i, j| self.elasticity[i][j]))
+    }
 }
 
 /// Coefficients of proportional damping.

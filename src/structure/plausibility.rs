@@ -3,8 +3,6 @@
 //! A warning is a sentence without its full stop: what is there, and what was probably meant. None of it stops a run,
 //! but a run with a warning never ends in "stable".
 
-use nalgebra::Matrix6;
-
 use super::FullModel;
 use crate::element::ElementKind;
 use crate::model::{Material, NormalLaw};
@@ -82,14 +80,6 @@ pub fn contact_stiffness(contact: &str, stiffness: f64, neighbour: f64) -> Optio
     ))
 }
 
-/// The smallest and largest of the three Young's moduli of a material, Pa: the inverse diagonal of its compliance.
-fn youngs(material: &Material) -> [f64; 2] {
-    let elasticity = Matrix6::from_fn(|i, j| material.elasticity[i][j]);
-    let compliance = elasticity.try_inverse().unwrap_or_else(Matrix6::zeros);
-    let all = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);
-    [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)]
-}
-
 /// Everything about a brake that can hardly be meant. Collective.
 pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     let model = &full.model;
@@ -97,14 +87,15 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     materials.sort_by(|a, b| a.name.cmp(&b.name));
     materials.dedup_by(|a, b| a.name == b.name);
     let stiffness = materials.iter().filter_map(|material| {
-        let [low, high] = youngs(material);
+        let [low, high] = material.youngs();
         young(&material.name, low).or_else(|| young(&material.name, high))
     });
     let mass = materials.iter().filter_map(|material| density(&material.name, material.density));
     let contacts = model.contacts.iter().zip(&full.interface.pairs).filter_map(|(contact, pair)| {
         let (NormalLaw::Linear { stiffness } | NormalLaw::Cubic { k1: stiffness, .. }) = contact.law;
         let softest = [&contact.slave, &contact.master].map(|surface| full.youngs_of(surface)[0]);
-        let neighbour = softest[0].min(softest[1]) / full.facet_size(&contact.slave, pair.statistics.area);
+        let neighbour =
+            softest[0].min(softest[1]) / full.mesh.surfaces[&contact.slave].facet_size(pair.statistics.area);
         contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())
     });
     let extent = full.extents(comm).into_iter().fold(0.0, f64::max);
@@ -149,13 +140,7 @@ impl FullModel {
     fn youngs_of(&self, surface: &str) -> [f64; 2] {
         let part = self.mesh.part_of_surface(surface).map(|part| &self.mesh.parts[part as usize]);
         let material = self.model.parts.iter().find(|own| Some(&own.name) == part).map(|part| &part.material);
-        material.map_or([f64::INFINITY; 2], youngs)
-    }
-
-    /// Edge of an average facet of a surface with this area (m2), as if it were a square or half of one, m.
-    fn facet_size(&self, surface: &str, area: f64) -> f64 {
-        let halves = self.mesh.surfaces[surface].facets.iter().map(|facet| facet.corners().len() - 2);
-        (2.0 * area / halves.sum::<usize>() as f64).sqrt()
+        material.map_or([f64::INFINITY; 2], Material::youngs)
     }
 }
 

@@ -7,7 +7,7 @@ use super::bodies::SectionOf;
 use crate::Result;
 use crate::deck::types::{Deck, Elastic, ElasticKind, Material, Orientation};
 use crate::model::elasticity::{
-    axes_from, from_compliance, is_positive_definite, isotropic_compliance, orthotropic_compliance, rotate,
+    axes_from, from_compliance, is_positive_definite, isotropic_compliance, orthotropic_compliance, rotate, youngs,
 };
 use crate::model::{self, UnitSystem, names};
 
@@ -44,13 +44,6 @@ fn symmetric(triangle: &[f64]) -> Matrix6<f64> {
         matrix[(j, i)] = value;
     }
     matrix
-}
-
-/// The smallest and the largest Young's modulus: the inverse diagonal of the compliance.
-pub fn youngs(elasticity: &Matrix6<f64>) -> [f64; 2] {
-    let compliance = elasticity.try_inverse().unwrap_or_else(Matrix6::zeros);
-    let all = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);
-    [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)]
 }
 
 /// The material of a section.

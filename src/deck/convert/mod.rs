@@ -29,6 +29,7 @@ use bodies::Bodies;
 use regions::Regions;
 
 pub use pairs::settle;
+pub use penalty::STIFFNESS_FACTOR;
 
 /// What is known of a deck's units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

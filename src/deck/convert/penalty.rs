@@ -12,14 +12,11 @@
 //! The factor is that of Abaqus's default penalty, "10 times the representative underlying element stiffness" (Abaqus
 //! Analysis User's Guide, "Contact constraint enforcement methods in Abaqus/Standard").
 
-use super::super::geometry::area_and_centroid;
+use super::super::geometry::surface_centroid;
 use super::Conversion;
-use super::materials::youngs;
-use crate::mesh::{Facet, Mesh, Surface};
-use nalgebra::Matrix6;
 
 /// Multiple of the stiffness of a layer of elements.
-const STIFFNESS_FACTOR: f64 = 10.0;
+pub const STIFFNESS_FACTOR: f64 = 10.0;
 
 impl Conversion<'_> {
     /// The proposed stiffness of a contact between two surfaces of the mesh, N/m3.
@@ -27,19 +24,10 @@ impl Conversion<'_> {
         let mesh = &self.regions.mesh;
         let layer = |surface: &str| {
             let surface = &mesh.surfaces[surface];
-            let young = |part: &u32| {
-                let rows = &self.bodies.parts[*part as usize].material.elasticity;
-                youngs(&Matrix6::from_fn(|i, j| rows[i][j]))[0]
-            };
-            surface.parts.iter().map(young).fold(f64::INFINITY, f64::min) / facet_size(mesh, surface)
+            let young = |part: &u32| self.bodies.parts[*part as usize].material.youngs()[0];
+            let size = surface.facet_size(surface_centroid(mesh, surface).0);
+            surface.parts.iter().map(young).fold(f64::INFINITY, f64::min) / size
         };
         STIFFNESS_FACTOR * layer(slave).min(layer(master))
     }
-}
-
-/// Edge of a mean facet, m: a quadrilateral is a square, a triangle half of one.
-fn facet_size(mesh: &Mesh, surface: &Surface) -> f64 {
-    let of_triangle = |facet: &Facet| if facet.corners().len() == 3 { 2.0 } else { 1.0 };
-    let squares: f64 = surface.facets.iter().map(|facet| of_triangle(facet) * area_and_centroid(mesh, facet).0).sum();
-    (squares / surface.facets.len() as f64).sqrt()
 }

@@ -9,7 +9,7 @@ use crate::native::{Comm, Mck, Precision, Session};
 use crate::stability::testing::{Blocks, dense, diagonal, eigenvalues, found, masses};
 use crate::stability::{BlockedOptions, Evidence};
 
-/// A solver that finds what it was told, and keeps the requests.
+/// A solver that finds what the test gives it, and keeps the requests.
 struct Scripted {
     results: VecDeque<Option<SearchResult>>,
     requests: Rc<RefCell<Vec<SearchRequest>>>,
