@@ -90,6 +90,7 @@ fn amount(kind: &LoadKind) -> String {
     match kind {
         LoadKind::ForceByNode(f) => format!("{} N, the same on each node", force(f)),
         LoadKind::ForceByArea(f) => format!("{} N, spread over the area", force(f)),
+        LoadKind::ForceAt { force: f, moment: m, .. } => format!("{} N and {} N m at a point", force(f), force(m)),
         LoadKind::Pressure(p) => format!("a pressure of {p} Pa"),
     }
 }

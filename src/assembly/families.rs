@@ -7,7 +7,7 @@ use crate::element::connector::{RelativeMotion, relative_motion};
 use crate::element::coupling::Cloud;
 use crate::element::{facet, solid};
 use crate::mesh::{Mesh, Surface};
-use crate::model::{Connector, Load, LoadKind, Model, Part, Place};
+use crate::model::{Connector, GROUND, Load, LoadKind, Model, Part, Place};
 use crate::{Error, Result};
 
 use super::{Connectivity, ElementMatrices, Elements};
@@ -222,6 +222,7 @@ pub fn loads(model: &Model, mesh: &Mesh) -> Result<Vec<(u32, [f64; 3])>> {
                 let traction = total.map(|f| f / area);
                 forces.extend(surface_load(mesh, surface, |x| facet::traction_load(x, traction)));
             }
+            LoadKind::ForceAt { .. } => return Err(unsupported(model, load.place)),
             LoadKind::Pressure(pressure) => {
                 let surface = surface_of(model, mesh, load)?;
                 forces.extend(surface_load(mesh, surface, |x| facet::pressure_load(x, pressure)));
@@ -229,6 +230,27 @@ pub fn loads(model: &Model, mesh: &Mesh) -> Result<Vec<(u32, [f64; 3])>> {
         }
     }
     Ok(forces)
+}
+
+/// Refuses what is not assembled yet.
+///
+/// # Errors
+/// [`Error::Input`] that names the first of it.
+pub fn require_supported(model: &Model, mesh: &Mesh) -> Result<()> {
+    let ground = |end: &String| *end == GROUND && mesh.node_set(end).is_none();
+    let grounded = model.connectors.iter().find(|connector| connector.between.iter().any(ground));
+    let places = [
+        model.ties.first().map(|own| own.place),
+        model.rigid_bodies.first().map(|own| own.place),
+        model.masses.first().map(|own| own.place),
+        model.equations.first().map(|own| own.place),
+        grounded.map(|own| own.place),
+    ];
+    places.into_iter().flatten().next().map_or(Ok(()), |place| Err(unsupported(model, place)))
+}
+
+fn unsupported(model: &Model, place: Place) -> Error {
+    model.error(place, "ties, rigid sets, masses, equations, forces at points and the ground are not assembled yet")
 }
 
 /// The nodal forces of all facets of a surface.

@@ -22,6 +22,6 @@ mod system;
 
 pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
-pub use families::{ConnectorElement, Solids, connector_elements, constraints, loads};
+pub use families::{ConnectorElement, Solids, connector_elements, constraints, loads, require_supported};
 pub use pattern::Pattern;
 pub use system::{Connectivity, ElementMatrices, Elements, System};

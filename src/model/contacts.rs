@@ -1,9 +1,9 @@
-//! Contact pairs and connectors: what ties the parts together.
+//! Contact pairs.
 
-use super::item::{Item, Number, Vector, named};
+use super::item::{Item, Number, named};
 use super::keys;
 use super::source::ModelText;
-use super::{Connector, Contact, NormalLaw, SpeedDecay};
+use super::{Contact, NormalLaw, SpeedDecay};
 use crate::Result;
 use toml::Spanned;
 
@@ -20,11 +20,7 @@ pub fn contacts(source: ModelText, raw: &[Spanned<keys::ContactTable>], unit: f6
 fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Result<Contact> {
     let what = format_args!("slave and master are both {:?}", raw.slave);
     item.require(raw.slave != raw.master, what, "Name the two surfaces that meet")?;
-    let positive = |value: &Option<Number>, key: &str, advice: &str| {
-        value.as_ref().map(|value| item.positive(value, key, advice)).transpose()
-    };
     let (friction, decay) = contact_friction(item, &raw.friction)?;
-    let distance = "Give a distance in the mesh's unit, or leave it out for no limit";
     Ok(Contact {
         name,
         slave: raw.slave.clone(),
@@ -32,11 +28,17 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         law: law(item, &raw.law)?,
         friction,
         decay,
-        stick: positive(&raw.stick, "stick", "Give N/m3, such as 1e13")?,
+        stick: item.positive_if_given(&raw.stick, "stick", "Give N/m3, such as 1e13")?,
         separation: raw.separation.unwrap_or(true),
-        search_distance: positive(&raw.search, "search", distance)?.map(|d| d * unit),
+        search_distance: search_distance(item, &raw.search, unit)?,
         place: item.place(),
     })
+}
+
+/// The distance beyond which points are left out, m; `unit` is metres per unit of the mesh.
+pub fn search_distance(item: &Item, raw: &Option<Number>, unit: f64) -> Result<Option<f64>> {
+    let advice = "Give a distance in the mesh's unit, or leave it out for no limit";
+    Ok(item.positive_if_given(raw, "search", advice)?.map(|distance| distance * unit))
 }
 
 /// A coefficient of friction.
@@ -69,35 +71,4 @@ fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {
         (None, None) => Err(item.error(&raw.span(), "the law is empty", example)),
         (Some(_), Some(_)) => Err(item.error(&raw.span(), "there are two laws", example)),
     }
-}
-
-/// The connectors; `unit` is metres per unit of the mesh.
-pub fn connectors(source: ModelText, raw: &[Spanned<keys::ConnectorTable>], unit: f64) -> Result<Vec<Connector>> {
-    let called = |raw: &keys::ConnectorTable| raw.name.clone().unwrap_or_else(|| raw.between.get_ref().join(" / "));
-    named(source, "connector", raw, called, |item, name, raw| connector(item, name, raw, unit))
-}
-
-fn connector(item: &Item, name: String, raw: &keys::ConnectorTable, unit: f64) -> Result<Connector> {
-    let [a, b] = raw.between.get_ref();
-    let what = format_args!("both ends are {a:?}");
-    item.require_at(&raw.between.span(), a != b, what, "Name two different node sets")?;
-    let constants =
-        |values: &Vector, key: &str, advice: &str| item.each(values, |x| x >= 0.0, key, "must be 0 or above", advice);
-    let optional = |values: &Option<Vector>, key, advice| {
-        values.as_ref().map_or(Ok([0.0; 3]), |values| constants(values, key, advice))
-    };
-    let rotational = "Give [x, y, z] in N m/rad";
-    let connector = Connector {
-        name,
-        between: raw.between.get_ref().clone(),
-        at: raw.at.as_ref().map(|at| item.finite(at, "at")).transpose()?.map(|at| at.map(|x| x * unit)),
-        stiffness: constants(&raw.stiffness, "stiffness", "Give [x, y, z] in N/m")?,
-        rotational_stiffness: optional(&raw.rotational_stiffness, "rotational_stiffness", rotational)?,
-        damping: optional(&raw.damping, "damping", "Give [x, y, z] in N s/m")?,
-        place: item.place(),
-    };
-    let all = [connector.stiffness, connector.rotational_stiffness, connector.damping];
-    let acts = all.as_flattened().iter().any(|&x| x != 0.0);
-    item.require(acts, "all its constants are 0", "Give it a stiffness, or leave it out")?;
-    Ok(connector)
 }

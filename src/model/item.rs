@@ -104,6 +104,17 @@ impl<'a> Item<'a> {
         self.check(value, *value.get_ref() > 0.0, key, "must be above 0", advice)
     }
 
+    /// A number above zero, where there is one.
+    pub fn positive_if_given(&self, value: &Option<Number>, key: &str, advice: &str) -> Result<Option<f64>> {
+        value.as_ref().map(|value| self.positive(value, key, advice)).transpose()
+    }
+
+    /// A point (m), where there is one; `unit` is metres per unit of the mesh.
+    pub fn point(&self, value: &Option<Vector>, key: &str, unit: f64) -> Result<Option<[f64; 3]>> {
+        let point = value.as_ref().map(|value| self.finite(value, key)).transpose()?;
+        Ok(point.map(|point| point.map(|x| x * unit)))
+    }
+
     /// A number that is zero or above.
     pub fn not_negative(&self, value: &Number, key: &str, advice: &str) -> Result<f64> {
         self.check(value, *value.get_ref() >= 0.0, key, "must be 0 or above", advice)

@@ -62,6 +62,14 @@ tables! {
         #[serde(default)]
         pub connector: Vec<Spanned<ConnectorTable>>,
         #[serde(default)]
+        pub tie: Vec<Spanned<TieTable>>,
+        #[serde(default)]
+        pub rigid: Vec<Spanned<RigidTable>>,
+        #[serde(default)]
+        pub mass: Vec<Spanned<MassTable>>,
+        #[serde(default)]
+        pub equation: Vec<Spanned<EquationTable>>,
+        #[serde(default)]
         pub load: Vec<Spanned<LoadTable>>,
         pub stability: Spanned<StabilityTable>,
         pub sweep: Option<Spanned<SweepTable>>,
@@ -138,10 +146,44 @@ tables! {
         pub damping: Option<Vector>,
     }
 
+    pub struct TieTable {
+        pub name: Option<String>,
+        pub slave: String,
+        pub master: String,
+        pub search: Option<Number>,
+        pub stiffness: Option<Number>,
+    }
+
+    pub struct RigidTable {
+        pub name: Option<String>,
+        pub nodes: String,
+    }
+
+    pub struct MassTable {
+        pub name: Option<String>,
+        pub nodes: String,
+        pub mass: Number,
+        pub at: Option<Vector>,
+        pub inertia: Option<Spanned<[f64; 6]>>,
+    }
+
+    pub struct EquationTable {
+        pub name: Option<String>,
+        pub terms: Spanned<Vec<EquationTermTable>>,
+    }
+
+    pub struct EquationTermTable {
+        pub node: String,
+        pub axis: Text,
+        pub coefficient: Number,
+    }
+
     pub struct LoadTable {
         pub name: Option<String>,
         pub on: String,
         pub force: Option<Vector>,
+        pub moment: Option<Vector>,
+        pub at: Option<Vector>,
         pub spread: Option<Text>,
         pub pressure: Option<Number>,
     }

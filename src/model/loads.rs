@@ -1,42 +1,67 @@
 //! External loads.
 
-use super::item::{Item, Vector, named};
-use super::keys::{self, Text};
+use super::item::{Item, Number, Vector, named};
+use super::keys;
 use super::source::ModelText;
 use super::{Load, LoadKind};
 use crate::Result;
 use toml::Spanned;
 
-/// The loads.
-pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>]) -> Result<Vec<Load>> {
+/// What a load has.
+const ACTING: &str = "Give one of force = [x, y, z] in N, or pressure in Pa";
+
+/// The loads; `unit` is metres per unit of the mesh.
+pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>], unit: f64) -> Result<Vec<Load>> {
     let called = |raw: &keys::LoadTable| raw.name.clone().unwrap_or_else(|| raw.on.clone());
     named(source, "load", raw, called, |item, name, raw| {
-        Ok(Load { name, on: raw.on.clone(), kind: kind(item, raw)?, place: item.place() })
+        Ok(Load { name, on: raw.on.clone(), kind: kind(item, raw, unit)?, place: item.place() })
     })
 }
 
-fn kind(item: &Item, raw: &keys::LoadTable) -> Result<LoadKind> {
-    let advice = "Give one of force = [x, y, z] in N, or pressure in Pa";
-    match (&raw.force, &raw.pressure, &raw.spread) {
-        (Some(force), None, spread) => spread_force(item, force, spread.as_ref()),
-        (None, Some(pressure), None) => {
-            Ok(LoadKind::Pressure(item.check(pressure, true, "pressure", "must be finite", advice)?))
-        }
-        (None, Some(_), Some(spread)) => {
-            Err(item.error(&spread.span(), "spread says how a force acts, but this is a pressure", "Leave it out"))
-        }
-        (Some(_), Some(pressure), _) => {
+fn kind(item: &Item, raw: &keys::LoadTable, unit: f64) -> Result<LoadKind> {
+    let at_point = raw.moment.as_ref().or(raw.at.as_ref()).map(Spanned::span);
+    let of_force = raw.spread.as_ref().map(Spanned::span).or(at_point.clone());
+    match (&raw.pressure, &raw.force, of_force) {
+        (Some(pressure), None, None) => pressure_kind(item, pressure),
+        (Some(pressure), Some(_), _) => {
             Err(item.error(&pressure.span(), "there are a force and a pressure", "Write two [[load]] tables"))
         }
-        (None, None, _) => Err(item.error_here("nothing acts", advice)),
+        (Some(_), None, Some(of_force)) => {
+            let what = "spread, moment and at say how a force acts, but this is a pressure";
+            Err(item.error(&of_force, what, "Leave them out"))
+        }
+        (None, None, _) if raw.moment.is_none() => Err(item.error_here("nothing acts", ACTING)),
+        _ => match (at_point, &raw.spread) {
+            (None, _) => force_over_nodes(item, raw),
+            (Some(_), None) => force_at(item, raw, unit),
+            (Some(_), Some(spread)) => {
+                let what = "the load acts at a point, so that spread does not apply";
+                Err(item.error(&spread.span(), what, "Leave it out, or moment and at"))
+            }
+        },
     }
 }
 
-fn spread_force(item: &Item, force: &Vector, spread: Option<&Text>) -> Result<LoadKind> {
+fn pressure_kind(item: &Item, pressure: &Number) -> Result<LoadKind> {
+    Ok(LoadKind::Pressure(item.check(pressure, true, "pressure", "must be finite", ACTING)?))
+}
+
+/// A force and a moment at a point.
+fn force_at(item: &Item, raw: &keys::LoadTable, unit: f64) -> Result<LoadKind> {
+    let vector = |value: &Option<Vector>, key| value.as_ref().map_or(Ok([0.0; 3]), |value| item.finite(value, key));
+    Ok(LoadKind::ForceAt {
+        force: vector(&raw.force, "force")?,
+        moment: vector(&raw.moment, "moment")?,
+        at: item.point(&raw.at, "at", unit)?,
+    })
+}
+
+/// A force that is spread evenly.
+fn force_over_nodes(item: &Item, raw: &keys::LoadTable) -> Result<LoadKind> {
     type Spread = fn([f64; 3]) -> LoadKind;
     const SPREADS: [(&str, Spread); 2] = [("nodes", LoadKind::ForceByNode), ("area", LoadKind::ForceByArea)];
-    let force = item.finite(force, "force")?;
-    match spread {
+    let force = item.finite(item.required(&raw.force, "force", ACTING)?, "force")?;
+    match &raw.spread {
         None => Ok(LoadKind::ForceByNode(force)),
         Some(spread) => item.find("spread", spread, &SPREADS, |(name, _)| name).map(|(_, kind)| kind(force)),
     }

@@ -6,8 +6,9 @@ use crate::Result;
 impl Model {
     /// This model file on top of the model of its deck.
     ///
-    /// Parts, contacts, connectors and loads of the file take the place of those of the same name, rotations of those
-    /// of the same part; fixes are added; band, sweep, reduction and title are the file's.
+    /// Parts, contacts, connectors, ties, rigid bodies, masses, equations and loads of the file take the place of those
+    /// of the same name, rotations of those of the same part; fixes are added; band, sweep, reduction and title are the
+    /// file's.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a rotation of no part, and a sweep of no contact.
@@ -18,11 +19,29 @@ impl Model {
         replace(&mut deck.parts, &mut self.parts, |a, b| a.name == b.name);
         replace(&mut deck.contacts, &mut self.contacts, |a, b| a.name == b.name);
         replace(&mut deck.connectors, &mut self.connectors, |a, b| a.name == b.name);
+        replace(&mut deck.ties, &mut self.ties, |a, b| a.name == b.name);
+        replace(&mut deck.rigid_bodies, &mut self.rigid_bodies, |a, b| a.name == b.name);
+        replace(&mut deck.masses, &mut self.masses, |a, b| a.name == b.name);
+        replace(&mut deck.equations, &mut self.equations, |a, b| a.name == b.name);
         replace(&mut deck.loads, &mut self.loads, |a, b| a.name == b.name);
         replace(&mut deck.rotations, &mut self.rotations, |a, b| a.part == b.part);
         deck.fixes.append(&mut self.fixes);
-        let Model { parts, contacts, connectors, loads, rotations, fixes, .. } = deck;
-        let model = Model { parts, contacts, connectors, loads, rotations, fixes, ..self };
+        let Model {
+            parts, contacts, connectors, ties, rigid_bodies, masses, equations, loads, rotations, fixes, ..
+        } = deck;
+        let model = Model {
+            parts,
+            contacts,
+            connectors,
+            ties,
+            rigid_bodies,
+            masses,
+            equations,
+            loads,
+            rotations,
+            fixes,
+            ..self
+        };
         model.check_names()?;
         Ok(model)
     }
@@ -48,14 +67,16 @@ impl Model {
 
     /// Moves all places by a number of files.
     fn shift_places(&mut self, n_files: u16) {
-        let parts = self.parts.iter_mut().map(|item| &mut item.place);
-        let fixes = self.fixes.iter_mut().map(|item| &mut item.place);
-        let rotations = self.rotations.iter_mut().map(|item| &mut item.place);
-        let contacts = self.contacts.iter_mut().map(|item| &mut item.place);
-        let connectors = self.connectors.iter_mut().map(|item| &mut item.place);
-        let loads = self.loads.iter_mut().map(|item| &mut item.place);
-        let all = parts.chain(fixes).chain(rotations).chain(contacts).chain(connectors).chain(loads);
-        all.for_each(|place| place.file += n_files);
+        self.parts.iter_mut().for_each(|item| item.place.file += n_files);
+        self.fixes.iter_mut().for_each(|item| item.place.file += n_files);
+        self.rotations.iter_mut().for_each(|item| item.place.file += n_files);
+        self.contacts.iter_mut().for_each(|item| item.place.file += n_files);
+        self.connectors.iter_mut().for_each(|item| item.place.file += n_files);
+        self.ties.iter_mut().for_each(|item| item.place.file += n_files);
+        self.rigid_bodies.iter_mut().for_each(|item| item.place.file += n_files);
+        self.masses.iter_mut().for_each(|item| item.place.file += n_files);
+        self.equations.iter_mut().for_each(|item| item.place.file += n_files);
+        self.loads.iter_mut().for_each(|item| item.place.file += n_files);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The model file: what the user writes, checked and in SI units.
 //!
 //! ```text
-//!  file --toml, serde--> keys::File --one file a table: materials, bodies, contacts, loads, analysis--> Model
+//!  file --toml, serde--> keys::File --one file a table: materials, bodies, contacts, joints, loads ...--> Model
 //!                 (spans kept)                                                           (names and lines kept)
 //! ```
 //!
@@ -26,6 +26,7 @@ mod check;
 mod contacts;
 pub mod elasticity;
 mod item;
+mod joints;
 mod keys;
 mod loads;
 mod materials;
@@ -47,8 +48,8 @@ pub use place::Place;
 pub use read::{is_deck, parse, read};
 pub use source::located;
 pub use types::{
-    Connector, Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction, Rotation,
-    SpeedDecay,
+    Connector, Contact, Equation, EquationTerm, Fix, GROUND, Load, LoadKind, Material, Model, NormalLaw, Part,
+    PointMass, Rayleigh, Reduction, RigidBody, Rotation, SpeedDecay, Tie,
 };
 pub use units::UnitSystem;
 pub use write::{isotropic, write};

@@ -2,7 +2,7 @@
 
 use super::item::Item;
 use super::source::{ModelText, located};
-use super::{Model, Place, UnitSystem, analysis, bodies, contacts, keys, loads, materials};
+use super::{Model, Place, UnitSystem, analysis, bodies, contacts, joints, keys, loads, materials};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -63,8 +63,12 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
         mesh_place: Place { file: 0, line: source.line(raw.mesh.get_ref().file.span().start) as u32 },
         fixes: bodies::fixes(source, &raw.fix)?,
         rotations: bodies::rotations(source, &raw.rotation, (!names_deck).then_some(&parts[..]), mesh_unit)?,
-        connectors: contacts::connectors(source, &raw.connector, mesh_unit)?,
-        loads: loads::loads(source, &raw.load)?,
+        connectors: joints::connectors(source, &raw.connector, mesh_unit)?,
+        ties: joints::ties(source, &raw.tie, mesh_unit)?,
+        rigid_bodies: joints::rigid_bodies(source, &raw.rigid)?,
+        masses: joints::masses(source, &raw.mass, mesh_unit)?,
+        equations: joints::equations(source, &raw.equation)?,
+        loads: loads::loads(source, &raw.load, mesh_unit)?,
         band: stability.band(&raw.stability.get_ref().band)?,
         friction_damping: raw.stability.get_ref().friction_damping,
         swept: sweep.contacts,

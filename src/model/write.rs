@@ -1,12 +1,16 @@
 //! A model as the text of a model file.
 
+mod joints;
+mod loads;
+
 use std::fmt::{Display, Write};
 
 use nalgebra::Matrix6;
 
 use super::elasticity::{from_compliance, isotropic_compliance};
 use super::read::UNITS;
-use super::{Contact, LoadKind, Material, Model, NormalLaw};
+use super::{Contact, Material, Model, NormalLaw};
+use loads::loads;
 
 /// Elasticities are isotropic to this relative difference.
 const ISOTROPIC: f64 = 1e-12;
@@ -36,7 +40,7 @@ pub fn write(model: &Model, mesh_file: &str) -> String {
         out.line("speed", number(rotation.speed));
     }
     model.contacts.iter().for_each(|own| contact(&mut out, own, model.mesh_unit));
-    connectors(&mut out, model);
+    joints::write(&mut out, model);
     loads(&mut out, model);
     analysis(&mut out, model);
     out.0
@@ -52,6 +56,16 @@ impl Text {
 
     fn line(&mut self, key: &str, value: impl Display) {
         self.0 += &format!("{key} = {value}\n");
+    }
+
+    /// A line of a number, where there is one.
+    fn optional(&mut self, key: &str, value: Option<f64>) {
+        value.into_iter().for_each(|value| self.line(key, number(value)));
+    }
+
+    /// A line of a point (m) in a unit of so many metres, where there is one.
+    fn point(&mut self, key: &str, point: Option<[f64; 3]>, unit: f64) {
+        point.into_iter().for_each(|point| self.line(key, list(&point.map(|x| x / unit))));
     }
 }
 
@@ -148,44 +162,9 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
             out.line("friction", format_args!("{{ static = {at_rest}, kinetic = {kinetic}, decay = {decay} }}"));
         }
     }
-    if let Some(stick) = contact.stick {
-        out.line("stick", number(stick));
-    }
+    out.optional("stick", contact.stick);
     out.line("separation", contact.separation);
-    if let Some(distance) = contact.search_distance {
-        out.line("search", number(distance / unit));
-    }
-}
-
-fn connectors(out: &mut Text, model: &Model) {
-    for connector in &model.connectors {
-        let [a, b] = connector.between.each_ref().map(|name| quoted(name));
-        out.table("[[connector]]");
-        out.line("name", quoted(&connector.name));
-        out.line("between", format_args!("[{a}, {b}]"));
-        if let Some(at) = connector.at {
-            out.line("at", list(&at.map(|x| x / model.mesh_unit)));
-        }
-        out.line("stiffness", list(&connector.stiffness));
-        out.line("rotational_stiffness", list(&connector.rotational_stiffness));
-        out.line("damping", list(&connector.damping));
-    }
-}
-
-fn loads(out: &mut Text, model: &Model) {
-    for load in &model.loads {
-        out.table("[[load]]");
-        out.line("name", quoted(&load.name));
-        out.line("on", quoted(&load.on));
-        match load.kind {
-            LoadKind::Pressure(pressure) => out.line("pressure", number(pressure)),
-            LoadKind::ForceByNode(force) => out.line("force", list(&force)),
-            LoadKind::ForceByArea(force) => {
-                out.line("force", list(&force));
-                out.line("spread", quoted("area"));
-            }
-        }
-    }
+    out.optional("search", contact.search_distance.map(|distance| distance / unit));
 }
 
 fn analysis(out: &mut Text, model: &Model) {
@@ -221,7 +200,12 @@ mod tests {
         let back = parse(&text, Path::new("brake.toml")).unwrap();
         // All but the places is the same, to rounding of lengths and of isotropic elasticities.
         assert_eq!(write(&back, "brake.msh"), text);
-        assert_eq!((back.fixes.len(), back.contacts.len(), back.loads.len()), (1, 3, 2));
+        assert_eq!((back.fixes.len(), back.contacts.len(), back.loads.len()), (1, 3, 3));
+        assert_eq!((back.connectors.len(), back.ties.len(), back.rigid_bodies.len()), (2, 1, 1));
+        assert_eq!(
+            (&back.masses[0].inertia, &back.equations[0].terms),
+            (&model.masses[0].inertia, &model.equations[0].terms)
+        );
         for (one, two) in model.parts.iter().zip(&back.parts) {
             let (a, b) = (one.material.elasticity.as_flattened(), two.material.elasticity.as_flattened());
             assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-12 * a.abs().max(1e9)), "{}", one.name);

@@ -111,6 +111,7 @@ impl FullModel {
     pub fn new(model: Model, piece: Piece, team: &dyn Team) -> Result<FullModel> {
         let Piece { mesh, nodes } = piece;
         model.check_against(&mesh)?;
+        assembly::require_supported(&model, &mesh)?;
         let interface = Interface::build(&model, &mesh, team)?;
         let loads = assembly::loads(&model, &mesh)?;
         let held = assembly::constraints(&model, &mesh)?;
@@ -152,6 +153,7 @@ impl FullModel {
     pub fn is_unloaded(&self) -> bool {
         let is_zero = |load: &Load| match load.kind {
             LoadKind::ForceByNode(force) | LoadKind::ForceByArea(force) => force == [0.0; 3],
+            LoadKind::ForceAt { force, moment, .. } => [force, moment] == [[0.0; 3]; 2],
             LoadKind::Pressure(pressure) => pressure == 0.0,
         };
         let overlaps = |pair: &ContactPair| pair.separation && pair.statistics.gap[0] < -SMALLEST_OVERLAP;

@@ -41,7 +41,7 @@ impl DeckWriter<'_> {
             }
             LoadKind::Pressure(pressure) => format!("*DSLOAD\n{on},P,{}\n", number(pressure / self.units.stress())),
             // By a coupling.
-            LoadKind::ForceByArea(_) => String::new(),
+            LoadKind::ForceByArea(_) | LoadKind::ForceAt { .. } => String::new(),
         }
     }
 

@@ -14,7 +14,7 @@ use std::io::{self, Write};
 
 use super::elements::{Class, by_name};
 use crate::mesh::{Facet, Mesh};
-use crate::model::{Model, UnitSystem};
+use crate::model::{Connector, Load, LoadKind, Model, UnitSystem};
 use names::Names;
 
 /// Nodes of an element on its first line.
@@ -109,7 +109,7 @@ impl DeckWriter<'_> {
         let (model, mut out) = (self.model, String::new());
         let mut wanted: Vec<&str> = self.mesh.node_sets.keys().map(String::as_str).collect();
         wanted.extend(model.fixes.iter().map(|fix| fix.nodes.as_str()));
-        let by_node = |load: &&crate::model::Load| matches!(load.kind, crate::model::LoadKind::ForceByNode(_));
+        let by_node = |load: &&Load| matches!(load.kind, LoadKind::ForceByNode(_));
         wanted.extend(model.loads.iter().filter(by_node).map(|load| load.on.as_str()));
         wanted.sort_unstable();
         wanted.dedup();
@@ -169,7 +169,24 @@ impl DeckWriter<'_> {
         for contact in model.contacts.iter().filter(|contact| contact.search_distance.is_some()) {
             losses.push(format!("the search distance of the contact {:?} is not written", contact.name));
         }
+        let grounded = model.connectors.iter().filter(|connector| !self.has_both_ends(connector)).count();
+        let at_points = model.loads.iter().filter(|load| matches!(load.kind, LoadKind::ForceAt { .. })).count();
+        let joints = [
+            (model.ties.len(), "ties"),
+            (model.rigid_bodies.len(), "rigid sets"),
+            (model.masses.len(), "point masses"),
+            (model.equations.len(), "equations"),
+            (grounded, "connectors to the ground"),
+            (at_points, "forces at points"),
+        ];
+        let lost = joints.into_iter().filter(|(n, _)| *n > 0);
+        losses.extend(lost.map(|(n, what)| format!("{what} are not written: the model has {n}")));
         losses
+    }
+
+    /// Whether both ends of a connector are sets of the mesh.
+    fn has_both_ends(&self, connector: &Connector) -> bool {
+        connector.between.iter().all(|end| self.mesh.node_set(end).is_some())
     }
 }
 

@@ -92,7 +92,7 @@ impl DeckWriter<'_> {
         let mut couplings = Couplings { text: String::new(), forces: Vec::new() };
         let model = self.model;
         for connector in &model.connectors {
-            let text = self.connector(connector);
+            let text = if self.has_both_ends(connector) { self.connector(connector) } else { String::new() };
             couplings.text += &text;
         }
         for load in &model.loads {

@@ -1,5 +1,7 @@
 //! Whether model file and mesh go together.
 
+mod joints;
+
 use super::{Contact, LoadKind, Model, Place, Rotation, names};
 use crate::algebra::{cross, sub};
 use crate::mesh::Mesh;
@@ -14,6 +16,7 @@ impl Model {
         let mut check = ModelCheck { model: self, mesh, messages: Vec::new() };
         check.parts();
         check.names();
+        check.joints();
         check.loads();
         self.contacts.iter().for_each(|contact| check.contact(contact));
         check.sweep();
@@ -56,14 +59,8 @@ impl ModelCheck<'_> {
 
     /// Names of surfaces and node sets exist.
     fn names(&mut self) {
-        let model = self.model;
-        for fix in &model.fixes {
+        for fix in &self.model.fixes {
             self.node_set(&fix.nodes, fix.place, "fix");
-        }
-        for connector in &model.connectors {
-            for end in &connector.between {
-                self.node_set(end, connector.place, &format!("connector {:?}", connector.name));
-            }
         }
     }
 
@@ -101,7 +98,7 @@ impl ModelCheck<'_> {
         for load in &model.loads {
             let item = format!("load {:?}", load.name);
             match load.kind {
-                LoadKind::ForceByNode(_) => self.node_set(&load.on, load.place, &item),
+                LoadKind::ForceByNode(_) | LoadKind::ForceAt { .. } => self.node_set(&load.on, load.place, &item),
                 LoadKind::ForceByArea(_) | LoadKind::Pressure(_) => self.surface(&load.on, load.place, &item),
             };
         }
@@ -128,17 +125,10 @@ impl ModelCheck<'_> {
 
     /// The one part that a contact surface lies on; complains where there is no such part.
     fn contact_surface(&mut self, name: &str, place: Place, item: &str) -> Option<u32> {
-        if !self.surface(name, place, item) {
+        if !self.skin(name, place, item) {
             return None;
         }
         let mesh = self.mesh;
-        if !mesh.surfaces[name].inner.is_empty() {
-            let (inner, all) = (mesh.surfaces[name].inner.len(), mesh.surfaces[name].facets.len());
-            let what =
-                format!("{inner} of {all} facets of {name:?} lie between two elements, not on the skin ({item})");
-            self.complain(place, format!("{what}. Mesh the two parts apart, without common nodes"));
-            return None;
-        }
         let parts = mesh.parts_of_surface(name)?;
         if let [part] = parts[..] {
             return Some(part);
@@ -147,6 +137,20 @@ impl ModelCheck<'_> {
         let what = format!("the surface {name:?} lies on several parts: {} ({item})", on.join(", "));
         self.complain(place, format!("{what}. Make a physical surface for each part, and a contact for each"));
         None
+    }
+
+    /// Whether a surface exists and lies on the skin of the parts; complains where it does not.
+    fn skin(&mut self, name: &str, place: Place, item: &str) -> bool {
+        if !self.surface(name, place, item) {
+            return false;
+        }
+        let (inner, all) = (self.mesh.surfaces[name].inner.len(), self.mesh.surfaces[name].facets.len());
+        if inner > 0 {
+            let what =
+                format!("{inner} of {all} facets of {name:?} lie between two elements, not on the skin ({item})");
+            self.complain(place, format!("{what}. Mesh the two parts apart, without common nodes"));
+        }
+        inner == 0
     }
 
     /// A pair slides where the master alone turns; all others stick, and need `stick` where they have friction.

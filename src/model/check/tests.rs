@@ -265,3 +265,30 @@ fn all_that_is_wrong_is_said_at_once() {
     let text = GOOD.replace("nodes = \"hub\"", "nodes = \"hup\"").replace("stick = 1e13\n", "");
     assert_eq!(said(&text, &mesh()).lines().count(), 2);
 }
+
+#[test]
+fn joints_name_what_is_in_the_mesh() {
+    let mut mesh = mesh();
+    mesh.node_sets.insert("tip".to_owned(), vec![4]);
+    mesh.node_sets.insert("rim".to_owned(), vec![1, 2, 3]);
+    let with = |table: &str| format!("{GOOD}{table}\n");
+    let tie = |slave: &str| with(&format!("[[tie]]\nslave = {slave:?}\nmaster = \"backplate_outer_back\""));
+    let equation = |node: &str| {
+        let term = |node: &str| format!("{{ node = {node:?}, axis = \"x\", coefficient = 1 }}");
+        with(&format!("[[equation]]\nterms = [{}, {}]", term("tip"), term(node)))
+    };
+    let grounded = GOOD.replace("\"backplate_outer_back\"]", "\"ground\"]");
+    model(&grounded).check_against(&mesh).unwrap();
+    model(&tie("backplate_inner_back")).check_against(&mesh).unwrap();
+    for (text, what) in [
+        (tie("hup"), "the mesh has no physical surface \"hup\" (tie \"hup / backplate_outer_back\")"),
+        (tie("rim"), "\"rim\" is a physical curve or point, not a surface (tie \"rim / backplate_outer_back\")"),
+        (with("[[rigid]]\nnodes = \"hup\""), "the mesh has no surface or node set \"hup\" (rigid \"hup\")"),
+        (with("[[mass]]\nnodes = \"hup\"\nmass = 1"), "the mesh has no surface or node set \"hup\" (mass \"hup\")"),
+        (equation("hup"), "the mesh has no surface or node set \"hup\" (equation \"tip x, hup x\")"),
+        (equation("rim"), "\"rim\" has 3 nodes, but a term of an equation is of one (equation \"tip x, rim x\")"),
+    ] {
+        let said = said(&text, &mesh);
+        assert!(said.contains(what), "{said}");
+    }
+}

@@ -1,6 +1,7 @@
 //! Every message of the model file: a good file with one thing wrong, and what is said about it.
 
 mod analysis;
+mod joints;
 mod keys;
 mod materials;
 mod pairs;
@@ -85,6 +86,11 @@ fn the_documented_example_parses_and_uses_every_kind() {
     assert_eq!((reduction.contacts, reduction.band), (104, [0.0, 12_000.0]));
     assert_eq!(model.contacts[1].law, NormalLaw::Cubic { k1: 2e13, k3: 1e22 });
     assert_eq!(model.loads[1].kind, LoadKind::Pressure(4e6));
+    let at = [-90.0, 60.0, 25.0].map(|x: f64| x * 1e-3);
+    assert_eq!(
+        model.loads[2].kind,
+        LoadKind::ForceAt { force: [0.0, 200.0, 0.0], moment: [0.0, 0.0, 1.5], at: Some(at) }
+    );
     // The shim's x axis lies along the mesh's y.
     let shim = model.parts.iter().find(|part| part.name == "shim_outer").unwrap();
     let elasticity = shim.material.elasticity;

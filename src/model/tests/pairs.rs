@@ -1,4 +1,4 @@
-//! Fixes, rotations, contacts, connectors and loads.
+//! Fixes, rotations, contacts and loads.
 
 use super::{GOOD, complains, parsed};
 use crate::model::{LoadKind, SpeedDecay};
@@ -65,16 +65,6 @@ fn friction_that_decays_keeps_its_ratio() {
 }
 
 #[test]
-fn connectors_are_checked() {
-    let said = "stiffness must be 0 or above, not -2 (connector \"pin / hole\"). Give [x, y, z] in N/m";
-    complains("stiffness = [1, 2, 3]", "stiffness = [1, -2, 3]", 0, said);
-    let said = "both ends are \"pin\" (connector \"pin / pin\"). Name two different node sets";
-    complains("between = [\"pin\", \"hole\"]", "between = [\"pin\", \"pin\"]", 0, said);
-    let said = parsed(&GOOD.replace("stiffness = [1, 2, 3]", "stiffness = [0, 0, 0]")).unwrap_err();
-    assert!(said.contains(":38: all its constants are 0 (connector \"pin / hole\")"), "{said}");
-}
-
-#[test]
 fn loads_are_one_force_or_one_pressure() {
     let load = |text: &str| parsed(&GOOD.replace("force = [0, 0, 4000]", text));
     let kind = |text: &str| load(text).unwrap().loads[0].kind;
@@ -84,7 +74,7 @@ fn loads_are_one_force_or_one_pressure() {
     let both = load("force = [1, 0, 0]\npressure = 5").unwrap_err();
     assert!(both.contains(":45: there are a force and a pressure (load \"back\")"), "{both}");
     let spread = load("pressure = 5\nspread = \"area\"").unwrap_err();
-    assert!(spread.contains(":45: spread says how a force acts, but this is a pressure"), "{spread}");
+    assert!(spread.contains(":45: spread, moment and at say how a force acts, but this is a pressure"), "{spread}");
     let unknown = load("force = [1, 0, 0]\nspread = \"areas\"").unwrap_err();
     assert!(unknown.contains("unknown spread \"areas\" (load \"back\"). Did you mean \"area\"?"), "{unknown}");
 }
