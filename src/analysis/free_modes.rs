@@ -51,6 +51,7 @@ pub fn free_modes(
 ) -> Result<FreeModes> {
     let start = Instant::now();
     let measured = comm.agree(options.measured.as_deref().map(measured::read).transpose())?;
+    part.require_mass()?;
     warn(comm, part, observer);
     observer.event(Event::Stage("assembling"));
     let system = part.assemble(comm, &part.families()?)?;

@@ -92,6 +92,7 @@ impl StabilityOptions {
         if self.reduce_each && matches!(structure, Structure::Reduced(_)) {
             return Err(Error::input("a super-element cannot be reduced again: --reduce-each is for models"));
         }
+        structure.require_mass()?;
         let values = structure.friction_values(self.friction_values.as_deref())?;
         let follows = self.follows(values.len());
         let values = order(values, follows);

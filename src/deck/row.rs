@@ -20,7 +20,7 @@ pub struct Row<'a> {
 
 impl<'a> Row<'a> {
     /// The fields without blanks at their ends; a comma at the end of the line begins no field.
-    pub fn fields(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+    pub fn fields(&self) -> impl Iterator<Item = &'a str> + Clone + use<'a> {
         self.text.strip_suffix(',').unwrap_or(self.text).split(',').map(str::trim)
     }
 

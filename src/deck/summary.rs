@@ -29,8 +29,21 @@ pub struct DeckSummary {
     pub steps: usize,
     /// Keywords that change no result, how often they are there, and where first.
     pub ignored: Vec<IgnoredKeyword>,
+    /// Contact pairs without a stiffness, and the one proposed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub proposed: Vec<ProposedStiffness>,
     /// How something was understood, or what was chosen.
     pub notes: Vec<String>,
+}
+
+/// The stiffness of a contact pair for which a deck has none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ProposedStiffness {
+    /// Name of the contact pair.
+    pub contact: String,
+    /// N/m3.
+    #[serde(rename = "stiffness_n_per_m3")]
+    pub stiffness: f64,
 }
 
 /// How many elements of a kind there are.
@@ -55,7 +68,12 @@ pub struct IgnoredKeyword {
 
 impl DeckSummary {
     /// The summary of an assembly.
-    pub fn new(assembly: &Assembly, units: &UnitSystem, notes: Vec<String>) -> DeckSummary {
+    pub fn new(
+        assembly: &Assembly,
+        units: &UnitSystem,
+        proposed: Vec<ProposedStiffness>,
+        notes: Vec<String>,
+    ) -> DeckSummary {
         let deck = assembly.deck;
         let mut elements: Vec<ElementCount> = Vec::new();
         for element in &assembly.elements {
@@ -81,6 +99,7 @@ impl DeckSummary {
             surfaces: assembly.surface_names().len(),
             steps: deck.steps.len(),
             ignored: ignored.collect(),
+            proposed,
             notes,
         }
     }
@@ -102,6 +121,9 @@ impl DeckSummary {
         for IgnoredKeyword { keyword, times, first } in &self.ignored {
             let times = if *times == 1 { String::new() } else { format!(", {times} times") };
             out += &format!("  {keyword} ({first}{times})\n");
+        }
+        for ProposedStiffness { contact, stiffness } in &self.proposed {
+            out += &format!("proposed: the contact {contact} gets a stiffness of {stiffness:.3e} N/m3\n");
         }
         self.notes.iter().for_each(|note| out += &format!("note: {note}\n"));
         out

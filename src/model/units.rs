@@ -44,13 +44,15 @@ impl UnitSystem {
         found.ok_or_else(|| names::advice(name, UnitSystem::ALL.map(|system| system.name)))
     }
 
-    /// The systems in which all materials, given by their stiffness and density, are solids that brakes are made of,
-    /// `1e6 <= E <= 1e12 Pa` and `500 <= rho <= 2.5e4 kg/m3`; lengths are as in `length` (m) where that is known.
-    pub fn fitting(materials: &[[f64; 2]], length: Option<f64>) -> Vec<UnitSystem> {
+    /// The systems in which all materials, given by their stiffness and, where they have one, density, are solids that
+    /// brakes are made of, `1e6 <= E <= 1e12 Pa` and `500 <= rho <= 2.5e4 kg/m3`; lengths are as in `length` (m) where
+    /// that is known.
+    pub fn fitting(materials: &[(f64, Option<f64>)], length: Option<f64>) -> Vec<UnitSystem> {
         let is_inside = |x: f64, [low, high]: [f64; 2]| (low..=high).contains(&x);
         let fits = |system: &UnitSystem| {
-            let all = materials.iter().all(|[young, density]| {
-                is_inside(young * system.stress(), YOUNG) && is_inside(density * system.density(), DENSITY)
+            let all = materials.iter().all(|(young, density)| {
+                is_inside(young * system.stress(), YOUNG)
+                    && density.is_none_or(|density| is_inside(density * system.density(), DENSITY))
             });
             all && length.is_none_or(|length| length == system.length)
         };
@@ -103,12 +105,14 @@ mod tests {
     #[test]
     fn a_brake_in_any_system_fits_that_system_alone() {
         for system in UnitSystem::ALL {
-            let materials = BRAKE.map(|[young, density]| [young / system.stress(), density / system.density()]);
+            let materials = BRAKE.map(|[young, density]| (young / system.stress(), Some(density / system.density())));
             let names: Vec<&str> = UnitSystem::fitting(&materials, None).iter().map(|system| system.name).collect();
             assert_eq!(names, [system.name]);
             assert_eq!(UnitSystem::named(system.name).unwrap(), system);
             let other = if system.length == 1.0 { 1e-3 } else { 1.0 };
             assert!(UnitSystem::fitting(&materials, Some(other)).is_empty());
+            let without_density = materials.map(|(young, _)| (young, None));
+            assert!(UnitSystem::fitting(&without_density, None).contains(&system));
         }
     }
 

@@ -1,7 +1,7 @@
 //! What a run ends with on the screen.
 
 use super::{branches, details, explain, sweep_text, text};
-use crate::results::Results;
+use crate::results::{ModeData, Results};
 
 /// What the complex modes come to, and what is in the folder `place`.
 pub fn stability(results: &Results, place: &str) -> String {
@@ -15,6 +15,11 @@ pub fn stability(results: &Results, place: &str) -> String {
     let explained = results.modes().filter(|(_, _, mode)| !mode.sources.is_empty());
     let strongest = explained.max_by(|(_, _, a), (_, _, b)| a.growth_rate().total_cmp(&b.growth_rate()));
     summary += &strongest.map_or_else(String::new, |(friction, _, mode)| explain::sentence(friction, mode) + "\n");
+    if let Some((friction, ..)) = strongest {
+        let unstable = results.modes().filter(|(other, _, mode)| *other == friction && mode.unstable);
+        let unstable: Vec<&ModeData> = unstable.map(|(_, _, mode)| mode).collect();
+        summary += &explain::of_proposed(&about.pairs, friction, &unstable);
+    }
     summary += &results.diagram.as_ref().map_or_else(String::new, |diagram| branches::summary(diagram, "friction"));
     summary + "\n" + &results.costs + &files_text(results, place)
 }

@@ -143,6 +143,9 @@ pub struct Pair {
     /// Contact points.
     #[serde(rename = "points")]
     pub n_points: usize,
+    /// Its normal stiffness, N/m3, where a deck has none and the program proposed it.
+    #[serde(rename = "proposed_stiffness_n_per_m3", default, skip_serializing_if = "Option::is_none")]
+    pub proposed_stiffness: Option<f64>,
 }
 
 /// The outer surface of all parts, undeformed.

@@ -79,7 +79,13 @@ pub fn results() -> Results {
 
 fn about(friction_values: Vec<f64>) -> About {
     let part = |name: &str, material: &str, mass| Part { name: name.into(), material: material.into(), mass };
-    let pair = |name: &str, sliding| Pair { name: name.into(), sliding, swept: sliding, n_points: 99 };
+    let pair = |name: &str, sliding| Pair {
+        name: name.into(),
+        sliding,
+        swept: sliding,
+        n_points: 99,
+        proposed_stiffness: None,
+    };
     About {
         title: TITLE.into(),
         program: "squeal 0.1.0".into(),

@@ -11,7 +11,7 @@ use crate::mesh::{Mesh, Numbering, Piece};
 use crate::model::{self, Load, LoadKind, Model, is_deck};
 use crate::native::Comm;
 use crate::reduction;
-use crate::results::{About, ContactFaces, Part};
+use crate::results::{About, ContactFaces, Pair, Part};
 use crate::{Error, Result};
 
 use super::contact_surface::{ContactSurface, Fields};
@@ -141,6 +141,20 @@ impl FullModel {
             "{}: unconstrained:\n{free}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
             self.model.file.display()
         )))
+    }
+
+    /// Refuses a brake of which a part has no mass, so that it has no modes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the material.
+    pub fn require_mass(&self) -> Result<()> {
+        match self.model.parts.iter().find(|part| part.material.density == 0.0) {
+            None => Ok(()),
+            Some(model::Part { name, material, place, .. }) => {
+                let what = format_args!("the material {:?} of the part {name:?} has no density", material.name);
+                Err(self.model.error(*place, format_args!("{what}, so that there are no modes. Give its density")))
+            }
+        }
     }
 
     /// The motions that nothing resists, a line each, with the contacts of an interface. Collective.
@@ -294,9 +308,20 @@ impl FullModel {
             parts,
             unloaded: self.is_unloaded(),
             warnings: plausibility::warnings(self, comm),
-            pairs: pairs(&self.interface),
+            pairs: self.pairs(),
             ..About::default()
         })
+    }
+
+    /// The contact pairs, with the stiffness that was proposed for those of a deck.
+    fn pairs(&self) -> Vec<Pair> {
+        let proposed = |name: &str| {
+            let all = self.deck.iter().flat_map(|deck| &deck.proposed);
+            all.into_iter().find(|own| own.contact == name).map(|own| own.stiffness)
+        };
+        let mut pairs = pairs(&self.interface);
+        pairs.iter_mut().for_each(|pair| pair.proposed_stiffness = proposed(&pair.name));
+        pairs
     }
 
     pub(super) fn contact_faces(&self) -> ContactFaces {

@@ -167,6 +167,17 @@ impl Structure {
         }
     }
 
+    /// Refuses a structure without mass, which has no modes.
+    ///
+    /// # Errors
+    /// [`Error::Input`]: see [`FullModel::require_mass`].
+    pub fn require_mass(&self) -> Result<()> {
+        match self {
+            Structure::Full(full) => full.require_mass(),
+            Structure::Reduced(_) => Ok(()),
+        }
+    }
+
     /// Assembles M, C, K and the load. Collective.
     ///
     /// # Errors
@@ -267,6 +278,7 @@ fn pairs(interface: &Interface) -> Vec<Pair> {
         sliding: pair.is_sliding(),
         swept: pair.swept,
         n_points: pair.points.len(),
+        proposed_stiffness: None,
     };
     interface.pairs.iter().map(of).collect()
 }

@@ -90,7 +90,9 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
         let [low, high] = material.youngs();
         young(&material.name, low).or_else(|| young(&material.name, high))
     });
-    let mass = materials.iter().filter_map(|material| density(&material.name, material.density));
+    // A deck without a density is noted.
+    let with_mass = materials.iter().filter(|material| material.density != 0.0);
+    let mass = with_mass.filter_map(|material| density(&material.name, material.density));
     let contacts = model.contacts.iter().zip(&full.interface.pairs).filter_map(|(contact, pair)| {
         let (NormalLaw::Linear { stiffness } | NormalLaw::Cubic { k1: stiffness, .. }) = contact.law;
         let softest = [&contact.slave, &contact.master].map(|surface| full.youngs_of(surface)[0]);

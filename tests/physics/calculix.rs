@@ -9,7 +9,7 @@
 //! in the same order, curved edges, and 4 points for the stiffness, as ours. It has 4 points for the mass too
 //! (`e_c3d.f`: `mint3d=4` unless `intscheme` asks for more), where an exact rule takes 14: an error of the size of the
 //! mesh's own, which grows with frequency. So modes are compared twice: with our exact mass, and with the mass of 4
-//! points, [`FourPointMass`], which shows that nothing else differs.
+//! points, [`TheirMass`], which shows that nothing else differs.
 //!
 //! Goal and, in brackets, measured: with the mass of 4 points 1e-6 [2e-7, 2e-7; ccx prints eigenvalues with seven
 //! digits]; with our own 1e-4 below 4 kHz [5.6e-5], 5e-4 to the 30th mode [3.3e-4].
@@ -22,6 +22,7 @@
 
 mod decks;
 mod elements;
+mod references;
 
 use std::fmt::Write;
 use std::path::Path;
@@ -29,12 +30,10 @@ use std::process::Command;
 
 use crate::support::block::Block;
 use crate::support::{self, data};
-use nalgebra::Matrix3;
 use squeal::analysis::Sweep;
 use squeal::assembly::{Connectivity, ElementMatrices, Elements, Solids, System};
 use squeal::contact::{Response, Status};
-use squeal::element::quadrature::TETRAHEDRON_4;
-use squeal::element::{ElementKind, Shape, solid};
+use squeal::element::ElementKind;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
@@ -149,13 +148,19 @@ fn calculix(deck: &str) -> Vec<f64> {
     rows.map(|row| row[1].sqrt() / std::f64::consts::TAU).collect()
 }
 
-/// Tetrahedra whose mass is integrated by 4 points, `m_ab = sum_q rho w detJ N_a N_b`, as ccx does.
-struct FourPointMass<'a> {
+/// Solids whose mass is integrated by CalculiX's points, `m_ab = sum_q rho w detJ N_a N_b`.
+struct TheirMass<'a> {
     solids: Solids<'a>,
     mesh: &'a Mesh,
 }
 
-impl Connectivity for FourPointMass<'_> {
+impl<'a> TheirMass<'a> {
+    fn of(brake: &'a FullModel) -> TheirMass<'a> {
+        TheirMass { solids: Solids::new(&brake.model, &brake.mesh).unwrap(), mesh: &brake.mesh }
+    }
+}
+
+impl Connectivity for TheirMass<'_> {
     fn len(&self) -> usize {
         self.solids.len()
     }
@@ -165,25 +170,16 @@ impl Connectivity for FourPointMass<'_> {
     }
 }
 
-impl Elements for FourPointMass<'_> {
+impl Elements for TheirMass<'_> {
     fn mass_couples_axes(&self) -> bool {
         false
     }
 
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
         self.solids.matrices(e, out);
-        out.m.fill(0.0);
-        let x = self.mesh.element_nodes(e);
-        let x: &[[f64; 3]; 10] = x.as_ref().try_into().unwrap();
-        let interpolation = Shape::Tetrahedron10.interpolation();
-        for point in TETRAHEDRON_4 {
-            let n = interpolation.shape(point.at);
-            let gradients = interpolation.gradients(point.at);
-            let det = Matrix3::from(solid::jacobian(x, gradients.first_chunk().unwrap())).determinant();
-            for at in 0..100 {
-                out.m[at] += self.solids.part(e).material.density * point.weight * det * n[at / 10] * n[at % 10];
-            }
-        }
+        let mass = elements::mass(self.mesh.elements.get(e).kind, &self.mesh.element_nodes(e));
+        let density = self.solids.part(e).material.density;
+        out.m.iter_mut().zip(&mass).for_each(|(m, own)| *m = density * own);
     }
 }
 
@@ -201,8 +197,7 @@ fn ours(brake: &FullModel, system: &System) -> (Vec<f64>, Vec<Response>) {
 fn compare(comm: &Comm, brake: &FullModel) {
     let families = brake.families().unwrap();
     let (exact, responses) = ours(brake, &brake.assemble(comm, &families).unwrap());
-    let solids = FourPointMass { solids: Solids::new(&brake.model, &brake.mesh).unwrap(), mesh: &brake.mesh };
-    let (same, _) = ours(brake, &brake.assemble_families(comm, &[&solids, families.links]).unwrap());
+    let (same, _) = ours(brake, &brake.assemble_families(comm, &[&TheirMass::of(brake), families.links]).unwrap());
     let theirs = calculix(&deck(brake, &responses));
     assert_eq!(theirs.len(), N_MODES);
     println!("mode     CalculiX Hz       squeal Hz  difference  with 4 points for the mass");

@@ -91,12 +91,17 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Parts and mesh.
+    /// Parts and mesh; what was done with them is noted.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input): elements that cannot be analysed, that are inverted, or whose section is
     /// missing or not the only one.
-    pub fn new(assembly: &Assembly, sections: &[SectionOf], units: &UnitSystem) -> Result<(Bodies, Mesh)> {
+    pub fn new(
+        assembly: &Assembly,
+        sections: &[SectionOf],
+        units: &UnitSystem,
+        notes: &mut Vec<String>,
+    ) -> Result<(Bodies, Mesh)> {
         let mut bodies = Bodies {
             parts: Vec::new(),
             part_of: vec![UNUSED; assembly.elements.len()],
@@ -105,6 +110,7 @@ impl Bodies {
         for section in sections {
             bodies.add(assembly, section, units)?;
         }
+        notes.extend(bodies.separate(assembly)?);
         let mut mesh = Mesh { parts: bodies.parts.iter().map(|part| part.name.clone()).collect(), ..Mesh::default() };
         bodies.elements(assembly, &mut mesh)?;
         bodies.nodes(assembly, units.length, &mut mesh);

@@ -49,8 +49,9 @@ fn symmetric(triangle: &[f64]) -> Matrix6<f64> {
 /// The material of a section.
 ///
 /// # Errors
-/// [`Error::Input`](crate::Error::Input) where there is none, or it lacks elasticity or density.
-fn of_section<'d>(deck: &'d Deck, section: &SectionOf) -> Result<(&'d Material, &'d Elastic, f64)> {
+/// [`Error::Input`](crate::Error::Input) where there is none, or it lacks elasticity, or density where a step asks for
+/// modes.
+fn of_section<'d>(deck: &'d Deck, section: &SectionOf) -> Result<(&'d Material, &'d Elastic, Option<f64>)> {
     let place = section.section.place;
     let name = &section.section.material;
     let material = deck.materials.iter().find(|material| material.name == *name).ok_or_else(|| {
@@ -62,8 +63,9 @@ fn of_section<'d>(deck: &'d Deck, section: &SectionOf) -> Result<(&'d Material, 
         material.place.error(&deck.files, format_args!("the material {name} has no {what}, which every part needs"))
     };
     let elastic = material.elastic.as_ref().ok_or_else(|| missing("*ELASTIC"))?;
-    let (density, _) = material.density.ok_or_else(|| missing("*DENSITY"))?;
-    Ok((material, elastic, density))
+    let density = material.density.map(|(density, _)| density);
+    let asks_for_modes = deck.steps.iter().any(|step| step.procedure.is_of_modes());
+    if density.is_none() && asks_for_modes { Err(missing("*DENSITY")) } else { Ok((material, elastic, density)) }
 }
 
 /// The material of a section, in SI units and global axes.
@@ -84,7 +86,8 @@ pub fn material(deck: &Deck, section: &SectionOf, units: &UnitSystem) -> Result<
     };
     let rows = [0, 1, 2, 3, 4, 5].map(|i| [0, 1, 2, 3, 4, 5].map(|j| elasticity[(i, j)]));
     let rayleigh = model::Rayleigh { alpha: material.alpha / units.time, beta: material.beta * units.time };
-    Ok((model::Material { name, density: density * units.density(), elasticity: rows }, rayleigh))
+    let density = density.map_or(0.0, |density| density * units.density());
+    Ok((model::Material { name, density, elasticity: rows }, rayleigh))
 }
 
 /// The axes of an orientation, turned with its instance.
@@ -103,6 +106,14 @@ fn axes(deck: &Deck, orientation: &Orientation, section: &SectionOf) -> Result<M
     })
 }
 
+/// What is noted of materials without a density.
+pub fn without_density(deck: &Deck) -> Option<String> {
+    let without = deck.materials.iter().filter(|material| material.density.is_none());
+    let names: Vec<String> = without.map(|material| deck.spelled(&material.name)).collect();
+    let what = "no *DENSITY: its parts have no mass, and the model no modes";
+    (!names.is_empty()).then(|| format!("the material {} has {what}", names.join(", ")))
+}
+
 /// The system of units: the one named, or the first that makes all materials solids.
 ///
 /// # Errors
@@ -118,7 +129,7 @@ pub fn units(deck: &Deck, sections: &[SectionOf], known: KnownUnits) -> Result<U
     if let Some(system) = known.system {
         return Ok(system);
     }
-    let pairs: Vec<[f64; 2]> = used.iter().map(|(_, young, density)| [*young, *density]).collect();
+    let pairs: Vec<(f64, Option<f64>)> = used.iter().map(|(_, young, density)| (*young, *density)).collect();
     match &UnitSystem::fitting(&pairs, known.length)[..] {
         [system, ..] => Ok(*system),
         [] => {
@@ -126,9 +137,10 @@ pub fn units(deck: &Deck, sections: &[SectionOf], known: KnownUnits) -> Result<U
             let name = deck.spelled(&section.section.material);
             let of_length =
                 known.length.map_or_else(String::new, |length| format!(" with a unit of length of {length} m"));
+            let density = density.map_or("no density".to_owned(), |density| format!("a density of {density}"));
             let what = format_args!(
-                "no system of units{of_length} makes solids of all materials: {name} has a modulus of {young} and a density of \
-                 {density}. Correct them, or name the units: {}",
+                "no system of units{of_length} makes solids of all materials: {name} has a modulus of {young} and {density}. \
+                 Correct them, or name the units: {}",
                 UnitSystem::ALL.map(|system| system.name).join(", ")
             );
             Err(section.section.place.error(&deck.files, what))

@@ -9,6 +9,7 @@
 
 mod analysis;
 mod bodies;
+mod bodies_apart;
 mod couplings;
 mod history;
 mod materials;
@@ -20,7 +21,7 @@ mod supports;
 mod tests;
 
 use super::assembly::Assembly;
-use super::summary::DeckSummary;
+use super::summary::{DeckSummary, ProposedStiffness};
 use super::types::Deck;
 use crate::Result;
 use crate::mesh::Mesh;
@@ -58,6 +59,7 @@ struct Conversion<'d> {
     units: UnitSystem,
     bodies: Bodies,
     regions: Regions,
+    proposed: Vec<ProposedStiffness>,
     notes: Vec<String>,
 }
 
@@ -70,13 +72,14 @@ pub fn convert(deck: &Deck, known: KnownUnits) -> Result<Converted> {
     let assembly = Assembly::new(deck)?;
     let sections = bodies::sections(&assembly)?;
     let units = materials::units(deck, &sections, known)?;
-    let (bodies, mesh) = Bodies::new(&assembly, &sections, &units)?;
+    let mut notes = deck.notes.clone();
+    notes.extend(materials::without_density(deck));
+    let (bodies, mesh) = Bodies::new(&assembly, &sections, &units, &mut notes)?;
     let regions = Regions::new(mesh);
-    let notes = deck.notes.clone();
-    let mut conversion = Conversion { deck, assembly, units, bodies, regions, notes };
+    let mut conversion = Conversion { deck, assembly, units, bodies, regions, proposed: Vec::new(), notes };
     let model = conversion.model()?;
-    let Conversion { assembly, regions, notes, .. } = conversion;
-    let summary = DeckSummary::new(&assembly, &units, notes);
+    let Conversion { assembly, regions, proposed, notes, .. } = conversion;
+    let summary = DeckSummary::new(&assembly, &units, proposed, notes);
     Ok(Converted { model, mesh: regions.mesh, summary })
 }
 

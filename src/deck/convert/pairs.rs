@@ -3,6 +3,7 @@
 use super::Conversion;
 use super::history::State;
 use crate::Result;
+use crate::deck::summary::ProposedStiffness;
 use crate::deck::types::{Behaviour, ContactPair, Interaction};
 use crate::mesh::Mesh;
 use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, names};
@@ -64,9 +65,9 @@ impl<'d> Conversion<'d> {
                 }
             },
             Behaviour::Hard => {
-                let proposed = self.proposed_stiffness(slave, master);
-                self.notes.push(format!("the contact {slave} / {master} gets a stiffness of {proposed:.3e} N/m3"));
-                Ok(proposed)
+                let (contact, stiffness) = (format!("{slave} / {master}"), self.proposed_stiffness(slave, master));
+                self.proposed.push(ProposedStiffness { contact, stiffness });
+                Ok(stiffness)
             }
         }
     }

@@ -41,15 +41,22 @@ impl Parser {
             return Err(card.error(format_args!("a step within the step of line {line}, which has not ended")));
         }
         if card.choice("NLGEOM", &["", "YES", "NO"])? != 2 && card.has("NLGEOM") {
-            let note = "NLGEOM: displacements and strains are small, and stresses do not stiffen";
-            if !self.deck.notes.iter().any(|known| known == note) {
-                self.deck.notes.push(note.to_owned());
-            }
+            self.note("NLGEOM: displacements and strains are small, and stresses do not stiffen");
+        }
+        if card.has("PERTURBATION") {
+            self.note("PERTURBATION: stresses of the steps before do not stiffen");
         }
         // The line below is a text.
         self.open_step = Some(self.deck.steps.len());
         self.deck.steps.push(Step { procedure: Procedure::None, actions: Vec::new(), place: card.place });
         Ok(())
+    }
+
+    /// Notes what a reader should know, once.
+    fn note(&mut self, note: &str) {
+        if !self.deck.notes.iter().any(|known| known == note) {
+            self.deck.notes.push(note.to_owned());
+        }
     }
 
     fn end_step(&mut self, card: &Card) -> Result<()> {

@@ -13,6 +13,9 @@ use crate::deck::types::{ElementBlock, Entry, Orientation, Property, PropertyKin
 /// Nodes may lie this far out, so that no square overflows.
 const LARGEST_COORDINATE: f64 = 1e100;
 
+/// Numbers that CalculiX's decks have behind the nodes of a C3D8I, for its incompatible modes.
+const N_INCOMPATIBLE_MODES: usize = 3;
+
 /// Axes in which coordinates are given, `x = origin + sum_i c_i axes_i`.
 #[derive(Clone, Copy)]
 pub struct Frame {
@@ -109,15 +112,16 @@ impl Parser {
             card.error(format_args!("elements of the type {name} are not supported. Solids are: {kinds}"))
         })?;
         let set = card.value("ELSET").map(str::to_owned).map(|name| self.named(&name));
+        let n_others = if name == "C3D8I" { N_INCOMPATIBLE_MODES } else { 0 };
         let mut block = ElementBlock { kind, numbers: Vec::new(), nodes: Vec::new(), places: Vec::new() };
         while let Some(row) = self.lines.row()? {
             let place = row.place;
             let number = row.number(row.fields().next().unwrap_or_default(), "the number of an element")?;
-            let mut n = push_nodes(&row, 1, kind.n_nodes, &mut block.nodes)?;
+            let mut n = push_nodes(&row, 1, [0, kind.n_nodes], n_others, &mut block.nodes)?;
             let mut continued = row.is_continued();
             while n < kind.n_nodes && continued {
                 let Some(row) = self.lines.row()? else { break };
-                n += push_nodes(&row, 0, kind.n_nodes - n, &mut block.nodes)?;
+                n += push_nodes(&row, 0, [n, kind.n_nodes], n_others, &mut block.nodes)?;
                 continued = row.is_continued();
             }
             if n < kind.n_nodes {
@@ -207,17 +211,24 @@ fn node_row(row: &Row) -> Result<(u32, [f64; 3])> {
     Ok((number, x))
 }
 
-/// Adds the node numbers of a line, from a field on; refuses more than an element has.
-fn push_nodes(row: &Row, first: usize, most: usize, nodes: &mut Vec<u32>) -> Result<usize> {
-    let mut n = 0;
-    for field in row.fields().skip(first) {
-        if n == most {
-            return Err(row.error(format_args!("the element has more nodes than its type, such as {field:?}")));
-        }
-        nodes.push(row.number(field, "the number of a node")?);
-        n += 1;
+/// Adds the node numbers of a line, from a field on, to those known of an element; refuses more than it has. Some
+/// elements have other numbers behind their nodes.
+fn push_nodes(
+    row: &Row,
+    first: usize,
+    [known, most]: [usize; 2],
+    n_others: usize,
+    nodes: &mut Vec<u32>,
+) -> Result<usize> {
+    let fields = row.fields().skip(first);
+    if let Some(field) = fields.clone().nth(most + n_others - known) {
+        return Err(row.error(format_args!("the element has more nodes than its type, such as {field:?}")));
     }
-    Ok(n)
+    let before = nodes.len();
+    for field in fields.take(most - known) {
+        nodes.push(row.number(field, "the number of a node")?);
+    }
+    Ok(nodes.len() - before)
 }
 
 /// A point one unit along an axis from another.

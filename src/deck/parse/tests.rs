@@ -42,6 +42,13 @@ fn keyword_lines_and_elements_continue_after_a_comma() {
         "*ELEMENT, TYPE=C3D8\n1, 1,2,3,4,5,6,7\n2, 2,2,3,4,5,6,7,8\n",
         "a.inp:2: element 1 has 7 nodes, but C3D8 has 8",
     );
+    // CalculiX's decks may have nodes of the incompatible modes.
+    let deck = read("*ELEMENT, TYPE=C3D8I\n1, 1,2,3,4,5,6,7,8,9,10,\n2, 1,2,3,4,5,6,7,8,\n").unwrap();
+    assert_eq!(deck.assembly.elements[0].nodes.len(), 16);
+    refused(
+        "*ELEMENT, TYPE=C3D8I\n1, 1,2,3,4,5,6,7,8,9,10,11,12\n",
+        "a.inp:2: the element has more nodes than its type",
+    );
     refused("*ELEMENT, TYPE=C3D4\n1, 1,2,3,4,5\n", "a.inp:2: the element has more nodes than its type");
     refused("*ELEMENT, TYPE=S4R\n", "a.inp:1: elements of the type S4R are not supported");
 }
@@ -134,6 +141,8 @@ fn steps_keep_what_acts_in_them() {
     let band = [Some(0.0), Some(6000.0)];
     assert_eq!(deck.steps[1].procedure, Procedure::ComplexFrequency { band, friction_damping: true });
     assert!(deck.notes[0].starts_with("NLGEOM"));
+    let deck = read("*STEP, PERTURBATION\n*FREQUENCY\n10\n*END STEP\n").unwrap();
+    assert!(deck.notes[0].starts_with("PERTURBATION"));
     refused("*STEP\n*STATIC\n", "a.inp:1: the step does not end: the deck is cut off");
     refused("*STEP\n*END STEP\n", "a.inp:1: the step has no procedure");
     refused("*STEP\n*DYNAMIC\n", "a.inp:2: *DYNAMIC is not supported: the procedures are");

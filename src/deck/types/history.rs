@@ -32,6 +32,13 @@ pub enum Procedure {
     },
 }
 
+impl Procedure {
+    /// Whether modes are computed, which need masses.
+    pub fn is_of_modes(self) -> bool {
+        matches!(self, Procedure::Frequency(_) | Procedure::ComplexFrequency { .. })
+    }
+}
+
 /// What acts from a step on.
 #[derive(Debug)]
 pub struct Action {

@@ -62,7 +62,13 @@ fn results() -> Results {
             friction_values: vec![0.1, 0.3],
             band: [0.0, 6000.0],
             parts: vec![Part { name: "disc".into(), material: "iron".into(), mass: 0.1 + 0.2 }],
-            pairs: vec![Pair { name: "disc / pad".into(), sliding: true, swept: true, n_points: 6 }],
+            pairs: vec![Pair {
+                name: "disc / pad".into(),
+                sliding: true,
+                swept: true,
+                n_points: 6,
+                proposed_stiffness: Some(1.3e13),
+            }],
             ..About::default()
         },
         surface: Surface {

@@ -1,56 +1,135 @@
-//! Each deck of CalculiX's own tests is read, or refused with one line that names what is unsupported.
+//! Each deck of CalculiX's own tests is read, or refused with one line that names what is unsupported; what is read is
+//! computed and compared with CalculiX's results.
 //!
-//! Source: Debian's package calculix-ccx-test. The list goes into the manual.
+//! Source: Debian's package calculix-ccx-test. The table goes into the manual.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use flate2::read::GzDecoder;
 use squeal::ErrorKind;
 use squeal::deck::{self, KnownUnits};
+use squeal::model::UnitSystem;
+use squeal::native::{Comm, Session};
 
-/// Where Debian installs the decks.
+use super::references::{difference, reference};
+
+/// Where Debian installs the decks, some of them packed.
 const FOLDER: &str = "/usr/share/doc/calculix-ccx-test/examples/test";
 /// What this test writes.
 const LIST: &str = "docs/manual/src/calculix-decks.md";
+/// Largest difference of displacements, relative to the largest one, and of frequencies.
+const SAME: f64 = 1e-5;
 
-fn decks() -> Vec<PathBuf> {
+/// Decks that differ by more than [`SAME`], and why.
+const DIFFERENT: &[(&str, &str)] = &[];
+
+/// Unpacks all decks and results into a folder; gives the decks in the order of their names.
+fn unpack(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(FOLDER).expect("`scripts/setup.sh --tests` installs calculix-ccx-test");
-    let all = entries.map(|entry| entry.unwrap().path());
-    let mut all: Vec<PathBuf> = all.filter(|path| path.extension().is_some_and(|end| end == "inp")).collect();
-    all.sort();
-    all
+    for entry in entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
+        let (mut bytes, name) = (Vec::new(), entry.file_name().unwrap().to_string_lossy().into_owned());
+        match name.strip_suffix(".gz") {
+            Some(_) => _ = GzDecoder::new(fs::File::open(&entry).unwrap()).read_to_end(&mut bytes).unwrap(),
+            None => bytes = fs::read(&entry).unwrap(),
+        }
+        fs::write(folder.join(name.trim_end_matches(".gz")), bytes).unwrap();
+    }
+    let all = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut decks: Vec<PathBuf> = all.filter(|path| path.extension().is_some_and(|end| end == "inp")).collect();
+    decks.sort();
+    decks
+}
+
+/// What becomes of a deck.
+enum Outcome {
+    /// Refused, with this line.
+    Refused(String),
+    /// Read; there are no results to compare with.
+    Read,
+    /// Read and computed, with the largest difference.
+    Compared(f64),
+    /// Read; the computation ends with this message.
+    Failed(String),
+}
+
+fn outcome(comm: &Comm, path: &Path) -> Outcome {
+    let name = path.file_name().unwrap().to_string_lossy().into_owned();
+    // Decks without meaningful units are read in theirs.
+    let units = KnownUnits { system: Some(UnitSystem::named("m-kg-s").unwrap()), length: None };
+    let parsed = deck::parse(path);
+    match parsed.and_then(|deck| deck::convert::convert(&deck, units).map(|converted| (deck, converted))) {
+        Err(error) => {
+            assert_eq!(error.kind(), ErrorKind::Input, "{name}");
+            let message = error.to_string().replace(&format!("{}/", path.parent().unwrap().display()), "");
+            assert!(message.starts_with(&format!("{name}:")) && message.lines().count() == 1, "{message}");
+            Outcome::Refused(message.strip_prefix(&format!("{name}:")).unwrap().trim().replace('|', "/"))
+        }
+        Ok((deck, converted)) => {
+            let results = fs::read_to_string(path.with_extension("dat.ref")).unwrap_or_default();
+            match reference(&results).map(|reference| difference(comm, &deck, converted, &reference)) {
+                None => Outcome::Read,
+                Some(Ok(difference)) => Outcome::Compared(difference),
+                Some(Err(error)) => Outcome::Failed(error.lines().next().unwrap_or_default().replace('|', "/")),
+            }
+        }
+    }
 }
 
 #[test]
-fn each_deck_of_calculix_is_read_or_refused_with_one_line() {
-    let (mut rows, mut n_parsed, mut n_read) = (String::new(), 0, 0);
-    let all = decks();
-    assert!(all.len() > 100, "{} decks", all.len());
+fn each_deck_of_calculix_is_computed_or_refused_with_one_line() {
+    let comm = Session::start(&[]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let all = unpack(folder.path());
+    assert!(all.len() > 300, "{} decks", all.len());
+    let (mut computed, mut refused, mut wrong) = (String::new(), BTreeMap::<String, Vec<String>>::new(), Vec::new());
+    let mut n_same = 0;
     for path in &all {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let parsed = deck::parse(path);
-        n_parsed += usize::from(parsed.is_ok());
-        let result = match parsed.and_then(|deck| deck::convert::convert(&deck, KnownUnits::default())) {
-            Ok(_) => {
-                n_read += 1;
-                "read".to_owned()
+        let reason = DIFFERENT.iter().find(|(deck, _)| *deck == name).map(|(_, reason)| *reason);
+        let row = match outcome(&comm, path) {
+            Outcome::Refused(line) => {
+                refused.entry(line).or_default().push(name.clone());
+                continue;
             }
-            Err(error) => {
-                assert_eq!(error.kind(), ErrorKind::Input, "{name}");
-                let message = error.to_string().replace(&format!("{FOLDER}/"), "");
-                assert!(message.starts_with(&format!("{name}:")) && message.lines().count() == 1, "{message}");
-                message.strip_prefix(&format!("{name}:")).unwrap().replace('|', "/")
+            Outcome::Read => "no displacements or frequencies are printed | |".to_owned(),
+            Outcome::Compared(difference) => {
+                if difference.is_nan() || (difference > SAME) != reason.is_some() {
+                    wrong.push(format!("{name}: {difference:.1e}, {reason:?}"));
+                }
+                n_same += usize::from(difference <= SAME);
+                format!("{difference:.0e} | {} |", reason.unwrap_or_default())
+            }
+            Outcome::Failed(error) => {
+                if reason.is_none() {
+                    wrong.push(format!("{name}: {error}"));
+                }
+                format!("not computed: {error} | {} |", reason.unwrap_or_default())
             }
         };
-        writeln!(rows, "| {name} | {result} |").unwrap();
+        println!("{name} {row}");
+        writeln!(computed, "| {name} | {row}").unwrap();
     }
-    let text = format!(
-        "# CalculiX's own decks\n\nEach deck of Debian's package calculix-ccx-test is read, or refused with one line: the line of \
-         the deck,\nand what is not supported. `make calculix` writes this page.\n\nOf {} decks the parser takes {n_parsed}, and \
-         {n_read} become a model.\n\n| deck | result |\n|---|---|\n{rows}",
-        all.len()
-    );
-    fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join(LIST), text).unwrap();
-    assert!(n_parsed >= 5);
+    fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join(LIST), page(all.len(), n_same, &computed, &refused)).unwrap();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+fn page(n: usize, n_same: usize, computed: &str, refused: &BTreeMap<String, Vec<String>>) -> String {
+    let n_refused: usize = refused.values().map(Vec::len).sum();
+    let mut rows: Vec<(&String, &String)> =
+        refused.iter().flat_map(|(line, decks)| decks.iter().map(move |deck| (deck, line))).collect();
+    rows.sort();
+    let rows: String = rows.iter().map(|(deck, line)| format!("| {deck} | {line} |\n")).collect();
+    format!(
+        "# CalculiX's own decks\n\nEach deck of Debian's package calculix-ccx-test is read, or refused with one line. What is read is \
+         computed and\ncompared with CalculiX's own results. `make calculix` writes this page.\n\nOf {n} decks {} are read and \
+         {n_refused} refused. {n_same} have CalculiX's displacements or frequencies to 1e-5.\n\n## Decks that are computed\n\n\
+         Difference of displacements, relative to the largest one, or of frequencies with the mass of CalculiX's points.\n\n\
+         | deck | difference | why it is above 1e-5 |\n|---|---|---|\n{computed}\n## Decks that are refused\n\n\
+         | deck | line, and what is not supported |\n|---|---|\n{rows}",
+        n - n_refused
+    )
 }

@@ -27,6 +27,8 @@ use squeal::element::{ElementKind, Shape, solid, voigt};
 
 const SAME: f64 = 1e-6;
 const DENSITY: f64 = 7.8;
+/// The one point of a C3D8R.
+const CENTRE: [QuadraturePoint<3>; 1] = [QuadraturePoint { at: [0.0; 3], weight: 8.0 }];
 
 /// CalculiX's stiffness and mass matrix of a free element.
 fn theirs(kind: ElementKind, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6]) -> [DMatrix<f64>; 2] {
@@ -126,34 +128,48 @@ fn product(gradients: &[Vector3<f64>], elasticity: &[[f64; 6]; 6]) -> DMatrix<f6
     b.transpose() * d * b
 }
 
-/// `sum_q rho w detJ N_a N_b`.
-fn mass(shape: Shape, x: &[[f64; 3]], rule: &[QuadraturePoint<3>]) -> DMatrix<f64> {
-    let n = x.len();
-    let mut m = DMatrix::zeros(n, n);
-    for q in rule {
-        let (shapes, det) = (shape.interpolation().shape(q.at), gradients(shape, x, q.at).0.determinant());
-        m += DMatrix::from_fn(n, n, |a, b| DENSITY * q.weight * det * shapes[a] * shapes[b]);
+/// CalculiX's points of the mass; those of C3D8I at the nodes alone.
+fn mass_points(kind: ElementKind) -> &'static [QuadraturePoint<3>] {
+    match kind {
+        ElementKind::C3D4 => &TETRAHEDRON_1,
+        ElementKind::C3D6 => &WEDGE_2,
+        ElementKind::C3D10 => &TETRAHEDRON_4,
+        ElementKind::C3D15 => &WEDGE_9,
+        ElementKind::C3D20 => &HEXAHEDRON_27,
+        ElementKind::C3D8R => &CENTRE,
+        ElementKind::C3D8 | ElementKind::C3D8I | ElementKind::C3D20R => &HEXAHEDRON_8,
     }
-    on_each_axis(&m)
+}
+
+/// The mass with CalculiX's points, for a density of 1: `m_ab = sum_q w detJ N_a N_b`.
+pub fn mass(kind: ElementKind, x: &[[f64; 3]]) -> DMatrix<f64> {
+    let (n, shape) = (x.len(), kind.shape());
+    let mut m = DMatrix::zeros(n, n);
+    for q in mass_points(kind) {
+        let (shapes, det) = (shape.interpolation().shape(q.at), gradients(shape, x, q.at).0.determinant());
+        m += DMatrix::from_fn(n, n, |a, b| q.weight * det * shapes[a] * shapes[b]);
+    }
+    m
 }
 
 #[test]
 fn stiffness_and_mass_are_those_of_calculix_on_distorted_elements() {
     let elasticity = triclinic();
-    let kinds: [(ElementKind, &[QuadraturePoint<3>]); 7] = [
-        (ElementKind::C3D4, &TETRAHEDRON_1),
-        (ElementKind::C3D6, &WEDGE_2),
-        (ElementKind::C3D8, &HEXAHEDRON_8),
-        (ElementKind::C3D10, &TETRAHEDRON_4),
-        (ElementKind::C3D15, &WEDGE_9),
-        (ElementKind::C3D20, &HEXAHEDRON_27),
-        (ElementKind::C3D20R, &HEXAHEDRON_8),
+    let kinds = [
+        ElementKind::C3D4,
+        ElementKind::C3D6,
+        ElementKind::C3D8,
+        ElementKind::C3D10,
+        ElementKind::C3D15,
+        ElementKind::C3D20,
+        ElementKind::C3D20R,
     ];
-    for (kind, their_points) in kinds {
+    for kind in kinds {
         let x = distorted(kind.shape());
         let ([k, m], [their_k, their_m]) = (ours(kind, &x, &elasticity), theirs(kind, &x, &elasticity));
         assert_same(&format!("{} stiffness", kind.name()), &k, &their_k);
-        assert_same(&format!("{} mass, their points", kind.name()), &mass(kind.shape(), &x, their_points), &their_m);
+        let their_points = on_each_axis(&(mass(kind, &x) * DENSITY));
+        assert_same(&format!("{} mass, their points", kind.name()), &their_points, &their_m);
         if [ElementKind::C3D8, ElementKind::C3D20].contains(&kind) {
             assert_same(&format!("{} mass", kind.name()), &m, &their_m);
         }
@@ -228,6 +244,5 @@ fn mean_strain_and_hourglass_stiffness_are_those_of_calculix() {
     assert_same("C3D8R stiffness, of 2.20", &of_2_20, &their_k);
     let corrected = mean_strain(&x, young, &elasticity, 0.005, &[0, 1, 2]);
     assert_same("C3D8R corrected", &ours(kind, &x, &elasticity)[0], &corrected);
-    let total = DENSITY * solid::volume(Shape::Hexahedron8, &x);
-    assert_same("C3D8R mass, one point", &on_each_axis(&DMatrix::repeat(8, 8, total / 64.0)), &their_m);
+    assert_same("C3D8R mass, one point", &on_each_axis(&(mass(kind, &x) * DENSITY)), &their_m);
 }

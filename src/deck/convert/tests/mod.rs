@@ -208,7 +208,7 @@ fn a_contact_without_a_stiffness_gets_ten_times_that_of_its_elements() {
     // One facet of 50 mm2, half a square with an edge of 10 mm.
     let NormalLaw::Linear { stiffness } = model.contacts[0].law else { panic!() };
     assert!((stiffness / (10.0 * 210e9 / 0.01) - 1.0).abs() < 1e-12, "{stiffness}");
-    assert!(summary.notes.iter().any(|note| note.contains("gets a stiffness of 2.100e14 N/m3")), "{:?}", summary.notes);
+    assert!(summary.text().contains("the contact Pad_face / Disc_face gets a stiffness of 2.100e14 N/m3"));
 }
 
 #[test]
@@ -312,4 +312,24 @@ fn a_held_kinematic_coupling_is_a_support_and_a_distributing_one_spreads_a_force
     assert!(message.contains("where its line goes through the centroid"), "{message}");
     let message = coupled("*DISTRIBUTING", "*BOUNDARY\n103, 1, 3").unwrap_err();
     assert!(message.contains("a support of the reference node of a distributing coupling"), "{message}");
+}
+
+#[test]
+fn bodies_of_one_section_that_touch_are_parts() {
+    let sections = "*SOLID SECTION, ELSET=DISC, MATERIAL=STEEL\n*SOLID SECTION, ELSET=PAD, MATERIAL=STEEL\n";
+    let one = "*ELSET, ELSET=BOTH\nDISC, PAD\n*SOLID SECTION, ELSET=BOTH, MATERIAL=STEEL\n";
+    let Converted { model, mesh, summary } = with(sections, one).unwrap();
+    assert_eq!(mesh.parts, ["BOTH", "BOTH body"]);
+    assert_eq!((model.rotations[0].part.as_str(), mesh.elements.get(1).part), ("BOTH", 1));
+    assert!(summary.notes.iter().any(|note| note.starts_with("2 bodies of BOTH touch")), "{:?}", summary.notes);
+}
+
+#[test]
+fn a_deck_of_statics_needs_no_density_and_one_of_modes_does() {
+    let text = good().replace("*DENSITY\n7.85e-9\n", "");
+    assert!(read(&text).unwrap_err().starts_with("a.inp:38: the material Steel has no *DENSITY"));
+    let (statics, _) = text.split_once("*STEP\n*COMPLEX").unwrap();
+    let Converted { model, summary, .. } = read(statics).unwrap();
+    assert_eq!(model.parts[0].material.density, 0.0);
+    assert!(summary.notes.iter().any(|note| note.starts_with("the material Steel has no *DENSITY")));
 }

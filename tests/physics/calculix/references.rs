@@ -1,0 +1,110 @@
+//! What CalculiX's own results (`.dat.ref`) say of a deck, and what we find.
+//!
+//! Displacements at the end of the last static step, as `*NODE PRINT` has them, or the frequencies of a `*FREQUENCY`
+//! step. Modes are those of the mass with CalculiX's points, which are fewer than ours: so nothing else differs.
+
+use std::collections::{HashMap, HashSet};
+
+use squeal::analysis::Sweep;
+use squeal::assembly::System;
+use squeal::contact::search::Alone;
+use squeal::deck::elements::Class;
+use squeal::deck::{Converted, Deck};
+use squeal::mesh::{Numbering, Piece};
+use squeal::native::Comm;
+use squeal::stability::Mode;
+use squeal::structure::FullModel;
+
+use super::TheirMass;
+
+/// The band ends above the highest frequency of the reference by this factor.
+const ABOVE: f64 = 1.01;
+
+/// Displacements of nodes by their numbers, or frequencies.
+pub enum Reference {
+    Displacements(HashMap<u32, [f64; 3]>),
+    /// Cycles per unit of time.
+    Frequencies(Vec<f64>),
+}
+
+fn numbers(line: &str) -> Option<Vec<f64>> {
+    line.split_whitespace().map(|word| word.parse().ok()).collect::<Option<Vec<f64>>>().filter(|all| !all.is_empty())
+}
+
+/// The rows of numbers below a title, up to the next line of text.
+fn rows<'t>(lines: impl Iterator<Item = &'t str>) -> Vec<Vec<f64>> {
+    lines.skip_while(|line| numbers(line).is_none()).map_while(numbers).collect()
+}
+
+/// The eigenvalues, or else the displacements of all sets at the last time.
+pub fn reference(text: &str) -> Option<Reference> {
+    if let Some((_, table)) = text.rsplit_once("E I G E N V A L U E   O U T P U T") {
+        let frequencies = rows(table.lines()).into_iter().map(|row| row[1].max(0.0).sqrt() / std::f64::consts::TAU);
+        return Some(Reference::Frequencies(frequencies.collect()));
+    }
+    let lines: Vec<&str> = text.lines().collect();
+    let title = |line: &&str| line.trim_start().starts_with("displacements (vx,vy,vz) for set");
+    let time = |line: &str| line.split_whitespace().next_back().map(str::to_owned);
+    let last = time(lines.iter().rfind(|line| title(line))?);
+    let blocks = lines.iter().enumerate().filter(|(_, line)| title(line) && time(line) == last);
+    let all = blocks.flat_map(|(at, _)| rows(lines[at + 1..].iter().copied()));
+    Some(Reference::Displacements(all.map(|row| (row[0] as u32, [row[1], row[2], row[3]])).collect()))
+}
+
+/// Index in the mesh of each node of a deck without instances: those that solids use, in the order of the deck.
+fn node_indices(deck: &Deck) -> HashMap<u32, usize> {
+    let solids = deck.assembly.elements.iter().filter(|block| matches!(block.kind.class, Class::Solid(_)));
+    let used: HashSet<u32> = solids.flat_map(|block| block.nodes.iter().copied()).collect();
+    let mut numbers = Vec::new();
+    let mut seen = HashSet::new();
+    numbers.extend(deck.assembly.nodes.numbers.iter().filter(|&number| used.contains(number) && seen.insert(*number)));
+    numbers.into_iter().zip(0..).collect()
+}
+
+/// The largest difference relative to the largest displacement, or the largest relative difference of a frequency.
+pub fn difference(comm: &Comm, deck: &Deck, converted: Converted, reference: &Reference) -> Result<f64, String> {
+    let Converted { model, mesh, .. } = converted;
+    let nodes = Numbering::even(mesh.nodes.len(), 0, 1);
+    let brake = FullModel::new(model, Piece { mesh, nodes }, &Alone).map_err(|error| error.to_string())?;
+    match reference {
+        Reference::Displacements(theirs) => {
+            let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
+            let u = displacements(&brake, &system)?;
+            let indices = node_indices(deck);
+            let (mut off, mut size) = (0.0_f64, 0.0_f64);
+            for (number, theirs) in theirs.iter().filter(|(number, _)| indices.contains_key(number)) {
+                let ours = u[indices[number]];
+                (0..3).for_each(|i| {
+                    off = off.max((ours[i] - theirs[i]).abs());
+                    size = size.max(theirs[i].abs());
+                });
+            }
+            Ok(off / size)
+        }
+        Reference::Frequencies(theirs) => {
+            let families = [&TheirMass::of(&brake) as &dyn squeal::assembly::Elements, &brake.links];
+            let system = brake.assemble_families(comm, &families).unwrap();
+            let ours = frequencies(&brake, &system, theirs)?;
+            let off = ours.iter().zip(theirs).map(|(ours, theirs)| (ours / theirs - 1.0).abs());
+            Ok(off.fold(0.0, f64::max))
+        }
+    }
+}
+
+fn displacements(brake: &FullModel, system: &System) -> Result<Vec<[f64; 3]>, String> {
+    let mut sweep = Sweep::new(system, &brake.interface, false).map_err(|error| error.to_string())?;
+    let equilibrium = sweep.equilibrium(brake.own_friction(), &mut ()).map_err(|error| error.to_string())?;
+    Ok(system.nodal(&[&equilibrium.u]).unwrap().remove(0))
+}
+
+/// The frequencies below the highest reference, which is among them.
+fn frequencies(brake: &FullModel, system: &System, theirs: &[f64]) -> Result<Vec<f64>, String> {
+    let mut sweep = Sweep::new(system, &brake.interface, false).map_err(|error| error.to_string())?;
+    let equilibrium = sweep.equilibrium(brake.own_friction(), &mut ()).map_err(|error| error.to_string())?;
+    let highest = theirs.iter().copied().fold(0.0, f64::max) * ABOVE;
+    let band = sweep.modes(&equilibrium, [0.0, highest], &mut ()).map_err(|error| error.to_string())?;
+    match band.modes.len() < theirs.len() {
+        true => Err(format!("{} modes of {}", band.modes.len(), theirs.len())),
+        false => Ok(band.modes.iter().map(Mode::frequency).collect()),
+    }
+}
