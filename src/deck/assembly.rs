@@ -46,6 +46,8 @@ pub struct Assembly<'d> {
     pub spaces: Vec<Space<'d>>,
     /// Coordinates of all nodes, in the deck's unit.
     pub coordinates: Vec<[f64; 3]>,
+    /// Their numbers, each in its space.
+    pub numbers: Vec<u32>,
     /// All elements.
     pub elements: Vec<Element>,
     /// Nodes of the elements, element by element.
@@ -58,8 +60,8 @@ impl<'d> Assembly<'d> {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input): numbers that mean two things or nothing, instances of no part.
     pub fn new(deck: &'d Deck) -> Result<Assembly<'d>> {
-        let (coordinates, elements, connectivity) = Default::default();
-        let mut assembly = Assembly { deck, spaces: Vec::new(), coordinates, elements, connectivity };
+        let (coordinates, numbers, elements, connectivity) = Default::default();
+        let mut assembly = Assembly { deck, spaces: Vec::new(), coordinates, numbers, elements, connectivity };
         let outside = Space::new(String::new(), vec![&deck.assembly]);
         assembly.add(outside, &|x| x)?;
         for instance in &deck.instances {
@@ -96,7 +98,10 @@ impl<'d> Assembly<'d> {
         for (i, (&number, &x)) in nodes.numbers.iter().zip(&nodes.coordinates).enumerate() {
             let (x, index) = (place(x), self.coordinates.len() as u32);
             match space.nodes.insert(number, index) {
-                None => self.coordinates.push(x),
+                None => {
+                    self.coordinates.push(x);
+                    self.numbers.push(number);
+                }
                 Some(other) if self.coordinates[other as usize] == x => {}
                 Some(_) => {
                     let what =

@@ -22,7 +22,7 @@ pub struct ElementKind {
 pub enum Class {
     /// A solid with its faces.
     Solid(Faces),
-    /// A spring, dashpot or mass.
+    /// A spring, dashpot, mass or connector.
     Discrete,
 }
 
@@ -55,7 +55,7 @@ const fn discrete(name: &'static str, n_nodes: usize) -> ElementKind {
 }
 
 /// All kinds.
-pub static KINDS: [ElementKind; 18] = [
+pub static KINDS: [ElementKind; 20] = [
     solid("C3D4", 4, TET4),
     solid("C3D6", 6, WEDGE6),
     solid("C3D8", 8, HEX8),
@@ -74,6 +74,8 @@ pub static KINDS: [ElementKind; 18] = [
     discrete("DASHPOT2", 2),
     discrete("DASHPOTA", 2),
     discrete("MASS", 1),
+    discrete("ROTARYI", 1),
+    discrete("CONN3D2", 2),
 ];
 
 /// The kind with a name.

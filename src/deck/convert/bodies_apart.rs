@@ -11,15 +11,17 @@ use crate::deck::sets::Faces;
 use crate::model::Place;
 
 impl Bodies {
-    /// Separates the parts on which both sides of a contact pair lie. Returns what was done.
+    /// Separates the parts on which both sides of a contact pair or tie lie. Returns what was done.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for surfaces that are not there.
     pub(super) fn separate(&mut self, assembly: &Assembly) -> Result<Vec<String>> {
         let mut notes = Vec::new();
-        for pair in &assembly.deck.contact_pairs {
-            let of_master = self.parts_of(assembly, &pair.master, pair.place)?;
-            for part in self.parts_of(assembly, &pair.slave, pair.place)? {
+        let deck = assembly.deck;
+        let contacts = deck.contact_pairs.iter().map(|pair| (&pair.slave, &pair.master, pair.place));
+        for (slave, master, place) in contacts.chain(deck.ties.iter().map(|tie| (&tie.slave, &tie.master, tie.place))) {
+            let of_master = self.parts_of(assembly, master, place)?;
+            for part in self.parts_of(assembly, slave, place)? {
                 if of_master.contains(&part) {
                     notes.extend(self.separate_part(assembly, part));
                 }

@@ -4,21 +4,28 @@
 //! Deck --Assembly--> one numbering --bodies--> parts, materials, tetrahedra
 //!                                  --regions--> surfaces, node sets   (each name once)
 //!                                  --history--> what acts at the end of the last step: supports, loads, rotations
-//!                                  --pairs, couplings--> contacts, connectors
+//!                                  --pairs, ties--> contacts, ties
+//!                                  --references--> joints, discrete: rigid bodies, connectors, masses, forces at points
 //! ```
+
+use std::collections::HashMap;
 
 mod analysis;
 mod bodies;
 mod bodies_apart;
-mod couplings;
+mod discrete;
+mod equations;
 mod history;
+mod joints;
 mod materials;
 mod pairs;
 mod penalty;
+mod references;
 mod regions;
 mod supports;
 #[cfg(test)]
 mod tests;
+mod ties;
 
 use super::assembly::Assembly;
 use super::summary::{DeckSummary, ProposedStiffness};
@@ -27,6 +34,7 @@ use crate::Result;
 use crate::mesh::Mesh;
 use crate::model::{Model, Place, UnitSystem};
 use bodies::Bodies;
+use equations::Axes;
 use regions::Regions;
 
 pub use pairs::settle;
@@ -59,6 +67,10 @@ struct Conversion<'d> {
     units: UnitSystem,
     bodies: Bodies,
     regions: Regions,
+    /// Numbers of the mesh's nodes in the deck.
+    numbers: Vec<u32>,
+    /// Local axes of the mesh's nodes that have them.
+    axes: HashMap<u32, Axes>,
     proposed: Vec<ProposedStiffness>,
     notes: Vec<String>,
 }
@@ -76,7 +88,10 @@ pub fn convert(deck: &Deck, known: KnownUnits) -> Result<Converted> {
     notes.extend(materials::without_density(deck));
     let (bodies, mesh) = Bodies::new(&assembly, &sections, &units, &mut notes)?;
     let regions = Regions::new(mesh);
-    let mut conversion = Conversion { deck, assembly, units, bodies, regions, proposed: Vec::new(), notes };
+    let used = (0..assembly.numbers.len()).filter(|&node| bodies.node_of[node] != bodies::UNUSED);
+    let numbers = used.map(|node| assembly.numbers[node]).collect();
+    let (axes, proposed) = Default::default();
+    let mut conversion = Conversion { deck, assembly, units, bodies, regions, numbers, axes, proposed, notes };
     let model = conversion.model()?;
     let Conversion { assembly, regions, proposed, notes, .. } = conversion;
     let summary = DeckSummary::new(&assembly, &units, proposed, notes);
@@ -86,14 +101,16 @@ pub fn convert(deck: &Deck, known: KnownUnits) -> Result<Converted> {
 impl Conversion<'_> {
     fn model(&mut self) -> Result<Model> {
         self.named_surfaces()?;
+        self.axes = self.transforms()?;
         let contacts = self.contacts()?;
         let state = history::State::of(self.deck);
-        let (mut fixes, mut loads) = (self.supports(&state)?, self.loads(&state)?);
-        let connectors = self.couplings(&state, &mut fixes, &mut loads)?;
-        self.node_sets()?;
+        let mut equations = self.equations()?;
+        let fixes = self.supports(&state, &mut equations)?;
+        let loads = self.loads(&state)?;
+        let references = self.references(&state)?;
         let settings = self.settings();
         let file = self.deck.files[0].clone();
-        Ok(Model {
+        let mut model = Model {
             title: self.deck.title.clone().unwrap_or_else(|| stem(&file)),
             mesh_file: file.clone(),
             files: self.deck.files.clone(),
@@ -105,11 +122,11 @@ impl Conversion<'_> {
             rotations: self.rotations(&state)?,
             fixes,
             contacts: self.with_friction_of(&state, contacts)?,
-            connectors,
-            ties: Vec::new(),
+            connectors: Vec::new(),
+            ties: self.ties()?,
             rigid_bodies: Vec::new(),
             masses: Vec::new(),
-            equations: Vec::new(),
+            equations,
             loads,
             band: settings.band,
             friction_damping: settings.friction_damping,
@@ -117,7 +134,11 @@ impl Conversion<'_> {
             frictions: Vec::new(),
             sweep_place: Place::default(),
             reduction: None,
-        })
+        };
+        self.joints(&references, &mut model)?;
+        self.discrete(&references, &mut model)?;
+        self.node_sets()?;
+        Ok(model)
     }
 }
 

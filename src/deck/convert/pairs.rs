@@ -15,7 +15,7 @@ impl<'d> Conversion<'d> {
     /// The contact pairs with their normal laws.
     pub(super) fn contacts(&mut self) -> Result<Vec<Contact>> {
         let mut contacts: Vec<Contact> = Vec::new();
-        for pair in &self.deck.contact_pairs {
+        for pair in self.contact_pairs()? {
             let [slave, master] =
                 [self.surface_name(&pair.slave, pair.place)?, self.surface_name(&pair.master, pair.place)?];
             let interaction = self.interaction(pair)?;
@@ -43,7 +43,18 @@ impl<'d> Conversion<'d> {
         Ok(contacts)
     }
 
-    fn interaction(&self, pair: &ContactPair) -> Result<&'d Interaction> {
+    /// The contact pairs that are no ties.
+    fn contact_pairs(&self) -> Result<Vec<&'d ContactPair>> {
+        let mut pairs = Vec::new();
+        for pair in &self.deck.contact_pairs {
+            if self.tied(pair)?.is_none() {
+                pairs.push(pair);
+            }
+        }
+        Ok(pairs)
+    }
+
+    pub(super) fn interaction(&self, pair: &ContactPair) -> Result<&'d Interaction> {
         let interactions = &self.deck.interactions;
         interactions.iter().find(|interaction| interaction.name == pair.interaction).ok_or_else(|| {
             let advice = names::advice(&pair.interaction, interactions.iter().map(|own| own.name.as_str()));
@@ -64,7 +75,7 @@ impl<'d> Conversion<'d> {
                     Err(self.assembly.error(*place, what))
                 }
             },
-            Behaviour::Hard => {
+            Behaviour::Hard | Behaviour::Tied(_) => {
                 let (contact, stiffness) = (format!("{slave} / {master}"), self.proposed_stiffness(slave, master));
                 self.proposed.push(ProposedStiffness { contact, stiffness });
                 Ok(stiffness)
@@ -74,7 +85,7 @@ impl<'d> Conversion<'d> {
 
     /// The contacts with the friction of the last step.
     pub(super) fn with_friction_of(&mut self, state: &State, mut contacts: Vec<Contact>) -> Result<Vec<Contact>> {
-        for (contact, pair) in contacts.iter_mut().zip(&self.deck.contact_pairs) {
+        for (contact, pair) in contacts.iter_mut().zip(self.contact_pairs()?) {
             let own = self.interaction(pair)?.friction;
             let friction = state.friction(&pair.interaction).or(own);
             let Some(friction) = friction else { continue };

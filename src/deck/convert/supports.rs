@@ -4,27 +4,33 @@ use std::collections::BTreeMap;
 
 use super::Conversion;
 use super::bodies::UNUSED;
+use super::equations::Axes;
 use super::history::State;
 use crate::Result;
 use crate::algebra::{norm, scale, sub};
 use crate::deck::sets::Kind;
 use crate::deck::types::{ActionKind, Entry, Spin};
-use crate::model::{Fix, Load, LoadKind, Place, Rotation};
+use crate::model::{Equation, Fix, Load, LoadKind, Place, Rotation};
 
 /// A force on a node, by axis, with the step that it began in.
 type Forces = BTreeMap<u32, [(usize, f64); 3]>;
 /// A pressure with the step that it began in.
 type Pressure = (usize, f64, Place);
 
+/// Why a prescribed displacement is refused.
+pub(super) const OTHER_THAN_ZERO: &str =
+    "a displacement other than 0 is not supported. Press the parts together by a load";
+
 /// Adds to a value of the same step, replaces one of an earlier step.
-fn add(known: &mut (usize, f64), step: usize, value: f64) {
+pub(super) fn add(known: &mut (usize, f64), step: usize, value: f64) {
     *known = if known.0 == step { (step, known.1 + value) } else { (step, value) };
 }
 
 impl Conversion<'_> {
-    /// Displacements held at zero; those of reference nodes are left to the couplings.
-    pub(super) fn supports(&mut self, state: &State) -> Result<Vec<Fix>> {
+    /// Displacements held at zero; those of reference nodes are left to the couplings. Oblique ones are equations.
+    pub(super) fn supports(&mut self, state: &State, equations: &mut Vec<Equation>) -> Result<Vec<Fix>> {
         let mut fixes: Vec<Fix> = Vec::new();
+        let mut local: BTreeMap<u32, ([bool; 3], Place)> = BTreeMap::new();
         for (_, action) in state.actions() {
             let ActionKind::Boundary(of, [first, last], value) = &action.what else { continue };
             let nodes = self.bodies.used(&self.assembly.set(Kind::Node, 0, of, action.place)?);
@@ -33,17 +39,43 @@ impl Conversion<'_> {
                 continue;
             }
             if *value != 0.0 {
-                let what = "a displacement other than 0 is not supported. Press the parts together by a load";
-                return Err(self.assembly.error(action.place, what));
+                return Err(self.assembly.error(action.place, OTHER_THAN_ZERO));
             }
-            let name = self.set_name(of, "support", nodes);
             let axes: [bool; 3] = std::array::from_fn(|i| (*first..=*last).contains(&(i as u8 + 1)));
-            match fixes.iter_mut().find(|fix| fix.nodes == name) {
-                Some(fix) => (0..3).for_each(|i| fix.axes[i] |= axes[i]),
-                None => fixes.push(Fix { nodes: name, axes, place: action.place }),
+            let (oblique, nodes): (Vec<u32>, Vec<u32>) =
+                nodes.into_iter().partition(|node| self.axes.contains_key(node));
+            for node in oblique {
+                let held = &mut local.entry(node).or_insert(([false; 3], action.place)).0;
+                (0..3).for_each(|i| held[i] |= axes[i]);
+            }
+            if !nodes.is_empty() {
+                let name = self.set_name(of, "support", nodes);
+                fix(&mut fixes, name, axes, action.place);
             }
         }
+        self.local_supports(&local, equations, &mut fixes)?;
         Ok(fixes)
+    }
+
+    /// Supports along local axes; nodes with the same global ones are one set.
+    fn local_supports(
+        &mut self,
+        local: &BTreeMap<u32, ([bool; 3], Place)>,
+        equations: &mut Vec<Equation>,
+        fixes: &mut Vec<Fix>,
+    ) -> Result<()> {
+        let mut groups: BTreeMap<[bool; 3], (Vec<u32>, Place)> = BTreeMap::new();
+        for (&node, &(held, place)) in local {
+            let global = self.local_support(node, held, place, equations)?;
+            if global != [false; 3] {
+                groups.entry(global).or_insert((Vec::new(), place)).0.push(node);
+            }
+        }
+        for (axes, (nodes, place)) in groups {
+            let name = self.regions.add_node_set("support", nodes);
+            fix(fixes, name, axes, place);
+        }
+        Ok(())
     }
 
     /// The mesh's name of a set of nodes: the deck's, or `support 1` and so on.
@@ -101,7 +133,8 @@ impl Conversion<'_> {
         // Bits of the vector, so that equal forces find each other.
         let mut groups: BTreeMap<[u64; 3], Vec<u32>> = BTreeMap::new();
         for (&node, force) in &forces {
-            groups.entry(force.map(|(_, value)| value.to_bits())).or_default().push(node);
+            let force = self.in_global_axes(node, force.map(|(_, value)| value));
+            groups.entry(force.map(f64::to_bits)).or_default().push(node);
         }
         let mut loads = Vec::new();
         for (bits, nodes) in groups {
@@ -115,6 +148,12 @@ impl Conversion<'_> {
             loads.push(Load { name: format!("force on {on}"), on, kind: LoadKind::ForceByNode(total), place });
         }
         Ok(loads)
+    }
+
+    /// A force on a mesh node along its local axes.
+    fn in_global_axes(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
+        let along = |axes: &Axes| [0, 1, 2].map(|i| (0..3).map(|k| axes[k][i] * force[k]).sum());
+        self.axes.get(&node).map_or(force, along)
     }
 
     /// Faces with the same pressure are one load.
@@ -179,6 +218,14 @@ impl Conversion<'_> {
             return Err(self.assembly.error(place, what));
         }
         Ok(parts)
+    }
+}
+
+/// Holds a set along axes.
+fn fix(fixes: &mut Vec<Fix>, nodes: String, axes: [bool; 3], place: Place) {
+    match fixes.iter_mut().find(|fix| fix.nodes == nodes) {
+        Some(fix) => (0..3).for_each(|i| fix.axes[i] |= axes[i]),
+        None => fixes.push(Fix { nodes, axes, place }),
     }
 }
 

@@ -36,7 +36,7 @@ impl Parser {
     }
 
     fn behaviour(&mut self, card: &Card) -> Result<()> {
-        let kind = card.choice("PRESSURE-OVERCLOSURE", &["HARD", "LINEAR", "TABULAR"])?;
+        let kind = card.choice("PRESSURE-OVERCLOSURE", &["HARD", "LINEAR", "TABULAR", "TIED"])?;
         let mut rows = Vec::new();
         let mut place = card.place;
         while let Some(row) = self.lines.row()? {
@@ -51,7 +51,8 @@ impl Parser {
                 return Err(card.error(format_args!("the numbers of the contact law are missing ({})", card.spelled)));
             }
             (1, [[stiffness, _], ..]) if *stiffness > 0.0 => Behaviour::Linear(*stiffness, place),
-            (1, _) => return Err(self.lines.error(place, "the stiffness of the contact must be above 0")),
+            (3, [[stiffness, _], ..]) if *stiffness > 0.0 => Behaviour::Tied(*stiffness),
+            (1 | 3, _) => return Err(self.lines.error(place, "the stiffness of the contact must be above 0")),
             _ => Behaviour::Table(rows, place),
         };
         let no_separation = card.has("NOSEPARATION");
@@ -98,9 +99,7 @@ impl Parser {
     }
 
     fn pair(&mut self, card: &Card) -> Result<()> {
-        if card.has("TIED") {
-            return Err(card.error("tied contact is not supported yet. Give the two parts common nodes"));
-        }
+        let tied = card.has("TIED");
         let interaction = self.name_of(card, "INTERACTION")?;
         let adjust = card.has("ADJUST");
         let mut n = 0;
@@ -109,7 +108,7 @@ impl Parser {
             let (slave, master) = (slave.to_uppercase(), master.to_uppercase());
             n += 1;
             let interaction = interaction.clone();
-            self.deck.contact_pairs.push(ContactPair { slave, master, interaction, adjust, place: row.place });
+            self.deck.contact_pairs.push(ContactPair { slave, master, interaction, adjust, tied, place: row.place });
         }
         if n == 0 { Err(card.error("the two surfaces are missing")) } else { Ok(()) }
     }

@@ -53,7 +53,7 @@ impl Parser {
     }
 
     /// Notes what a reader should know, once.
-    fn note(&mut self, note: &str) {
+    pub(super) fn note(&mut self, note: &str) {
         if !self.deck.notes.iter().any(|known| known == note) {
             self.deck.notes.push(note.to_owned());
         }

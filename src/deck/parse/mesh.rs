@@ -8,7 +8,7 @@ use crate::algebra::{cross, norm, scale, sub};
 use crate::deck::card::Card;
 use crate::deck::elements::by_name;
 use crate::deck::row::Row;
-use crate::deck::types::{ElementBlock, Entry, Orientation, Property, PropertyKind, Section, SetDefinition};
+use crate::deck::types::{ElementBlock, Entry, Orientation, Section, SetDefinition};
 
 /// Nodes may lie this far out, so that no square overflows.
 const LARGEST_COORDINATE: f64 = 1e100;
@@ -164,29 +164,6 @@ impl Parser {
             return Err(row.error("an additional rotation is not supported. Give the points of the turned axes"));
         }
         self.scope().orientations.push(Orientation { name, is_cylindrical, a, b, place: card.place });
-        Ok(())
-    }
-
-    /// A spring, dashpot or mass: the constant, below the displacements that it is between.
-    pub(super) fn property(&mut self, card: &Card) -> Result<()> {
-        let set = self.name_of(card, "ELSET")?;
-        let kind = match card.name.as_str() {
-            "SPRING" => PropertyKind::Spring,
-            "DASHPOT" => PropertyKind::Dashpot,
-            _ => PropertyKind::Mass,
-        };
-        let missing = || card.error(format_args!("the constant is missing ({})", card.spelled));
-        let mut rows = Vec::new();
-        while let Some(row) = self.lines.row()? {
-            rows.push(row.reals::<2>(0, "a number")?);
-        }
-        let (dofs, value) = match (kind, &rows[..]) {
-            (PropertyKind::Mass, [[mass, _], ..]) => (None, *mass),
-            (_, [[first, second], [value, _], ..]) => (Some([*first as u8, *second as u8]), *value),
-            (_, [[value, _]]) => (None, *value),
-            _ => return Err(missing()),
-        };
-        self.scope().properties.push(Property { kind, set, dofs, value, place: card.place });
         Ok(())
     }
 }

@@ -1,9 +1,12 @@
 //! From lines to a [`Deck`]: one function a keyword, chosen by its name.
 
+mod connectors;
+mod constraints;
 mod contact;
 mod history;
 mod material;
 mod mesh;
+mod properties;
 mod scopes;
 mod sets;
 #[cfg(test)]
@@ -79,7 +82,9 @@ impl Parser {
             "SURFACE" => self.surface(card),
             "SOLIDSECTION" => self.section(card),
             "ORIENTATION" => self.orientation(card),
-            "SPRING" | "DASHPOT" | "MASS" => self.property(card),
+            "SPRING" | "DASHPOT" | "MASS" | "ROTARYINERTIA" => self.property(card),
+            "TIE" | "RIGIDBODY" | "EQUATION" | "MPC" | "TRANSFORM" | "CLEARANCE" => self.constraint(card),
+            name if name.starts_with("CONNECTOR") => self.connector(card),
             "MATERIAL" | "ELASTIC" | "DENSITY" | "DAMPING" => self.material(card),
             "SURFACEINTERACTION" | "SURFACEBEHAVIOR" | "FRICTION" | "CONTACTPAIR" | "CHANGEFRICTION" => {
                 self.contact(card)

@@ -121,7 +121,6 @@ fn laws_of_contact() {
     assert!(law("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=EXPONENTIAL\n1,2").unwrap_err().contains("not supported"));
     assert!(law("*FRICTION\n.3\n.4").unwrap_err().contains("a second coefficient"));
     assert!(law("*FRICTION, TAUMAX=3.\n.3").unwrap_err().contains("TAUMAX is not supported"));
-    refused("*CONTACT PAIR, INTERACTION=i, TIED\na,b\n", "a.inp:1: tied contact is not supported yet");
     refused("*CONTACT PAIR, INTERACTION=i\n", "a.inp:1: the two surfaces are missing");
 }
 

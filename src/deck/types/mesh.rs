@@ -139,8 +139,8 @@ pub struct Property {
     pub set: String,
     /// Displacements (1 to 6) of the two ends; none for a spring along its line.
     pub dofs: Option<[u8; 2]>,
-    /// Its constant.
-    pub value: f64,
+    /// Its constant; the components 11, 22, 33, 12, 13, 23 of a rotary inertia.
+    pub values: [f64; 6],
     /// Where it stands.
     pub place: Place,
 }
@@ -154,6 +154,8 @@ pub enum PropertyKind {
     Dashpot,
     /// Mass of a node.
     Mass,
+    /// Rotary inertia of a node.
+    RotaryInertia,
 }
 
 /// A part with its place in the assembly.

@@ -3,6 +3,7 @@
 //! Names are in capital letters, as both programs compare them; [`Deck::spelled`] gives them back as they were first
 //! written.
 
+mod constraints;
 mod history;
 mod mesh;
 mod physics;
@@ -10,6 +11,10 @@ mod physics;
 use std::collections::HashMap;
 use std::path::PathBuf;
 
+pub use constraints::{
+    ConnectorBehaviour, ConnectorSection, ConstraintKind, EquationDefinition, N_COMPONENTS, PointConstraint,
+    RigidDefinition, TermDefinition, TieDefinition, Transform,
+};
 pub use history::{Action, ActionKind, Ignored, NothingKind, Procedure, Spin, Step};
 pub use mesh::{
     ElementBlock, Entry, Instance, Nodes, Orientation, Property, PropertyKind, Scope, Section, SetDefinition,
@@ -42,6 +47,20 @@ pub struct Deck {
     pub contact_pairs: Vec<ContactPair>,
     /// Couplings of a reference node.
     pub couplings: Vec<Coupling>,
+    /// Surfaces that move as one.
+    pub ties: Vec<TieDefinition>,
+    /// Nodes that follow a reference node rigidly.
+    pub rigid_bodies: Vec<RigidDefinition>,
+    /// Linear relations between displacements.
+    pub equations: Vec<EquationDefinition>,
+    /// Multi-point constraints.
+    pub point_constraints: Vec<PointConstraint>,
+    /// Local axes of supports, loads and equations.
+    pub transforms: Vec<Transform>,
+    /// What connector elements do.
+    pub connector_sections: Vec<ConnectorSection>,
+    /// Elasticity and damping of connectors.
+    pub connector_behaviours: Vec<ConnectorBehaviour>,
     /// Supports, loads and motions outside steps.
     pub initial: Vec<Action>,
     /// The steps.

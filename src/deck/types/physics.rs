@@ -80,6 +80,8 @@ pub enum Behaviour {
     Linear(f64, Place),
     /// Pairs of pressure and overlap.
     Table(Vec<[f64; 2]>, Place),
+    /// The surfaces move as one, with this stress over relative displacement.
+    Tied(f64),
 }
 
 /// Coulomb friction.
@@ -104,6 +106,8 @@ pub struct ContactPair {
     pub interaction: String,
     /// Whether nodes of the slave are moved onto the master, and from which distance.
     pub adjust: bool,
+    /// Whether the surfaces move as one.
+    pub tied: bool,
     /// Where it stands.
     pub place: Place,
 }

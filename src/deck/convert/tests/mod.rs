@@ -7,6 +7,7 @@
 //! ```
 
 mod broken;
+mod joints;
 
 use super::*;
 use crate::deck::parse;
@@ -291,7 +292,7 @@ fn springs_between_couplings_are_a_connector() {
     assert_eq!((connector.stiffness[0], connector.rotational_stiffness), (0.0, [0.0; 3]));
     let far = COUPLINGS.replace("102, 0., 0., 20.", "102, 0., 0., 21.");
     let message = with("*MATERIAL, NAME=Steel\n", &far).unwrap_err();
-    assert!(message.contains("a SPRING2 is supported between the reference nodes"), "{message}");
+    assert!(message.contains("the line between them is not along the axis of the spring"), "{message}");
 }
 
 #[test]
@@ -304,14 +305,8 @@ fn a_held_kinematic_coupling_is_a_support_and_a_distributing_one_spreads_a_force
     };
     let held = coupled("*KINEMATIC\n1, 2", "*BOUNDARY\n103, 1, 6").unwrap();
     assert_eq!((held.fixes[1].nodes.as_str(), held.fixes[1].axes), ("Disc_face", [true, true, false]));
-    let message = coupled("*KINEMATIC", "*BOUNDARY\n103, 1, 3").unwrap_err();
-    assert!(message.contains("where all six displacements of its reference node are held"), "{message}");
     let spread = coupled("*DISTRIBUTING", "*CLOAD\n103, 3, -7.").unwrap();
     assert_eq!(spread.loads[1].kind, LoadKind::ForceByArea([0.0, 0.0, -7.0]));
-    let message = coupled("*DISTRIBUTING", "*CLOAD\n103, 1, -7.").unwrap_err();
-    assert!(message.contains("where its line goes through the centroid"), "{message}");
-    let message = coupled("*DISTRIBUTING", "*BOUNDARY\n103, 1, 3").unwrap_err();
-    assert!(message.contains("a support of the reference node of a distributing coupling"), "{message}");
 }
 
 #[test]

@@ -1,0 +1,299 @@
+//! Springs, dashpots, connector elements, masses and rotary inertias, between reference nodes, nodes of solids and the
+//! ground.
+//!
+//! Our connectors act along the global axes at one point. A spring between two points is one where they are one point,
+//! or lie one behind the other along the axis of the spring.
+
+use super::Conversion;
+use super::joints::connector;
+use super::references::References;
+use super::regions::unlike;
+use crate::Result;
+use crate::algebra::{norm, sub};
+use crate::deck::assembly::Element;
+use crate::deck::elements::Class;
+use crate::deck::sets::Kind;
+use crate::deck::types::{ConnectorBehaviour, ConnectorSection, N_COMPONENTS, Property, PropertyKind};
+use crate::model::{Connector, GROUND, Model, Place, PointMass, names};
+
+/// Points this near, relative to the size of the mesh, are one, and directions this close to an axis along it.
+const SAME: f64 = 1e-6;
+/// Place in our order xx yy zz xy yz zx of each of the deck's 11 22 33 12 13 23.
+const OURS: [usize; 6] = [0, 1, 2, 3, 5, 4];
+
+/// Types of connector, with the components that are free to have elasticity and those that do not give way.
+const CONNECTOR_TYPES: [(&str, [bool; N_COMPONENTS], [bool; N_COMPONENTS]); 8] = {
+    const NO: [bool; 3] = [false; 3];
+    const ALL: [bool; 6] = [true; 6];
+    const NONE: [bool; 6] = [false; 6];
+    const ALONG: [bool; 6] = [true, true, true, NO[0], NO[1], NO[2]];
+    const ABOUT: [bool; 6] = [false, false, false, true, true, true];
+    const ABOUT_X: [bool; 6] = [false, false, false, true, false, false];
+    [
+        ("CARTESIAN", ALONG, NONE),
+        ("ROTATION", ABOUT, NONE),
+        ("BUSHING", ALL, NONE),
+        ("BEAM", NONE, ALL),
+        ("WELD", NONE, ALL),
+        ("JOIN", NONE, ALONG),
+        ("ALIGN", NONE, ABOUT),
+        ("HINGE", ABOUT_X, [true, true, true, false, true, true]),
+    ]
+};
+
+/// What an element does between its ends: stiffness (N/m, N m/rad) and damping (N s/m) of the six components.
+struct Constants {
+    stiffness: [f64; 6],
+    damping: [f64; 6],
+}
+
+/// An end of an element.
+struct End {
+    /// Node set or surface, or the ground.
+    region: String,
+    /// m
+    at: [f64; 3],
+}
+
+impl<'d> Conversion<'d> {
+    /// Adds springs, dashpots, connectors and masses to a model.
+    pub(super) fn discrete(&mut self, references: &References, model: &mut Model) -> Result<()> {
+        let mut is_done = vec![false; self.assembly.elements.len()];
+        let deck = self.deck;
+        for (space, property) in self.properties() {
+            for element in self.elements_of(&property.set, space, property.place, &mut is_done)? {
+                match property.kind {
+                    PropertyKind::Spring | PropertyKind::Dashpot => {
+                        self.spring(element, property, references, model)?
+                    }
+                    PropertyKind::Mass | PropertyKind::RotaryInertia => {
+                        self.mass(element, property, references, model)?
+                    }
+                }
+            }
+        }
+        for section in &deck.connector_sections {
+            for element in self.elements_of(&section.set, 0, section.place, &mut is_done)? {
+                self.connector_element(element, section, references, model)?;
+            }
+        }
+        match self.assembly.elements.iter().zip(is_done).find(|(own, done)| own.kind.class == Class::Discrete && !done)
+        {
+            None => Ok(()),
+            Some((Element { number, kind, place, .. }, _)) => {
+                let what = format_args!("element {number} is a {} without its constants", kind.name);
+                Err(self.assembly.error(*place, what))
+            }
+        }
+    }
+
+    fn properties(&self) -> Vec<(usize, &'d Property)> {
+        let spaces = self.assembly.spaces.iter().enumerate();
+        spaces
+            .flat_map(|(i, own)| own.scopes.iter().flat_map(|scope| &scope.properties).map(move |one| (i, one)))
+            .collect()
+    }
+
+    fn elements_of(&self, set: &str, space: usize, place: Place, is_done: &mut [bool]) -> Result<Vec<u32>> {
+        let elements = self.assembly.set(Kind::Element, space, &crate::deck::parse::entry(set), place)?;
+        elements.iter().for_each(|&element| is_done[element as usize] = true);
+        Ok(elements)
+    }
+
+    fn spring(&mut self, element: u32, property: &Property, references: &References, model: &mut Model) -> Result<()> {
+        let nodes = self.assembly.nodes(element).to_vec();
+        let axis = match (property.dofs, &nodes[..]) {
+            (None, &[first, second]) => self.axis_between(element, first, second)?,
+            (Some([first, second]), _) if (1..=6).contains(&first) && (nodes.len() == 1 || second == first) => {
+                usize::from(first) - 1
+            }
+            _ => {
+                let what = "a spring or dashpot acts between the same displacement (1 to 6) of both ends";
+                return Err(self.assembly.error(property.place, what));
+            }
+        };
+        let mut constants = Constants { stiffness: [0.0; 6], damping: [0.0; 6] };
+        match property.kind {
+            PropertyKind::Spring => constants.stiffness[axis] = property.values[0] * self.unit_of_stiffness(axis),
+            _ => constants.damping[axis] = property.values[0] * self.units.damping(),
+        }
+        self.join(element, &nodes, &constants, references, model)
+    }
+
+    fn unit_of_stiffness(&self, axis: usize) -> f64 {
+        if axis < 3 { self.units.stiffness() } else { self.units.rotational_stiffness() }
+    }
+
+    /// The global axis along which two nodes lie.
+    fn axis_between(&self, element: u32, first: u32, second: u32) -> Result<usize> {
+        let line = sub(self.point(second), self.point(first));
+        let length = norm(line);
+        let axis = (0..3).find(|&i| length > 0.0 && length - line[i].abs() <= SAME * length);
+        axis.ok_or_else(|| {
+            let Element { kind, place, .. } = &self.assembly.elements[element as usize];
+            let what = "is supported where its ends lie one behind the other along a global axis";
+            self.assembly.error(*place, format_args!("a {} {what}", kind.name))
+        })
+    }
+
+    /// Adds the constants to the connector between the ends of an element.
+    fn join(
+        &mut self,
+        element: u32,
+        nodes: &[u32],
+        constants: &Constants,
+        references: &References,
+        model: &mut Model,
+    ) -> Result<()> {
+        let place = self.assembly.elements[element as usize].place;
+        let acts = [0, 1, 2, 3, 4, 5].map(|i| constants.stiffness[i] != 0.0 || constants.damping[i] != 0.0);
+        let first = self.end(nodes[0], acts, references, place)?;
+        let second = match nodes.get(1) {
+            Some(&node) => self.end(node, acts, references, place)?,
+            None => End { region: GROUND.to_owned(), at: first.at },
+        };
+        if first.region == second.region {
+            let is_ground = first.region == GROUND;
+            return if is_ground { Ok(()) } else { Err(self.assembly.error(place, "both ends are on one set")) };
+        }
+        self.require_one_point(&first, &second, acts, place)?;
+        if constants.damping[3..] != [0.0; 3] {
+            return Err(self.assembly.error(place, "damping of rotations is not supported"));
+        }
+        let [first, second] = if first.region == GROUND { [second, first] } else { [first, second] };
+        let at = first.at;
+        let own = connector_between(model, [first.region, second.region], at, place);
+        for i in 0..3 {
+            own.stiffness[i] += constants.stiffness[i];
+            own.rotational_stiffness[i] += constants.stiffness[3 + i];
+            own.damping[i] += constants.damping[i];
+        }
+        Ok(())
+    }
+
+    /// An end of an element that acts along some axes: a reference node, a node of a solid, or one that is held there.
+    fn end(&mut self, node: u32, acts: [bool; 6], references: &References, place: Place) -> Result<End> {
+        let at = self.point(node);
+        if let Some(reference) = references.at(node) {
+            return Ok(End { region: reference.region.clone(), at });
+        }
+        if self.is_used(node) {
+            if acts[3..].contains(&true) {
+                return Err(self
+                    .assembly
+                    .error(place, "a spring against the rotation of a node of solids, which do not rotate"));
+            }
+            return Ok(End { region: self.node_name(node), at });
+        }
+        let held = references.held.get(&node).copied().unwrap_or_default();
+        match (0..6).all(|i| held[i] || !acts[i]) {
+            true => Ok(End { region: GROUND.to_owned(), at }),
+            false => {
+                let number = self.assembly.numbers[node as usize];
+                let what = format_args!("node {number} belongs to no solid and no coupling, and is not held");
+                Err(self.assembly.error(place, what))
+            }
+        }
+    }
+
+    /// Refuses ends at two points, unless they lie one behind the other along the axes that act.
+    fn require_one_point(&self, first: &End, second: &End, acts: [bool; 6], place: Place) -> Result<()> {
+        let line = sub(second.at, first.at);
+        let size = norm(first.at).max(norm(second.at)).max(self.units.length);
+        let is_across = |i: usize| (0..3).any(|j| j != i && line[j].abs() > SAME * size);
+        if (0..3).any(|i| acts[i] && is_across(i)) {
+            let what = "the ends are two points, and the line between them is not along the axis of the spring. Move one \
+                        of them onto the other";
+            return Err(self.assembly.error(place, what));
+        }
+        Ok(())
+    }
+
+    fn connector_element(
+        &mut self,
+        element: u32,
+        section: &ConnectorSection,
+        references: &References,
+        model: &mut Model,
+    ) -> Result<()> {
+        let nodes = self.assembly.nodes(element).to_vec();
+        let behaviour = self.behaviour(section)?;
+        let (mut free, mut rigid) = ([false; N_COMPONENTS], [false; N_COMPONENTS]);
+        for name in &section.types {
+            let Some((_, own_free, own_rigid)) = CONNECTOR_TYPES.iter().find(|(known, ..)| known == name) else {
+                let advice = names::advice(name, CONNECTOR_TYPES.map(|(known, ..)| known).into_iter());
+                let what = format_args!("connectors of the type {name} are not supported. {advice}");
+                return Err(self.assembly.error(section.place, what));
+            };
+            (0..N_COMPONENTS).for_each(|i| {
+                free[i] |= own_free[i];
+                rigid[i] |= own_rigid[i];
+            });
+        }
+        let region =
+            references.at(nodes[0]).or(references.at(nodes[1])).map_or_else(String::new, |one| one.region.clone());
+        let [along, about] = self.rigid_stiffness(&region);
+        let mut constants = Constants { stiffness: [0.0; 6], damping: [0.0; 6] };
+        for i in 0..N_COMPONENTS {
+            if rigid[i] {
+                constants.stiffness[i] = if i < 3 { along } else { about };
+            } else if let Some(own) = behaviour.filter(|_| free[i]) {
+                constants.stiffness[i] = own.elasticity[i] * self.unit_of_stiffness(i);
+                constants.damping[i] = own.damping[i] * self.units.damping();
+            }
+        }
+        if constants.stiffness == [0.0; 6] && constants.damping == [0.0; 6] {
+            return Err(self.assembly.error(section.place, "the connector has neither elasticity nor damping"));
+        }
+        self.join(element, &nodes, &constants, references, model)
+    }
+
+    fn behaviour(&self, section: &ConnectorSection) -> Result<Option<&'d ConnectorBehaviour>> {
+        let Some(name) = &section.behaviour else { return Ok(None) };
+        let all = &self.deck.connector_behaviours;
+        all.iter().find(|own| own.name == *name).map(Some).ok_or_else(|| {
+            let advice = names::advice(name, all.iter().map(|own| own.name.as_str()));
+            self.assembly.error(section.place, format_args!("there is no *CONNECTOR BEHAVIOR {name}. {advice}"))
+        })
+    }
+
+    /// A mass or inertia on a reference node or a node of a solid; both on one node are one mass.
+    fn mass(&mut self, element: u32, property: &Property, references: &References, model: &mut Model) -> Result<()> {
+        let (node, place) = (self.assembly.nodes(element)[0], self.assembly.elements[element as usize].place);
+        let acts = [true, true, true, false, false, false];
+        let is_inertia = property.kind == PropertyKind::RotaryInertia;
+        if is_inertia && references.at(node).is_none() {
+            return Err(self.assembly.error(place, "a rotary inertia is supported on a reference node"));
+        }
+        let End { region, at } = self.end(node, acts, references, place)?;
+        if region == GROUND {
+            return Ok(());
+        }
+        let known = model.masses.iter().position(|mass| mass.nodes == region && mass.at == Some(at));
+        let i = known.unwrap_or_else(|| {
+            let name = unlike(&region, |name| model.masses.iter().any(|own| own.name == name), "mass");
+            model.masses.push(PointMass { name, nodes: region, at: Some(at), mass: 0.0, inertia: [0.0; 6], place });
+            model.masses.len() - 1
+        });
+        let unit = if is_inertia { self.units.mass * self.units.length.powi(2) } else { self.units.mass };
+        match is_inertia {
+            true => {
+                OURS.iter().zip(property.values).for_each(|(&own, value)| model.masses[i].inertia[own] += value * unit)
+            }
+            false => model.masses[i].mass += property.values[0] * unit,
+        }
+        Ok(())
+    }
+}
+
+/// The connector of a model between two regions at a point, which is added where there is none.
+fn connector_between(model: &mut Model, between: [String; 2], at: [f64; 3], place: Place) -> &mut Connector {
+    let known = model.connectors.iter().position(|own| own.between == between && own.at == Some(at));
+    let i = known.unwrap_or_else(|| {
+        let name =
+            unlike(&between.join(" / "), |name| model.connectors.iter().any(|own| own.name == name), "connector");
+        model.connectors.push(connector(name, between, at, place));
+        model.connectors.len() - 1
+    });
+    &mut model.connectors[i]
+}

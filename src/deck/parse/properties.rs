@@ -1,0 +1,38 @@
+//! Springs, dashpots, masses and rotary inertias.
+
+use super::Parser;
+use crate::Result;
+use crate::deck::card::Card;
+use crate::deck::types::{Property, PropertyKind};
+
+impl Parser {
+    /// The constant of a spring or dashpot, below the displacements that it is between; a mass; an inertia.
+    pub(super) fn property(&mut self, card: &Card) -> Result<()> {
+        let set = self.name_of(card, "ELSET")?;
+        let kind = match card.name.as_str() {
+            "SPRING" => PropertyKind::Spring,
+            "DASHPOT" => PropertyKind::Dashpot,
+            "MASS" => PropertyKind::Mass,
+            _ => PropertyKind::RotaryInertia,
+        };
+        let mut rows = Vec::new();
+        while let Some(row) = self.lines.row()? {
+            rows.push(row.reals::<6>(0, "a number")?);
+        }
+        let has_dofs = matches!(kind, PropertyKind::Spring | PropertyKind::Dashpot) && rows.len() > 1;
+        let dofs = has_dofs.then(|| [0, 1].map(|i| rows[0][i] as u8));
+        let missing = || card.error(format_args!("the constant is missing ({})", card.spelled));
+        let (&values, others) = rows[usize::from(has_dofs)..].split_first().ok_or_else(missing)?;
+        if !others.is_empty() {
+            let what = "a second row of constants: they depend on frequency or temperature. Keep one row";
+            return Err(card.error(format_args!("{what} ({})", card.spelled)));
+        }
+        if values[0] < 0.0 {
+            return Err(
+                card.error(format_args!("the constant must be 0 or above, not {} ({})", values[0], card.spelled))
+            );
+        }
+        self.scope().properties.push(Property { kind, set, dofs, values, place: card.place });
+        Ok(())
+    }
+}
