@@ -71,7 +71,8 @@ impl Convert {
         read.model.check_against(&read.mesh)?;
         let mut notes = read.deck.as_ref().map_or_else(Vec::new, |deck| {
             let units = format!("the deck's units are {}", deck.units);
-            std::iter::once(units).chain(deck.notes.iter().cloned()).collect()
+            let proposed = deck.proposed.iter().map(ToString::to_string);
+            std::iter::once(units).chain(proposed).chain(deck.notes.iter().cloned()).collect()
         });
         match &files[..] {
             [model, mesh] => {

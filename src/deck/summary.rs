@@ -1,5 +1,7 @@
 //! What was understood of a deck, for the user to compare with what was meant.
 
+use std::fmt::{Display, Formatter};
+
 use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
@@ -66,6 +68,12 @@ pub struct IgnoredKeyword {
     pub first: String,
 }
 
+impl Display for ProposedStiffness {
+    fn fmt(&self, out: &mut Formatter) -> std::fmt::Result {
+        write!(out, "proposed: the contact {} gets a stiffness of {:.3e} N/m3", self.contact, self.stiffness)
+    }
+}
+
 impl DeckSummary {
     /// The summary of an assembly.
     pub fn new(
@@ -122,9 +130,7 @@ impl DeckSummary {
             let times = if *times == 1 { String::new() } else { format!(", {times} times") };
             out += &format!("  {keyword} ({first}{times})\n");
         }
-        for ProposedStiffness { contact, stiffness } in &self.proposed {
-            out += &format!("proposed: the contact {contact} gets a stiffness of {stiffness:.3e} N/m3\n");
-        }
+        self.proposed.iter().for_each(|own| out += &format!("{own}\n"));
         self.notes.iter().for_each(|note| out += &format!("note: {note}\n"));
         out
     }

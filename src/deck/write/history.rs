@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::joints::PointForce;
 use super::{DeckWriter, number};
 use crate::model::{Load, LoadKind, Rotation};
 
@@ -10,7 +11,7 @@ const N_MODES: usize = 200;
 
 impl DeckWriter<'_> {
     /// Supports, a static step with loads and rotations, and a step for the modes.
-    pub(super) fn history(&self, forces: &[(usize, [f64; 3])]) -> String {
+    pub(super) fn history(&self, forces: &[PointForce]) -> String {
         let mut out = String::new();
         for fix in &self.model.fixes {
             out += "*BOUNDARY\n";
@@ -20,9 +21,7 @@ impl DeckWriter<'_> {
         }
         out += "*STEP\n*STATIC\n";
         self.model.loads.iter().for_each(|load| out += &self.load(load));
-        for (node, force) in forces {
-            out += &self.force(&node.to_string(), *force, 1.0);
-        }
+        forces.iter().for_each(|force| out += &self.point_force(force));
         self.model.rotations.iter().for_each(|rotation| out += &self.rotation(rotation));
         let [low, high] = self.model.band.map(|hertz| number(hertz * self.units.time));
         let procedure = match self.model.friction_damping {
@@ -50,6 +49,15 @@ impl DeckWriter<'_> {
         let lines = parts.map(|(axis, value)| format!("{on},{axis},{}\n", number(value / n / self.units.force())));
         let lines: String = lines.collect();
         if lines.is_empty() { lines } else { format!("*CLOAD\n{lines}") }
+    }
+
+    /// A force and moment on a reference node.
+    fn point_force(&self, PointForce { node, force, moment }: &PointForce) -> String {
+        let unit = self.units.force() * self.units.length;
+        let parts = (4..).zip(moment).filter(|(_, value)| **value != 0.0);
+        let lines: String = parts.map(|(axis, value)| format!("{node},{axis},{}\n", number(value / unit))).collect();
+        let moment = if lines.is_empty() { lines } else { format!("*CLOAD\n{lines}") };
+        self.force(&node.to_string(), *force, 1.0) + &moment
     }
 
     fn rotation(&self, rotation: &Rotation) -> String {

@@ -1,10 +1,11 @@
 //! A model and its mesh as a deck.
 //!
 //! What [`read`](super::read) understands is written so that reading it back gives the same matrices to round-off.
-//! CalculiX reads all of it but `*COUPLING` of connectors and `*MOTION`. Numbers have at most 20 characters, which is
+//! CalculiX reads all of it but `*COUPLING` of connectors and masses, `*ROTARY INERTIA` and `*MOTION`. Numbers have at most 20 characters, which is
 //! what CalculiX reads.
 
 mod history;
+mod joints;
 mod names;
 mod properties;
 
@@ -14,7 +15,7 @@ use std::io::{self, Write};
 
 use super::elements::{Class, by_name};
 use crate::mesh::{Facet, Mesh};
-use crate::model::{Connector, Load, LoadKind, Model, UnitSystem};
+use crate::model::{Load, LoadKind, Model, UnitSystem};
 use names::Names;
 
 /// Nodes of an element on its first line.
@@ -34,7 +35,7 @@ pub fn write(
     mark: &str,
     out: &mut impl Write,
 ) -> io::Result<Vec<String>> {
-    let mut writer = DeckWriter { model, mesh, units, names: Names::new(model, mesh), n_extra_nodes: 0, n_springs: 0 };
+    let mut writer = DeckWriter { model, mesh, units, names: Names::new(model, mesh), n_extra_nodes: 0, n_discrete: 0 };
     writeln!(out, "*HEADING\n{}\n** {mark}; units: {}", model.title.replace(['\n', '*'], " "), units.name)?;
     writer.nodes(out)?;
     writer.elements(out)?;
@@ -42,9 +43,9 @@ pub fn write(
     out.write_all(writer.surfaces().as_bytes())?;
     out.write_all(writer.properties().as_bytes())?;
     out.write_all(writer.contacts().as_bytes())?;
-    let couplings = writer.couplings();
-    out.write_all(couplings.text.as_bytes())?;
-    out.write_all(writer.history(&couplings.forces).as_bytes())?;
+    let joints = writer.joints();
+    out.write_all(joints.text.as_bytes())?;
+    out.write_all(writer.history(&joints.forces).as_bytes())?;
     Ok(writer.losses())
 }
 
@@ -55,8 +56,8 @@ struct DeckWriter<'a> {
     names: Names,
     /// Reference nodes so far, numbered after those of the mesh.
     n_extra_nodes: usize,
-    /// Springs and dashpots so far, numbered after the elements of the mesh.
-    n_springs: usize,
+    /// Springs, dashpots and masses so far, numbered after the elements of the mesh.
+    n_discrete: usize,
 }
 
 /// A number with at most 20 characters: the shortest text that is read as the same number, or 13 digits.
@@ -109,6 +110,7 @@ impl DeckWriter<'_> {
         let (model, mut out) = (self.model, String::new());
         let mut wanted: Vec<&str> = self.mesh.node_sets.keys().map(String::as_str).collect();
         wanted.extend(model.fixes.iter().map(|fix| fix.nodes.as_str()));
+        wanted.extend(model.rigid_bodies.iter().map(|body| body.nodes.as_str()));
         let by_node = |load: &&Load| matches!(load.kind, LoadKind::ForceByNode(_));
         wanted.extend(model.loads.iter().filter(by_node).map(|load| load.on.as_str()));
         wanted.sort_unstable();
@@ -169,24 +171,10 @@ impl DeckWriter<'_> {
         for contact in model.contacts.iter().filter(|contact| contact.search_distance.is_some()) {
             losses.push(format!("the search distance of the contact {:?} is not written", contact.name));
         }
-        let grounded = model.connectors.iter().filter(|connector| !self.has_both_ends(connector)).count();
-        let at_points = model.loads.iter().filter(|load| matches!(load.kind, LoadKind::ForceAt { .. })).count();
-        let joints = [
-            (model.ties.len(), "ties"),
-            (model.rigid_bodies.len(), "rigid sets"),
-            (model.masses.len(), "point masses"),
-            (model.equations.len(), "equations"),
-            (grounded, "connectors to the ground"),
-            (at_points, "forces at points"),
-        ];
-        let lost = joints.into_iter().filter(|(n, _)| *n > 0);
-        losses.extend(lost.map(|(n, what)| format!("{what} are not written: the model has {n}")));
+        for tie in model.ties.iter().filter(|tie| tie.stiffness.is_some() && tie.search_distance.is_some()) {
+            losses.push(format!("the search distance of the tie {:?} is not written", tie.name));
+        }
         losses
-    }
-
-    /// Whether both ends of a connector are sets of the mesh.
-    fn has_both_ends(&self, connector: &Connector) -> bool {
-        connector.between.iter().all(|end| self.mesh.node_set(end).is_some())
     }
 }
 

@@ -108,9 +108,9 @@ fn supports_forces_and_equations_follow_local_axes() {
     assert_eq!((oblique.equations.len(), oblique.fixes.len()), (4, 1));
     let terms: Vec<f64> = oblique.equations[0].terms.iter().map(|term| term.coefficient).collect();
     assert!(terms.iter().all(|c| close(*c, 0.5_f64.sqrt())), "{terms:?}");
-    let load = oblique.loads.iter().find(|load| load.on == "load 1").or(oblique.loads.first()).unwrap();
-    let LoadKind::ForceByNode([x, y, _]) = load.kind else { panic!("{load:?}") };
-    assert!(close(x, -y) && y > 0.0, "{load:?}");
+    let load = oblique.loads.iter().find(|load| load.on == "load 2").unwrap();
+    let LoadKind::ForceByNode(force) = load.kind else { panic!("{load:?}") };
+    assert!(all_close(force, [-(2.0_f64.sqrt()), 2.0_f64.sqrt(), -25.0]), "{load:?}");
     let all = model("*TRANSFORM, NSET=BACK, TYPE=C\n50., 0., 0., 50., 0., 1.\n*BOUNDARY\nBACK, 1, 3");
     assert_eq!(
         (all.equations.len(), all.fixes.iter().any(|fix| fix.axes == [true; 3] && fix.nodes == "support")),
@@ -184,4 +184,75 @@ fn a_clearance_of_zero_is_noted() {
     let text = "*CLEARANCE, VALUE=0., MASTER=DISC_FACE, SLAVE=PAD_FACE\n*MATERIAL, NAME=Steel\n";
     let notes = with("*MATERIAL, NAME=Steel\n", text).unwrap().summary.notes;
     assert!(notes.iter().any(|note| note.starts_with("CLEARANCE is not applied")), "{notes:?}");
+}
+
+/// A deck with everything that joins nodes.
+fn with_all_joints() -> String {
+    let lines = "*BOUNDARY\n101, 3\n*CLOAD\n101, 1, 4.\n101, 5, 2.\n*TIE, NAME=Glue, POSITION TOLERANCE=0.5\nPAD_FACE, DISC_FACE\n\
+         *NSET, NSET=BACK2\n14, 18, 19, 20\n*RIGID BODY, NSET=BACK2, REF NODE=102\n*NODE\n102, 0., 0., 12.\n\
+         *EQUATION\n5\n1, 1, 1., 2, 1, -0.25, 3, 1, -0.25, 4, 2, -0.25,\n5, 1, 0.125\n\
+         *ELEMENT, TYPE=MASS, ELSET=M\n901, 101\n*MASS, ELSET=M\n2e-6\n*ELEMENT, TYPE=ROTARYI, ELSET=R\n902, 101\n\
+         *ROTARY INERTIA, ELSET=R\n1e-3, 2e-3, 3e-3, 1e-4, 2e-4, 3e-4\n*ELEMENT, TYPE=SPRING1, ELSET=S\n903, 14\n\
+         *SPRING, ELSET=S\n2\n500.\n*ELEMENT, TYPE=DASHPOT2, ELSET=D\n904, 101, 102\n*DASHPOT, ELSET=D\n3, 3\n0.5";
+    let lines = coupled("*DISTRIBUTING", lines).replace("101, 1., 2., 20.", "101, 0., 0., 20.");
+    good().replace("*MATERIAL, NAME=Steel\n", &format!("{lines}\n*MATERIAL, NAME=Steel\n"))
+}
+
+/// What must be the same in two models, by numbers and mesh nodes.
+#[track_caller]
+fn assert_same_joints(one: &Model, two: &Model) {
+    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-11 * b.abs().max(1e-12));
+    assert_eq!(
+        [one.connectors.len(), one.ties.len(), one.rigid_bodies.len(), one.masses.len(), one.equations.len()],
+        [two.connectors.len(), two.ties.len(), two.rigid_bodies.len(), two.masses.len(), two.equations.len()]
+    );
+    for (a, b) in one.connectors.iter().zip(&two.connectors) {
+        assert_eq!(a.between.contains(&GROUND.to_owned()), b.between.contains(&GROUND.to_owned()));
+        let all =
+            |own: &crate::model::Connector| [own.stiffness, own.rotational_stiffness, own.damping, own.at.unwrap()];
+        assert!(near(all(a).as_flattened(), all(b).as_flattened()), "{a:?} {b:?}");
+    }
+    for (a, b) in one.masses.iter().zip(&two.masses) {
+        assert!(near(&[a.mass], &[b.mass]) && near(&a.inertia, &b.inertia) && near(&a.at.unwrap(), &b.at.unwrap()));
+    }
+    for (a, b) in one.equations.iter().zip(&two.equations) {
+        let numbers = |own: &crate::model::Equation| {
+            own.terms.iter().map(|term| (term.axis, term.coefficient)).collect::<Vec<_>>()
+        };
+        assert_eq!(numbers(a), numbers(b));
+    }
+    for (a, b) in one.ties.iter().zip(&two.ties) {
+        assert_eq!((&a.slave, &a.master), (&b.slave, &b.master));
+        assert!(near(&[a.search_distance.unwrap_or(0.0)], &[b.search_distance.unwrap_or(0.0)]));
+        assert!(near(&[a.stiffness.unwrap_or(0.0)], &[b.stiffness.unwrap_or(0.0)]));
+    }
+    let at_points = |model: &Model| -> Vec<f64> {
+        let numbers = |load: &crate::model::Load| match load.kind {
+            LoadKind::ForceAt { force, moment, at } => Some([force, moment, at.unwrap()].as_flattened().to_vec()),
+            _ => None,
+        };
+        model.loads.iter().filter_map(numbers).flatten().collect()
+    };
+    assert!(at_points(one).len() == 9 && near(&at_points(one), &at_points(two)), "{:?}", at_points(two));
+}
+
+#[test]
+fn joints_are_the_same_in_a_deck_and_in_a_model_file_that_are_written_of_them() {
+    let text = with_all_joints();
+    let tied = text.replace("=LINEAR\n20000.", "=TIED\n20000.");
+    for (text, n_ties) in [(text, 1), (tied, 2)] {
+        let Converted { model, mesh, .. } = read(&text).unwrap();
+        assert_eq!((model.connectors.len(), model.ties.len()), (3, n_ties));
+        let toml = crate::model::write(&model, "a.msh");
+        assert_same_joints(&model, &crate::model::parse(&toml, std::path::Path::new("a.toml")).unwrap());
+        for units in UnitSystem::ALL {
+            let mut deck = Vec::new();
+            let losses = crate::deck::write(&model, &mesh, units, "a test", &mut deck).unwrap();
+            assert!(losses.is_empty(), "{losses:?}");
+            let again = read(&String::from_utf8(deck).unwrap()).unwrap();
+            assert_same_joints(&model, &again.model);
+            let nodes = |own: &Converted, name: &str| own.mesh.node_set(name).map(|nodes| nodes.len());
+            assert_eq!(nodes(&again, &again.model.rigid_bodies[0].nodes), Some(4));
+        }
+    }
 }
