@@ -9,6 +9,8 @@ size_medium  := 2
 size_fine    := 3
 size_full    := 3
 size_million := 4
+size_hexahedra := 2
+options_hexahedra := -setnumber extruded_disc 1
 BINARY := target/release/squeal
 RANKS  ?= 2
 MPIRUN := mpirun --bind-to none -n $(RANKS)
@@ -17,7 +19,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help install deb demo test python-test report-test calculix td1 validation docs full bench lint setup build clean
+.PHONY: help install deb demo demo-deck test python-test report-test calculix td1 validation docs full bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## print this list
@@ -26,6 +28,10 @@ help: ## print this list
 demo: setup results/demo/report.html ## complex modes of the demo brake (medium mesh), and the report
 	@cat results/demo/summary.txt
 	@echo "\nopen results/demo/report.html in a browser"
+
+demo-deck: setup results/demo-deck/report.html ## the same of an Abaqus deck: the demo brake with a disc of hexahedra
+	@cat results/demo-deck/summary.txt
+	@echo "\nthe deck is meshes/build/brake-hexahedra.inp; open results/demo-deck/report.html in a browser"
 
 test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## run all tests
 	@scripts/setup.sh --tests
@@ -106,7 +112,7 @@ $(BINARY): $(shell find src sys Cargo.toml Cargo.lock build.rs -type f 2>/dev/nu
 
 meshes/build/brake-%.msh: meshes/brake.geo | setup
 	@mkdir -p $(@D)
-	gmsh -3 $< -setnumber size $(size_$*) -o $@ > $@.log
+	gmsh -3 $< -setnumber size $(size_$*) $(options_$*) -o $@ > $@.log
 
 meshes/build/td1-%.msh: meshes/td1.geo | setup
 	@mkdir -p $(@D)
@@ -115,5 +121,11 @@ meshes/build/td1-%.msh: meshes/td1.geo | setup
 results/demo/summary.txt: $(BINARY) meshes/brake-medium.toml meshes/build/brake-medium.msh
 	$(MPIRUN) $(BINARY) stability meshes/brake-medium.toml --friction 0.1:0.9:0.1 --output results/demo --force --verbose > /dev/null
 
-results/demo/report.html: results/demo/summary.txt
-	$(BINARY) report results/demo --force > /dev/null
+meshes/build/brake-hexahedra.inp: $(BINARY) meshes/brake-hexahedra.toml meshes/build/brake-hexahedra.msh
+	$(BINARY) convert meshes/brake-hexahedra.toml -o $@ --force
+
+results/demo-deck/summary.txt: $(BINARY) meshes/build/brake-hexahedra.inp
+	$(MPIRUN) $(BINARY) stability meshes/build/brake-hexahedra.inp --friction 0.1:0.9:0.1 --output results/demo-deck --force --verbose > /dev/null
+
+results/%/report.html: results/%/summary.txt
+	$(BINARY) report results/$* --force > /dev/null

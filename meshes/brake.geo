@@ -2,7 +2,8 @@
 //
 //   gmsh -3 meshes/brake.geo -setnumber size N -o brake.msh
 //
-// N = 1 small, 2 medium, 3 full, 4 million. Millimetres. The disc turns about z, its mid-plane is z = 0; the pads are
+// N = 1 small, 2 medium, 3 full, 4 million. `-setnumber extruded_disc 1`: the disc without fillets, extruded layer by layer
+// from a plan, in hexahedra and some wedges of second order; 2: the same disc in tetrahedra. Millimetres. The disc turns about z, its mid-plane is z = 0; the pads are
 // at +y; left/right = -x/+x; inner = z < 0 (piston), outer = z > 0 (fingers). Written for Gmsh >= 4.8, OpenCASCADE.
 // meshes/README.md has the dimensions, the names and the node counts.
 
@@ -12,6 +13,8 @@ If (size != 1 && size != 2 && size != 3 && size != 4)
   Error("size must be 1 (small), 2 (medium), 3 (full) or 4 (million), not %g", size);
   Exit;
 EndIf
+DefineConstant[ extruded_disc = {0, Choices{0 = "revolved", 1 = "hexahedra", 2 = "tetrahedra"}, Name "Extruded disc"} ];
+hexahedra = (extruded_disc == 1);
 
 // ---------------------------------------------------------------------------------------------- what the size decides
 k = size - 1;
@@ -145,33 +148,90 @@ Macro Ring
 Return
 
 // ---------------------------------------------------------------------------------------------------------------- disc
-// the solid, revolved, less the gap between the vanes
 z1 = disc_t / 2;  z0 = z1 - cheek_t;
-pu() = {disc_R, disc_R, rub_r, hat_R,   hat_R, bore_R, bore_R,        hat_R - hat_t, hat_R - hat_t, cheek_r, cheek_r};
-pv() = {-z1,    z1,     z1,    z1 - 2,  hat_z, hat_z,  hat_z - hat_t, hat_z - hat_t, z0,            z0,      -z1};
-pr() = {0,      0,      0,     5,       10,    0,      0,             6,             0,             0,       0};
-plane = 2;  w0 = 0;  w1 = 0;  Call RoundPoly;
-out() = Extrude { {0, 0, 1}, {0, 0, 0}, 2*Pi } { Surface{surf}; };
-disc = out(1);
-Recursive Delete { Surface{surf}; }
-cy = 0;  rr = hat_R - hat_t - 5;  rR = disc_R + 10;  w0 = -z0;  w1 = z0;  Call Ring;
-boxes() = {};
-For i In {0:vanes-1}
-  v = newv;  Box(v) = {vane_r0, -vane_t/2, -z0, vane_r1 - vane_r0, vane_t, 2*z0};
-  Rotate { {0, 0, 1}, {0, 0, 0}, 2*Pi*(i + 0.5)/vanes + Pi/2 } { Volume{v}; }
-  boxes() += {v};
-EndFor
-gap() = BooleanDifference { Volume{vol}; Delete; }{ Volume{boxes()}; Delete; };
-out() = BooleanDifference { Volume{disc}; Delete; }{ Volume{gap()}; Delete; };
-disc = out(0);
-holes() = {};
-For i In {0:hub_n-1}
-  a = 2*Pi*i/hub_n + Pi/2;
-  hx = hub_pcd/2*Cos(a);  hy = hub_pcd/2*Sin(a);  hr = hub_d/2;  w0 = hat_z - 20;  w1 = hat_z + 20;  Call Drill;
-  holes() += {vol};
-EndFor
-out() = BooleanDifference { Volume{disc}; Delete; }{ Volume{holes()}; Delete; };
-disc = out(0);
+If (extruded_disc == 0)
+  // the solid, revolved, less the gap between the vanes
+  pu() = {disc_R, disc_R, rub_r, hat_R,   hat_R, bore_R, bore_R,        hat_R - hat_t, hat_R - hat_t, cheek_r, cheek_r};
+  pv() = {-z1,    z1,     z1,    z1 - 2,  hat_z, hat_z,  hat_z - hat_t, hat_z - hat_t, z0,            z0,      -z1};
+  pr() = {0,      0,      0,     5,       10,    0,      0,             6,             0,             0,       0};
+  plane = 2;  w0 = 0;  w1 = 0;  Call RoundPoly;
+  out() = Extrude { {0, 0, 1}, {0, 0, 0}, 2*Pi } { Surface{surf}; };
+  disc = out(1);
+  Recursive Delete { Surface{surf}; }
+  cy = 0;  rr = hat_R - hat_t - 5;  rR = disc_R + 10;  w0 = -z0;  w1 = z0;  Call Ring;
+  boxes() = {};
+  For i In {0:vanes-1}
+    v = newv;  Box(v) = {vane_r0, -vane_t/2, -z0, vane_r1 - vane_r0, vane_t, 2*z0};
+    Rotate { {0, 0, 1}, {0, 0, 0}, 2*Pi*(i + 0.5)/vanes + Pi/2 } { Volume{v}; }
+    boxes() += {v};
+  EndFor
+  gap() = BooleanDifference { Volume{vol}; Delete; }{ Volume{boxes()}; Delete; };
+  out() = BooleanDifference { Volume{disc}; Delete; }{ Volume{gap()}; Delete; };
+  disc = out(0);
+  holes() = {};
+  For i In {0:hub_n-1}
+    a = 2*Pi*i/hub_n + Pi/2;
+    hx = hub_pcd/2*Cos(a);  hy = hub_pcd/2*Sin(a);  hr = hub_d/2;  w0 = hat_z - 20;  w1 = hat_z + 20;  Call Drill;
+    holes() += {vol};
+  EndFor
+  disc() = BooleanDifference { Volume{disc}; Delete; }{ Volume{holes()}; Delete; };
+Else
+  // The plan: rings, bolt holes and vanes, each a region.
+  s = news;  Disk(s) = {0, 0, -z1, disc_R};
+  radii() = {cheek_r, hat_R, hat_R - hat_t, bore_R};
+  plan() = {};
+  For i In {0:#radii()-1}
+    v = news;  Disk(v) = {0, 0, -z1, radii(i)};  plan() += {v};
+  EndFor
+  For i In {0:hub_n-1}
+    a = 2*Pi*i/hub_n + Pi/2;
+    v = news;  Disk(v) = {hub_pcd/2*Cos(a), hub_pcd/2*Sin(a), -z1, hub_d/2};  plan() += {v};
+  EndFor
+  For i In {0:vanes-1}
+    v = news;  Rectangle(v) = {vane_r0, -vane_t/2, -z1, vane_r1 - vane_r0, vane_t};
+    Rotate { {0, 0, 1}, {0, 0, 0}, 2*Pi*(i + 0.5)/vanes + Pi/2 } { Surface{v}; }
+    plan() += {v};
+  EndFor
+  plan() = BooleanFragments { Surface{s}; Delete; }{ Surface{plan()}; Delete; };
+  If (hexahedra)
+    MeshAlgorithm Surface{plan()} = 5;  Recombine Surface{plan()};
+  EndIf
+  // Layer by layer; which volumes of a layer are solid follows from the region's extent.
+  levels() = {-z1, -z0, z0, z1 - 2, z1, hat_z - hat_t, hat_z};
+  disc() = {};
+  layer() = plan();
+  For l In {0:#levels()-2}
+    w0 = levels(l);  w1 = levels(l + 1);
+    If (hexahedra)
+      Extrude {0, 0, w1 - w0} { Surface{layer()}; Layers{Ceil((w1 - w0) / h_disc)}; Recombine; }
+    Else
+      Extrude {0, 0, w1 - w0} { Surface{layer()}; }
+    EndIf
+    near() = Volume In BoundingBox {-disc_R - 1, -disc_R - 1, w0 - 0.05, disc_R + 1, disc_R + 1, w1 + 0.05};
+    For i In {0:#near()-1}
+      b() = BoundingBox Volume{near(i)};
+      r = (b(3) - b(0)) / 2;
+      If (Sqrt((b(3) + b(0))^2 + (b(4) + b(1))^2) / 2 > 100)
+        solid = (l < 4);                  // a vane, and the cheeks over and under it
+      ElseIf (Abs(b(3) + b(0)) > 1 || Abs(b(4) + b(1)) > 1)
+        solid = 0;                        // a bolt hole
+      ElseIf (r > cheek_r + 1)
+        solid = (l == 0 || l == 2 || l == 3);
+      ElseIf (r > hat_R + 1)
+        solid = (l == 2);
+      ElseIf (r > hat_R - hat_t + 1)
+        solid = (l >= 2);
+      Else
+        solid = (l == 5 && r > bore_R + 1);
+      EndIf
+      If (solid)
+        disc() += {near(i)};
+      EndIf
+    EndFor
+    r = (l < 3) ? disc_R : hat_R;
+    layer() = Surface In BoundingBox {-r - 1, -r - 1, w1 - 0.05, r + 1, r + 1, w1 + 0.05};
+  EndFor
+EndIf
 
 // ---------------------------------------------------------------------------------------------------- outline of a finger plate
 // (the caliper's and, as an imprint, the outer backplate's)
@@ -348,10 +408,10 @@ For e In {-1:1:2}
 EndFor
 out() = BooleanDifference { Volume{bracket}; Delete; }{ Volume{cuts()}; Delete; };
 bracket = out(0);
-Printf("parts: %g %g %g %g %g %g %g %g", disc, lining_inner, plate_inner, lining_outer, plate_outer, piston, caliper, bracket);
+Printf("parts: %g %g %g %g %g %g %g %g", disc(0), lining_inner, plate_inner, lining_outer, plate_outer, piston, caliper, bracket);
 
 // ---------------------------------------------------------------------------------------------------------------- names
-Physical Volume("disc") = {disc};
+Physical Volume("disc") = {disc()};
 Physical Volume("lining_inner") = {lining_inner};
 Physical Volume("backplate_inner") = {plate_inner};
 Physical Volume("lining_outer") = {lining_outer};
@@ -364,7 +424,7 @@ Physical Volume("bracket") = {bracket};
 tol = 0.05;
 Macro Faces
   near() = Surface In BoundingBox {bx0 - tol, by0 - tol, bz0 - tol, bx1 + tol, by1 + tol, bz1 + tol};
-  own() = Abs(Boundary { Volume{part}; });
+  own() = Abs(CombinedBoundary { Volume{part()}; });
   found() = {};
   For i In {0:#near()-1}
     For j In {0:#own()-1}
@@ -374,12 +434,12 @@ Macro Faces
     EndFor
   EndFor
   If (#found() == 0)
-    Error("no face of part %g in the box (%g %g %g) (%g %g %g)", part, bx0, by0, bz0, bx1, by1, bz1);
+    Error("no face of part %g in the box (%g %g %g) (%g %g %g)", part(0), bx0, by0, bz0, bx1, by1, bz1);
   EndIf
 Return
 
 // disc
-part = disc;  bx0 = -disc_R;  bx1 = disc_R;  by0 = -disc_R;  by1 = disc_R;
+part() = disc();  bx0 = -disc_R;  bx1 = disc_R;  by0 = -disc_R;  by1 = disc_R;
 bz0 = -z_rub;  bz1 = -z_rub;  Call Faces;
 Physical Surface("disc_inner_face") = found();
 bz0 = z_rub;  bz1 = z_rub;  Call Faces;
@@ -395,17 +455,17 @@ bolts() = all();
 
 // pads
 bx0 = -100;  bx1 = 100;  by0 = 60;  by1 = 150;
-part = lining_inner;  bz0 = -z_rub;  bz1 = -z_rub;  Call Faces;
+part() = {lining_inner};  bz0 = -z_rub;  bz1 = -z_rub;  Call Faces;
 Physical Surface("lining_inner_face") = found();
-part = lining_outer;  bz0 = z_rub;  bz1 = z_rub;  Call Faces;
+part() = {lining_outer};  bz0 = z_rub;  bz1 = z_rub;  Call Faces;
 Physical Surface("lining_outer_face") = found();
 // the ring under the piston: what lies within the piston's radius, without the disc inside
-part = plate_inner;  bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;  bz0 = -z_back;  bz1 = -z_back;  Call Faces;
+part() = {plate_inner};  bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;  bz0 = -z_back;  bz1 = -z_back;  Call Faces;
 ring() = found();
 bx0 = -pis_r;  bx1 = pis_r;  by0 = pis_y - pis_r;  by1 = pis_y + pis_r;  Call Faces;
 ring() -= {found()};
 Physical Surface("backplate_inner_back") = ring();
-part = plate_outer;  by0 = 92;  by1 = bp_R;  bz0 = z_back;  bz1 = z_back;  bx0 = -52;  bx1 = 52;  Call Faces;
+part() = {plate_outer};  by0 = 92;  by1 = bp_R;  bz0 = z_back;  bz1 = z_back;  bx0 = -52;  bx1 = 52;  Call Faces;
 Physical Surface("backplate_outer_back") = found();
 
 // ears and abutments: the end face and both radial faces
@@ -420,27 +480,27 @@ Macro Ears
   all() += {found()};
 Return
 e = -1;
-part = plate_inner;  bz0 = -z_back;  bz1 = -z_lin;  Call Ears;
+part() = {plate_inner};  bz0 = -z_back;  bz1 = -z_lin;  Call Ears;
 Physical Surface("pad_inner_left") = all();
-part = plate_outer;  bz0 = z_lin;  bz1 = z_back;  Call Ears;
+part() = {plate_outer};  bz0 = z_lin;  bz1 = z_back;  Call Ears;
 Physical Surface("pad_outer_left") = all();
-part = bracket;  bz0 = -brk_z;  bz1 = -brk_gap;  Call Ears;
+part() = {bracket};  bz0 = -brk_z;  bz1 = -brk_gap;  Call Ears;
 Physical Surface("bracket_inner_left") = all();
-part = bracket;  bz0 = brk_gap;  bz1 = brk_z;  Call Ears;
+part() = {bracket};  bz0 = brk_gap;  bz1 = brk_z;  Call Ears;
 Physical Surface("bracket_outer_left") = all();
 e = 1;
-part = plate_inner;  bz0 = -z_back;  bz1 = -z_lin;  Call Ears;
+part() = {plate_inner};  bz0 = -z_back;  bz1 = -z_lin;  Call Ears;
 Physical Surface("pad_inner_right") = all();
-part = plate_outer;  bz0 = z_lin;  bz1 = z_back;  Call Ears;
+part() = {plate_outer};  bz0 = z_lin;  bz1 = z_back;  Call Ears;
 Physical Surface("pad_outer_right") = all();
-part = bracket;  bz0 = -brk_z;  bz1 = -brk_gap;  Call Ears;
+part() = {bracket};  bz0 = -brk_z;  bz1 = -brk_gap;  Call Ears;
 Physical Surface("bracket_inner_right") = all();
-part = bracket;  bz0 = brk_gap;  bz1 = brk_z;  Call Ears;
+part() = {bracket};  bz0 = brk_gap;  bz1 = brk_z;  Call Ears;
 Physical Surface("bracket_outer_right") = all();
 
 // piston and bore
 bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;
-part = piston;  bz0 = -z_back;  bz1 = -z_back;  Call Faces;
+part() = {piston};  bz0 = -z_back;  bz1 = -z_back;  Call Faces;
 Physical Surface("piston_face") = found();
 bz0 = -z_back - pis_l;  bz1 = -z_back - pis_l;  Call Faces;
 Physical Surface("piston_floor") = found();
@@ -451,7 +511,7 @@ wall() -= {found()};
 bx0 = -pis_r;  bx1 = pis_r;  by0 = pis_y - pis_r;  by1 = pis_y + pis_r;  bz1 = cyl_z1;  Call Faces;
 wall() -= {found()};
 Physical Surface("piston_side") = wall();
-part = caliper;  bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;
+part() = {caliper};  bx0 = -pis_R;  bx1 = pis_R;  by0 = pis_y - pis_R;  by1 = pis_y + pis_R;
 bz0 = bore_z;  bz1 = bore_z;  Call Faces;
 floor() = found();
 Physical Surface("caliper_bore_floor") = floor();
@@ -460,27 +520,27 @@ wall() = found();
 wall() -= {floor()};
 Physical Surface("caliper_bore_wall") = wall();
 bore() = wall();
-bx0 = -60;  bx1 = 60;  by0 = 90;  by1 = 170;  bz0 = z_back;  bz1 = z_back;  part = caliper;  Call Faces;
+bx0 = -60;  bx1 = 60;  by0 = 90;  by1 = 170;  bz0 = z_back;  bz1 = z_back;  part() = {caliper};  Call Faces;
 Physical Surface("caliper_fingers") = found();
 
 // pins and bolts
 pins() = {};
 by0 = pin_y - pin_R;  by1 = pin_y + pin_R;
 bx0 = -pin_x - pin_R;  bx1 = -pin_x + pin_R;
-part = caliper;  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
+part() = {caliper};  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
 Physical Surface("caliper_pin_left") = found();
 pins() += {found()};
-part = bracket;  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
+part() = {bracket};  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
 hole() = found();
 bz0 = pinhole_z;  Call Faces;
 hole() -= {found()};
 Physical Surface("bracket_pin_left") = hole();
 pins() += {hole()};
 bx0 = pin_x - pin_R;  bx1 = pin_x + pin_R;
-part = caliper;  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
+part() = {caliper};  bz0 = lug_z0;  bz1 = lug_z1;  Call Faces;
 Physical Surface("caliper_pin_right") = found();
 pins() += {found()};
-part = bracket;  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
+part() = {bracket};  bz0 = boss_z;  bz1 = pinhole_z;  Call Faces;
 hole() = found();
 bz0 = pinhole_z;  Call Faces;
 hole() -= {found()};
@@ -495,14 +555,17 @@ Physical Surface("bracket_bolts") = all();
 mounts() = all();
 
 // ---------------------------------------------------------------------------------------------------------------- mesh
-MeshSize { PointsOf { Volume{disc}; } } = h_disc;
+MeshSize { PointsOf { Volume{disc()}; } } = h_disc;
 MeshSize { PointsOf { Volume{caliper}; } } = h_caliper;
 MeshSize { PointsOf { Volume{bracket}; } } = h_bracket;
 MeshSize { PointsOf { Volume{piston}; } } = h_piston;
 MeshSize { PointsOf { Volume{plate_inner, plate_outer}; } } = h_plate;
 MeshSize { PointsOf { Volume{lining_inner, lining_outer}; } } = h_lining;
 // walls of holes regularly: arcs of equal parts, lengths by the hole's own element size
-walls() = {bolts(), pins(), mounts()};
+walls() = {pins(), mounts()};
+If (extruded_disc == 0)
+  walls() += bolts();
+EndIf
 arcs = per_hole_(k) / 4;
 For i In {0:#walls()-1}
   c() = Abs(Boundary { Surface{walls(i)}; });
@@ -521,7 +584,10 @@ EndFor
 MeshSize { PointsOf { Surface{bore()}; } } = Min(2*Pi*pis_R/per_hole_(k), h_caliper);
 // Elements over the height of a vane's edges. Where the vanes are finely meshed, both of their sides regularly but with
 // other counts: where nodes of both sides lie in a plane they make slivers across the vane.
-near() = Curve In BoundingBox {-disc_R - 1, -disc_R - 1, -z0 - 0.01, disc_R + 1, disc_R + 1, z0 + 0.01};
+near() = {};
+If (extruded_disc == 0)
+  near() = Curve In BoundingBox {-disc_R - 1, -disc_R - 1, -z0 - 0.01, disc_R + 1, disc_R + 1, z0 + 0.01};
+EndIf
 For i In {0:#near()-1}
   b() = BoundingBox Curve{near(i)};
   a = (Atan2(b(1) + b(4), b(0) + b(3)) - Pi/2) / (2*Pi) * vanes + vanes;
@@ -532,7 +598,7 @@ For i In {0:#near()-1}
     Transfinite Curve{near(i)} = 1 + Ceil((vane_r1 - vane_r0) / h_disc) + a;
   EndIf
 EndFor
-If (size == 4)
+If (size == 4 && extruded_disc == 0)
   near() = Surface In BoundingBox {-disc_R - 1, -disc_R - 1, -z0 - 0.01, disc_R + 1, disc_R + 1, z0 + 0.01};
   For i In {0:#near()-1}
     b() = BoundingBox Surface{near(i)};
@@ -549,6 +615,7 @@ Mesh.Algorithm = (size == 1) ? 1 : 6;   // MeshAdapt copes better with very coar
 Mesh.Algorithm3D = 1;             // Delaunay; HXT (10) is faster but in 4.8 not the same from run to run
 Mesh.ElementOrder = 2;
 Mesh.SecondOrderLinear = 0;
+Mesh.SecondOrderIncomplete = 1;   // 20-node hexahedra, 15-node wedges
 Mesh.HighOrderOptimize = 1;
 Mesh.Optimize = 3;                // passes
 Mesh.OptimizeThreshold = 0.35;
