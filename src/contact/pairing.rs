@@ -43,7 +43,7 @@ pub(super) fn add_pair(
         master: contact.master.clone(),
         law: contact.law,
         friction: contact.friction,
-        friction_law: contact.decay.map_or(FrictionLaw::Constant, FrictionLaw::Decay),
+        friction_law: contact.friction_curve.clone().map_or(FrictionLaw::Constant, FrictionLaw::Curve),
         kind: match (rotation, contact.stick) {
             (Some(_), _) => TangentialKind::Sliding,
             (None, Some(_)) => TangentialKind::StickSlip,

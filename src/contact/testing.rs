@@ -142,7 +142,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         master: master.into(),
         law: NormalLaw::Linear { stiffness: 2e13 },
         friction: 0.5,
-        decay: None,
+        friction_curve: None,
         stick: None,
         separation: true,
         search_distance: None,

@@ -1,6 +1,6 @@
 //! What to compute: the sweep and the reduction.
 
-use super::contacts::friction;
+use super::friction::friction;
 use super::item::{Item, Number};
 use super::keys::{self, FrictionSweepTable, Text};
 use super::source::ModelText;

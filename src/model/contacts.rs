@@ -1,14 +1,12 @@
 //! Contact pairs.
 
+use super::friction::contact_friction;
 use super::item::{Item, Number, named};
 use super::keys;
 use super::source::ModelText;
-use super::{Contact, NormalLaw, SpeedDecay};
+use super::{Contact, NormalLaw};
 use crate::Result;
 use toml::Spanned;
-
-/// Friction above this is taken for a mistake.
-pub const LARGEST_FRICTION: f64 = 2.0;
 
 /// The contact pairs; `unit` is metres per unit of the mesh.
 pub fn contacts(source: ModelText, raw: &[Spanned<keys::ContactTable>], unit: f64) -> Result<Vec<Contact>> {
@@ -20,14 +18,14 @@ pub fn contacts(source: ModelText, raw: &[Spanned<keys::ContactTable>], unit: f6
 fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Result<Contact> {
     let what = format_args!("slave and master are both {:?}", raw.slave);
     item.require(raw.slave != raw.master, what, "Name the two surfaces that meet")?;
-    let (friction, decay) = contact_friction(item, &raw.friction)?;
+    let (friction, friction_curve) = contact_friction(item, &raw.friction)?;
     Ok(Contact {
         name,
         slave: raw.slave.clone(),
         master: raw.master.clone(),
         law: law(item, &raw.law)?,
         friction,
-        decay,
+        friction_curve,
         stick: item.positive_if_given(&raw.stick, "stick", "Give N/m3, such as 1e13")?,
         separation: raw.separation.unwrap_or(true),
         search_distance: search_distance(item, &raw.search, unit)?,
@@ -39,26 +37,6 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
 pub fn search_distance(item: &Item, raw: &Option<Number>, unit: f64) -> Result<Option<f64>> {
     let advice = "Give a distance in the mesh's unit, or leave it out for no limit";
     Ok(item.positive_if_given(raw, "search", advice)?.map(|distance| distance * unit))
-}
-
-/// A coefficient of friction.
-pub fn friction(item: &Item, value: &Number) -> Result<f64> {
-    let holds = (0.0..=LARGEST_FRICTION).contains(value.get_ref());
-    item.check(value, holds, "friction", "must be from 0 to 2", "Give a coefficient, such as 0.5")
-}
-
-/// The friction value of a contact, and how it falls with the speed.
-fn contact_friction(item: &Item, raw: &Spanned<keys::Friction>) -> Result<(f64, Option<SpeedDecay>)> {
-    let (at_rest, kinetic, decay) = match *raw.get_ref() {
-        keys::Friction::Constant(mu) => return Ok((friction(item, &Spanned::new(raw.span(), mu))?, None)),
-        keys::Friction::Decay { at_rest, kinetic, decay } => (at_rest, kinetic, decay),
-    };
-    let is_coefficient = |mu: f64| (0.0..=LARGEST_FRICTION).contains(&mu);
-    let holds = at_rest > 0.0 && is_coefficient(at_rest) && is_coefficient(kinetic) && decay > 0.0 && decay.is_finite();
-    let what = format_args!("friction has static = {at_rest}, kinetic = {kinetic}, decay = {decay}");
-    let advice = "Give static above 0 and kinetic from 0, both up to 2, and a decay above 0 in s/m";
-    item.require_at(&raw.span(), holds, what, advice)?;
-    Ok((at_rest, Some(SpeedDecay { kinetic_ratio: kinetic / at_rest, decay })))
 }
 
 fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {

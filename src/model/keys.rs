@@ -19,12 +19,13 @@ pub enum OneOrThree {
     Three([f64; 3]),
 }
 
-/// A coefficient, or one that falls with the sliding speed.
+/// A coefficient, or how it depends on sliding speed, pressure and temperature.
 #[derive(Deserialize)]
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "expected a number, or { static = 0.6, kinetic = 0.4, decay = 0.5 }"
+    expecting = "expected a number, { static = 0.6, kinetic = 0.4, decay = 0.5 }, the same with stribeck_speed = 0.1 in \
+                 place of decay, or { by = [\"speed\"], table = [[0.6, 0], [0.4, 2]] }"
 )]
 pub enum Friction {
     Constant(f64),
@@ -34,6 +35,8 @@ pub enum Friction {
         kinetic: f64,
         decay: f64,
     },
+    Stribeck(StribeckTable),
+    Table(FrictionRows),
 }
 
 /// Tables of the file, in which every key must be known.
@@ -132,6 +135,24 @@ tables! {
         pub search: Option<Number>,
     }
 
+    #[derive(Clone, Copy)]
+    pub struct StribeckTable {
+        #[serde(rename = "static")]
+        pub at_rest: f64,
+        pub kinetic: f64,
+        pub stribeck_speed: f64,
+        #[serde(default = "one")]
+        pub exponent: f64,
+        #[serde(default)]
+        pub viscous: f64,
+    }
+
+    pub struct FrictionRows {
+        pub by: Vec<String>,
+        pub table: Vec<Vec<f64>>,
+        pub temperature: Option<f64>,
+    }
+
     pub struct LawTable {
         pub linear: Option<Number>,
         pub cubic: Option<Spanned<[f64; 2]>>,
@@ -210,4 +231,8 @@ tables! {
         pub contacts: Spanned<usize>,
         pub band: Spanned<[f64; 2]>,
     }
+}
+
+fn one() -> f64 {
+    1.0
 }

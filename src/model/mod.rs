@@ -25,6 +25,7 @@ mod bodies;
 mod check;
 mod contacts;
 pub mod elasticity;
+pub mod friction;
 mod item;
 mod joints;
 mod keys;
@@ -43,13 +44,13 @@ mod units;
 mod write;
 
 pub use analysis::spaced;
-pub use contacts::LARGEST_FRICTION;
+pub use friction::LARGEST_FRICTION;
 pub use place::Place;
 pub use read::{is_deck, parse, read};
 pub use source::located;
 pub use types::{
     Connector, Contact, Equation, EquationTerm, Fix, GROUND, Load, LoadKind, Material, Model, NormalLaw, Part,
-    PointMass, Rayleigh, Reduction, RigidBody, Rotation, SpeedDecay, Tie,
+    PointMass, Rayleigh, Reduction, RigidBody, Rotation, Tie,
 };
 pub use units::UnitSystem;
 pub use write::{isotropic, write};

@@ -7,6 +7,7 @@ use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 
 use super::elasticity::youngs;
+use super::friction::FrictionCurve;
 use super::{Place, names};
 use crate::{Error, Result};
 
@@ -176,10 +177,10 @@ pub struct Contact {
     pub master: String,
     /// Normal law.
     pub law: NormalLaw,
-    /// Coefficient of friction; that of rest where it decays.
+    /// Coefficient of friction: the static one, or a table's first, where it depends on anything.
     pub friction: f64,
-    /// How the coefficient falls with the sliding speed, where it does.
-    pub decay: Option<SpeedDecay>,
+    /// How the coefficient depends on sliding speed and pressure, where it does.
+    pub friction_curve: Option<FrictionCurve>,
     /// Elastic stick, N/m3; none on pairs that slide for ever.
     pub stick: Option<f64>,
     /// Whether the pair may open.
@@ -188,17 +189,6 @@ pub struct Contact {
     pub search_distance: Option<f64>,
     /// Where it stands.
     pub place: Place,
-}
-
-/// A friction coefficient that falls from the static to the kinetic one with the sliding speed v,
-///
-/// `mu(v) = mu_s (r + (1 - r) exp(-d v))`
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct SpeedDecay {
-    /// r, the kinetic coefficient divided by the static one.
-    pub kinetic_ratio: f64,
-    /// d, s/m.
-    pub decay: f64,
 }
 
 /// Pressure as a function of penetration.

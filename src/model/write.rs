@@ -8,6 +8,7 @@ use std::fmt::{Display, Write};
 use nalgebra::Matrix6;
 
 use super::elasticity::{from_compliance, isotropic_compliance};
+use super::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use super::read::UNITS;
 use super::{Contact, Material, Model, NormalLaw};
 use loads::loads;
@@ -154,17 +155,36 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
         NormalLaw::Linear { stiffness } => out.line("law", format_args!("{{ linear = {} }}", number(stiffness))),
         NormalLaw::Cubic { k1, k3 } => out.line("law", format_args!("{{ cubic = {} }}", list(&[k1, k3]))),
     }
-    match contact.decay {
+    match &contact.friction_curve {
         None => out.line("friction", number(contact.friction)),
-        Some(decay) => {
-            let [at_rest, kinetic] = [1.0, decay.kinetic_ratio].map(|ratio| number(ratio * contact.friction));
-            let decay = number(decay.decay);
-            out.line("friction", format_args!("{{ static = {at_rest}, kinetic = {kinetic}, decay = {decay} }}"));
-        }
+        Some(curve) => out.line("friction", friction_curve(curve, contact.friction)),
     }
     out.optional("stick", contact.stick);
     out.line("separation", contact.separation);
     out.optional("search", contact.search_distance.map(|distance| distance / unit));
+}
+
+/// The key `friction` of a coefficient that depends on other things, its friction value given.
+fn friction_curve(curve: &FrictionCurve, friction: f64) -> String {
+    let scaled = |ratio: f64| number(ratio * friction);
+    match curve {
+        FrictionCurve::Decay(SpeedDecay { kinetic_ratio, decay }) => {
+            let [at_rest, kinetic] = [1.0, *kinetic_ratio].map(scaled);
+            format!("{{ static = {at_rest}, kinetic = {kinetic}, decay = {} }}", number(*decay))
+        }
+        FrictionCurve::Stribeck(Stribeck { kinetic_ratio, speed, exponent, viscous }) => {
+            let [at_rest, kinetic, viscous] = [1.0, *kinetic_ratio, *viscous].map(scaled);
+            let [speed, exponent] = [*speed, *exponent].map(number);
+            let falling = format!("static = {at_rest}, kinetic = {kinetic}, stribeck_speed = {speed}");
+            format!("{{ {falling}, exponent = {exponent}, viscous = {viscous} }}")
+        }
+        FrictionCurve::Table(FrictionTable { speeds, pressures, values }) => {
+            let grid = speeds.iter().flat_map(|v| pressures.iter().map(move |q| [*v, *q]));
+            let row = |([v, q], phi): ([f64; 2], &f64)| format!("[{}, {}, {}]", scaled(*phi), number(v), number(q));
+            let rows: Vec<String> = grid.zip(values).map(row).collect();
+            format!("{{ by = [\"speed\", \"pressure\"], table = [{}] }}", rows.join(", "))
+        }
+    }
 }
 
 fn analysis(out: &mut Text, model: &Model) {
@@ -214,6 +234,22 @@ mod tests {
         assert_eq!(back.contacts[1].law, model.contacts[1].law);
         assert_eq!((back.frictions, back.swept, back.reduction.is_some()), (model.frictions, model.swept, true));
         assert!(text.contains("young = 1.1e11"), "{text}");
+    }
+
+    #[test]
+    fn friction_curves_are_written_and_read_back() {
+        for curve in [
+            "{ static = 0.5, kinetic = 0.4, decay = 2 }",
+            "{ static = 0.5, kinetic = 0.4, stribeck_speed = 0.1, exponent = 2, viscous = 0.01 }",
+            "{ by = [\"pressure\"], table = [[0.5, 1e6], [0.4, 2e6]] }",
+        ] {
+            let model =
+                parse(&EXAMPLE.replace("friction = 0.5", &format!("friction = {curve}")), Path::new("brake.toml"));
+            let contact = &model.as_ref().unwrap().contacts[0];
+            let back = parse(&write(model.as_ref().unwrap(), "brake.msh"), Path::new("brake.toml")).unwrap();
+            assert!(contact.friction_curve.is_some(), "{curve}");
+            assert_eq!(back.contacts[0].friction_curve, contact.friction_curve);
+        }
     }
 
     #[test]

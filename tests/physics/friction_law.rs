@@ -21,7 +21,8 @@ use squeal::contact::{
     ContactPair, ContactPoint, FrictionLaw, GapOperator, Interface, PointLaw, Statistics, Tangential, TangentialKind,
 };
 use squeal::mesh::Numbering;
-use squeal::model::{NormalLaw, SpeedDecay};
+use squeal::model::NormalLaw;
+use squeal::model::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use squeal::native::{Comm, Session};
 
 const MASS: f64 = 2.0;
@@ -99,11 +100,11 @@ fn solve(comm: &Comm, law: &FrictionLaw, coupling: f64, friction: f64) -> (f64, 
     (equilibrium.responses[0].normal_force, band.modes.iter().map(|mode| mode.lambda).collect())
 }
 
-/// Stribeck's curve in its simplest form, with a pressure: `phi = (r + (1 - r) exp(-v/v_0)) (1 - s q)`.
+/// A decay that falls with the pressure, too: `phi = (r + (1 - r) exp(-v/v_0)) (1 - s q)`.
 #[derive(Debug)]
-struct Stribeck;
+struct Falling;
 
-impl FrictionFunction for Stribeck {
+impl FrictionFunction for Falling {
     fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {
         let falling = 0.6 * (-speed / 0.3).exp();
         let by_pressure = -0.03;
@@ -121,8 +122,16 @@ impl FrictionFunction for Stribeck {
 fn a_mass_on_a_belt_loses_stability_where_the_slope_takes_up_the_damping() {
     let comm = Session::start(&[]).unwrap();
     let decay = SpeedDecay { kinetic_ratio: 0.4, decay: 1.0 / 0.3 };
-    let functions: [(&dyn FrictionFunction, FrictionLaw); 2] =
-        [(&decay, FrictionLaw::Decay(decay)), (&Stribeck, FrictionLaw::user(Stribeck))];
+    let stribeck = Stribeck { kinetic_ratio: 0.4, speed: 0.4, exponent: 2.0, viscous: 0.1 };
+    // A table in which mu falls with pressure and speed.
+    let table = FrictionTable {
+        speeds: vec![0.0, 1.0],
+        pressures: vec![0.0, 5.0, 20.0],
+        values: vec![1.0, 0.95, 0.8, 0.7, 0.6, 0.5],
+    };
+    let curves = [FrictionCurve::Decay(decay), FrictionCurve::Stribeck(stribeck), FrictionCurve::Table(table)];
+    let mut functions: Vec<(&dyn FrictionFunction, FrictionLaw)> = vec![(&Falling, FrictionLaw::user(Falling))];
+    functions.extend(curves.iter().map(|curve| (curve as &dyn FrictionFunction, FrictionLaw::Curve(curve.clone()))));
     for (function, law) in functions {
         check_derivatives(function, &[0.1, SPEED, 2.0], &[1.0, LOAD]).unwrap();
         // Without coupling N does not depend on friction.
@@ -146,10 +155,10 @@ fn a_mass_on_a_belt_loses_stability_where_the_slope_takes_up_the_damping() {
 #[test]
 fn pressure_enters_the_stiffness_by_the_slope_of_the_friction_force() {
     let comm = Session::start(&[]).unwrap();
-    let still = |speed: f64| SpeedFree(Stribeck, speed);
+    let still = |speed: f64| SpeedFree(Falling, speed);
     let law = FrictionLaw::user(still(SPEED));
     let (n, lambdas) = solve(&comm, &law, -150.0, 0.8);
-    let FrictionFactor { value, by_pressure, .. } = Stribeck.factor(SPEED, n);
+    let FrictionFactor { value, by_pressure, .. } = Falling.factor(SPEED, n);
     // Friction damping across the sliding direction, along y, sees mu itself: y is left out by its frequency.
     let (_, constant) = solve(&comm, &FrictionLaw::Constant, -150.0, 0.8 * (value + n * by_pressure));
     let (_, without) = solve(&comm, &FrictionLaw::Constant, -150.0, 0.8 * value);
@@ -164,7 +173,7 @@ fn pressure_enters_the_stiffness_by_the_slope_of_the_friction_force() {
 
 /// A law at one speed, without its slope there.
 #[derive(Debug)]
-struct SpeedFree(Stribeck, f64);
+struct SpeedFree(Falling, f64);
 
 impl FrictionFunction for SpeedFree {
     fn factor(&self, _: f64, pressure: f64) -> FrictionFactor {

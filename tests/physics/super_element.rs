@@ -22,7 +22,7 @@ use squeal::contact::{FrictionLaw, Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
 use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
-use squeal::model::{NormalLaw, SpeedDecay};
+use squeal::model::NormalLaw;
 use squeal::native::{Block as Columns, Comm, Precision, Session};
 use squeal::reduction::craig_bampton::{self, Structure};
 use squeal::reduction::recovery::OuterSurface;
@@ -383,16 +383,17 @@ fn a_users_friction_law_acts_in_the_super_element_as_in_its_model() {
 }
 
 #[test]
-fn the_file_of_a_super_element_contains_a_decay() {
+fn the_file_of_a_super_element_contains_the_friction_curve() {
     let comm = Session::start(&[]).unwrap();
-    let decay = MODEL.replace("friction = 0.4", "friction = { static = 0.4, kinetic = 0.3, decay = 2 }");
-    let (_, element) = Full::new(&comm, &decay, FRICTION).reduce(60e3);
+    let table = "{ by = [\"speed\"], table = [[0.4, 0], [0.3, 2]] }";
+    let (_, element) =
+        Full::new(&comm, &MODEL.replace("friction = 0.4", &format!("friction = {table}")), FRICTION).reduce(60e3);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("blocks.se.h5");
     let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
     file::write(&path, &element, &surface).unwrap();
-    let FrictionLaw::Decay(read) = file::read(&path).unwrap().0.pairs[0].friction_law else { panic!("a decay") };
-    assert_eq!(read, SpeedDecay { kinetic_ratio: 0.3 / 0.4, decay: 2.0 });
+    let laws = [&element, &file::read(&path).unwrap().0].map(|element| format!("{:?}", element.pairs[0].friction_law));
+    assert!(laws[0].contains("Table") && laws[0] == laws[1], "{laws:?}");
 }
 
 #[test]

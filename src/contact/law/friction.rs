@@ -8,7 +8,7 @@
 //! friction value of 0 is a contact without friction under every law, and what is linear in mu stays linear in `mu_0`.
 //! The speed is that of the imposed motion at the point; a pair that does not slide has v = 0.
 
-use crate::model::SpeedDecay;
+use crate::model::friction::FrictionCurve;
 use crate::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
@@ -39,22 +39,14 @@ pub trait FrictionFunction: Debug + Send + Sync {
     fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor;
 }
 
-impl FrictionFunction for SpeedDecay {
-    /// `phi = r + (1 - r) exp(-d v)`.
-    fn factor(&self, speed: f64, _: f64) -> FrictionFactor {
-        let falling = (1.0 - self.kinetic_ratio) * (-self.decay * speed).exp();
-        FrictionFactor { value: self.kinetic_ratio + falling, by_speed: -self.decay * falling, by_pressure: 0.0 }
-    }
-}
-
 /// How the friction coefficient of a pair depends on sliding speed and pressure.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub enum FrictionLaw {
     /// Not at all: `phi = 1`.
     #[default]
     Constant,
-    /// It falls with the speed.
-    Decay(SpeedDecay),
+    /// As the model file has it.
+    Curve(FrictionCurve),
     /// As a function of the user's own gives it.
     #[serde(skip)]
     User(Arc<dyn FrictionFunction>),
@@ -110,7 +102,7 @@ impl Friction<'_> {
             FrictionLaw::Constant | FrictionLaw::Missing => {
                 return Coefficient { mu: self.value, slope: self.value, by_speed: 0.0 };
             }
-            FrictionLaw::Decay(decay) => decay.factor(speed, pressure),
+            FrictionLaw::Curve(curve) => curve.factor(speed, pressure),
             FrictionLaw::User(function) => function.factor(speed, pressure),
         };
         Coefficient {
@@ -164,8 +156,6 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_value() {
-        let decay = SpeedDecay { kinetic_ratio: 0.6, decay: 0.5 };
-        check_derivatives(&decay, &SPEEDS, &PRESSURES).unwrap();
         check_derivatives(&Falling, &SPEEDS, &PRESSURES).unwrap();
     }
 
@@ -196,17 +186,5 @@ mod tests {
         starts(FrictionFactor { by_speed: 1e-3, ..right }, "dphi/dv");
         starts(FrictionFactor { by_pressure: f64::NAN, ..right }, "dphi/dq");
         starts(FrictionFactor { value: -9.0, ..right }, "phi = -");
-    }
-
-    #[test]
-    fn a_decay_goes_from_the_static_to_the_kinetic_coefficient() {
-        let law = FrictionLaw::Decay(SpeedDecay { kinetic_ratio: 0.75, decay: 2.0 });
-        let friction = Friction { value: 0.6, law: &law };
-        assert!((friction.at(0.0, 1e6).mu - 0.6).abs() < 1e-15);
-        assert!((friction.at(100.0, 1e6).mu - 0.45).abs() < 1e-15);
-        // mu = 0.45 + 0.15 exp(-2 v), dmu/dv = -0.3 exp(-2 v)
-        let half = friction.at(0.5, 1e6);
-        assert!((half.mu - 0.45 - 0.15 * (-1.0f64).exp()).abs() < 1e-15);
-        assert!((half.by_speed + 0.3 * (-1.0f64).exp()).abs() < 1e-15);
     }
 }

@@ -16,6 +16,7 @@
 //! - [`respond`]: how does it act by its true law?
 //! - [`linearise`]: what is its tangent for stability, with its status frozen?
 
+mod curves;
 mod friction;
 mod frozen;
 mod normal;

@@ -33,7 +33,7 @@ impl<'d> Conversion<'d> {
                 master,
                 law: NormalLaw::Linear { stiffness },
                 friction: 0.0,
-                decay: None,
+                friction_curve: None,
                 stick: None,
                 separation: !interaction.no_separation,
                 search_distance: None,

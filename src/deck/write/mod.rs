@@ -165,8 +165,8 @@ impl DeckWriter<'_> {
         if model.reduction.is_some() {
             losses.push("the reduction is not written".to_owned());
         }
-        for contact in model.contacts.iter().filter(|contact| contact.decay.is_some()) {
-            losses.push(format!("the decay of the friction of {:?} with the speed is not written", contact.name));
+        for contact in model.contacts.iter().filter(|contact| contact.friction_curve.is_some()) {
+            losses.push(format!("how the friction of {:?} depends on speed and pressure is not written", contact.name));
         }
         for contact in model.contacts.iter().filter(|contact| contact.search_distance.is_some()) {
             losses.push(format!("the search distance of the contact {:?} is not written", contact.name));

@@ -1,7 +1,8 @@
 //! Fixes, rotations, contacts and loads.
 
 use super::{GOOD, complains, parsed};
-use crate::model::{LoadKind, SpeedDecay};
+use crate::model::LoadKind;
+use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 
 #[test]
 fn fixes_and_rotations_are_checked() {
@@ -46,7 +47,8 @@ fn contacts_are_checked() {
         );
         complains("friction = 0.5", &format!("friction = {{ {wrong} }}"), 0, &said);
     }
-    let said = "expected a number, or { static = 0.6, kinetic = 0.4, decay = 0.5 } ([[contact]]). \
+    let said = "expected a number, { static = 0.6, kinetic = 0.4, decay = 0.5 }, the same with stribeck_speed = 0.1 in place of decay, or \
+                { by = [\"speed\"], table = [[0.6, 0], [0.4, 2]] } ([[contact]]). \
                 Correct it; the documentation explains every key";
     complains("friction = 0.5", "friction = { static = 0.6, kinetic = 0.4 }", 0, said);
     complains("friction = 0.5", "friction = { static = 0.6, kinetic = 0.4, decay = 1, p = 1 }", 0, said);
@@ -61,7 +63,57 @@ fn friction_that_decays_keeps_its_ratio() {
     let text = GOOD.replace("friction = 0.5", "friction = { static = 0.5, kinetic = 0.4, decay = 2 }");
     let contact = &parsed(&text).unwrap().contacts[0];
     assert_eq!(contact.friction, 0.5);
-    assert_eq!(contact.decay, Some(SpeedDecay { kinetic_ratio: 0.8, decay: 2.0 }));
+    assert_eq!(contact.friction_curve, Some(FrictionCurve::Decay(SpeedDecay { kinetic_ratio: 0.8, decay: 2.0 })));
+}
+
+#[test]
+fn stribecks_curve_is_relative_to_the_static_coefficient() {
+    let with = |rest: &str| format!("friction = {{ static = 0.5, kinetic = 0.4, {rest} }}");
+    let text = GOOD.replace("friction = 0.5", &with("stribeck_speed = 0.2, viscous = 0.01"));
+    let contact = &parsed(&text).unwrap().contacts[0];
+    let curve = Stribeck { kinetic_ratio: 0.8, speed: 0.2, exponent: 1.0, viscous: 0.02 };
+    assert_eq!((contact.friction, &contact.friction_curve), (0.5, &Some(FrictionCurve::Stribeck(curve))));
+    for wrong in ["stribeck_speed = 0", "stribeck_speed = 1, exponent = 0.5", "stribeck_speed = 1, viscous = -1"] {
+        let said = parsed(&GOOD.replace("friction = 0.5", &with(wrong))).unwrap_err();
+        assert!(said.contains("an exponent of 1 or above, and viscous from 0 in s/m"), "{said}");
+    }
+}
+
+#[test]
+fn a_friction_table_is_a_full_grid_in_any_order_at_one_temperature() {
+    let table = |by: &str, rows: &str, rest: &str| {
+        let friction = format!("friction = {{ by = {by}, table = [{rows}]{rest} }}");
+        parsed(&GOOD.replace("friction = 0.5", &friction)).map(|model| {
+            let contact = &model.contacts[0];
+            (contact.friction, contact.friction_curve.clone())
+        })
+    };
+    let curve = |speeds: &[f64], pressures: &[f64], values: &[f64]| {
+        let [speeds, pressures, values] = [speeds, pressures, values].map(<[f64]>::to_vec);
+        Some(FrictionCurve::Table(FrictionTable { speeds, pressures, values }))
+    };
+    let by_speed = table("[\"speed\"]", "[0.5, 0], [0.25, 2]", "").unwrap();
+    assert_eq!(by_speed, (0.5, curve(&[0.0, 2.0], &[0.0], &[1.0, 0.5])));
+    let rows = "[0.5, 1e6, 0], [0.4, 1e6, 2], [0.3, 5e6, 2], [0.375, 5e6, 0]";
+    let both = table("[\"pressure\", \"speed\"]", rows, "").unwrap();
+    assert_eq!(both, (0.5, curve(&[0.0, 2.0], &[1e6, 5e6], &[1.0, 0.75, 0.8, 0.6])));
+    let warm = table("[\"temperature\"]", "[0.5, 100], [0.3, 300]", ", temperature = 150").unwrap();
+    assert_eq!(warm, (0.5, curve(&[0.0], &[0.0], &[0.9])));
+    for (by, rows, rest, said) in [
+        ("[\"colour\"]", "[0.5, 0]", "", "the friction table is by [\"colour\"]"),
+        ("[\"speed\", \"speed\"]", "[0.5, 0, 0]", "", "the friction table is by [\"speed\", \"speed\"]"),
+        ("[\"speed\"]", "", "", "the friction table is empty"),
+        ("[\"speed\"]", "[0.5, 0], [0.4]", "", "the friction table has the row [0.4]"),
+        ("[\"speed\"]", "[3.0, 0]", "", "the friction table has the row [3.0, 0.0]"),
+        ("[\"speed\"]", "[0.5, 0], [0.4, 0]", "", "a combination of values not at all or twice"),
+        ("[\"speed\", \"pressure\"]", "[0.5, 0, 0], [0.4, 1, 1]", "", "a combination of values not at all or twice"),
+        ("[\"speed\"]", "[0.0, 0], [0.4, 1]", "", "the first row's coefficient is 0"),
+        ("[\"speed\"]", "[0.5, 0]", ", temperature = 20", "the table and the temperature do not go together"),
+        ("[\"temperature\"]", "[0.5, 0]", "", "the table and the temperature do not go together"),
+    ] {
+        let message = table(by, rows, rest).unwrap_err();
+        assert!(message.contains(said) && message.contains("contact \"pair\""), "{message}");
+    }
 }
 
 #[test]

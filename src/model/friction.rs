@@ -1,0 +1,233 @@
+//! How the friction coefficient of a contact depends on sliding speed, pressure and temperature.
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::item::Item;
+use super::keys;
+use crate::Result;
+
+/// Friction above this is taken for a mistake.
+pub const LARGEST_FRICTION: f64 = 2.0;
+
+/// A coefficient as a function of the sliding speed v (m/s) and the pressure q (Pa), divided by the friction value
+/// `mu_0` of its contact: `mu = mu_0 phi(v, q)`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum FrictionCurve {
+    /// It falls with the speed.
+    Decay(SpeedDecay),
+    /// It falls with the speed and rises again.
+    Stribeck(Stribeck),
+    /// As a table has it.
+    Table(FrictionTable),
+}
+
+/// `phi = r + (1 - r) exp(-d v)`
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SpeedDecay {
+    /// r, the kinetic coefficient divided by the static one.
+    pub kinetic_ratio: f64,
+    /// d, s/m.
+    pub decay: f64,
+}
+
+/// `phi = r + (1 - r) exp(-(v / v_s)^delta) + b v`
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Stribeck {
+    /// r, the kinetic coefficient divided by the static one.
+    pub kinetic_ratio: f64,
+    /// `v_s`, m/s.
+    pub speed: f64,
+    /// delta, at least 1.
+    pub exponent: f64,
+    /// b, s/m: the viscous coefficient divided by the static one.
+    pub viscous: f64,
+}
+
+/// phi at the points of a grid; linear between them in each variable, constant beyond them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrictionTable {
+    /// Rising speeds, m/s; one where phi does not depend on it.
+    pub speeds: Vec<f64>,
+    /// Rising pressures, Pa; one where phi does not depend on it.
+    pub pressures: Vec<f64>,
+    /// phi, speed by speed.
+    pub values: Vec<f64>,
+}
+
+/// What a table may depend on, in the order of [`TableAxes`].
+const VARIABLES: [&str; 3] = ["speed", "pressure", "temperature"];
+
+/// The friction value of a contact, and how its coefficient depends on other things.
+pub fn contact_friction(item: &Item, raw: &Spanned<keys::Friction>) -> Result<(f64, Option<FrictionCurve>)> {
+    match raw.get_ref() {
+        keys::Friction::Constant(mu) => Ok((friction(item, &Spanned::new(raw.span(), *mu))?, None)),
+        &keys::Friction::Decay { at_rest, kinetic, decay } => {
+            let holds = is_positive(at_rest) && is_coefficient(kinetic) && decay > 0.0 && decay.is_finite();
+            let what = format_args!("friction has static = {at_rest}, kinetic = {kinetic}, decay = {decay}");
+            let advice = "Give static above 0 and kinetic from 0, both up to 2, and a decay above 0 in s/m";
+            item.require_at(&raw.span(), holds, what, advice)?;
+            Ok((at_rest, Some(FrictionCurve::Decay(SpeedDecay { kinetic_ratio: kinetic / at_rest, decay }))))
+        }
+        keys::Friction::Stribeck(table) => stribeck(item, raw, table),
+        keys::Friction::Table(table) => tabular(item, raw, table),
+    }
+}
+
+/// A coefficient of friction.
+pub fn friction(item: &Item, value: &Spanned<f64>) -> Result<f64> {
+    let holds = is_coefficient(*value.get_ref());
+    item.check(value, holds, "friction", "must be from 0 to 2", "Give a coefficient, such as 0.5")
+}
+
+fn is_coefficient(mu: f64) -> bool {
+    (0.0..=LARGEST_FRICTION).contains(&mu)
+}
+
+fn is_positive(mu: f64) -> bool {
+    mu > 0.0 && is_coefficient(mu)
+}
+
+fn stribeck(
+    item: &Item,
+    raw: &Spanned<keys::Friction>,
+    table: &keys::StribeckTable,
+) -> Result<(f64, Option<FrictionCurve>)> {
+    let &keys::StribeckTable { at_rest, kinetic, stribeck_speed: speed, exponent, viscous } = table;
+    let numbers = [speed, exponent, viscous].into_iter().all(f64::is_finite);
+    let holds = numbers && is_positive(at_rest) && is_coefficient(kinetic) && speed > 0.0;
+    let advice = "Give static above 0 and kinetic from 0, both up to 2, a stribeck_speed above 0 in m/s, an exponent of 1 or \
+                  above, and viscous from 0 in s/m";
+    let what = format_args!(
+        "friction has static = {at_rest}, kinetic = {kinetic}, stribeck_speed = {speed}, exponent = {exponent}, viscous = {viscous}"
+    );
+    item.require_at(&raw.span(), holds && exponent >= 1.0 && viscous >= 0.0, what, advice)?;
+    let curve = Stribeck { kinetic_ratio: kinetic / at_rest, speed, exponent, viscous: viscous / at_rest };
+    Ok((at_rest, Some(FrictionCurve::Stribeck(curve))))
+}
+
+/// A table of coefficients over speed, pressure and temperature, at the contact's temperature. Its first row is the
+/// friction value.
+fn tabular(
+    item: &Item,
+    raw: &Spanned<keys::Friction>,
+    table: &keys::FrictionRows,
+) -> Result<(f64, Option<FrictionCurve>)> {
+    let refuse = |what: String, advice: &str| item.error(&raw.span(), what, advice);
+    let columns = columns(table).map_err(|what| {
+        refuse(what, "Give by = [\"speed\"], or several of \"speed\", \"pressure\" and \"temperature\", each once")
+    })?;
+    if columns[2].is_some() != table.temperature.is_some() {
+        let advice = "Give temperature = ... beside a table by temperature, in the table's unit, and only there";
+        return Err(refuse("the table and the temperature do not go together".into(), advice));
+    }
+    let grid = Grid::new(table, columns).map_err(|what| {
+        refuse(
+            what,
+            "A row is [mu, value, ...] in the order of `by`, all finite, mu from 0 to 2; every value with every other",
+        )
+    })?;
+    let first = grid.mu[0];
+    if first <= 0.0 {
+        return Err(refuse("the first row's coefficient is 0".into(), "It is the friction value, and must be above 0"));
+    }
+    Ok((first, Some(FrictionCurve::Table(grid.at_temperature(table.temperature, first)))))
+}
+
+/// The column of speed, pressure and temperature in the rows, each where the table depends on it.
+fn columns(table: &keys::FrictionRows) -> std::result::Result<[Option<usize>; 3], String> {
+    let mut columns = [None; 3];
+    for (i, name) in table.by.iter().enumerate() {
+        match VARIABLES.iter().position(|known| known == name) {
+            Some(variable) if columns[variable].is_none() => columns[variable] = Some(i + 1),
+            _ => return Err(format!("the friction table is by {:?}", table.by)),
+        }
+    }
+    Ok(columns)
+}
+
+/// Coefficients on the full grid of speeds, pressures and temperatures.
+struct Grid {
+    /// Rising values of each.
+    axes: [Vec<f64>; 3],
+    /// Speed by speed, in it pressure by pressure.
+    mu: Vec<f64>,
+}
+
+impl Grid {
+    fn new(table: &keys::FrictionRows, columns: [Option<usize>; 3]) -> std::result::Result<Grid, String> {
+        if table.table.is_empty() {
+            return Err("the friction table is empty".into());
+        }
+        let is_wrong = |row: &&Vec<f64>| {
+            row.len() != table.by.len() + 1 || !row.iter().all(|x| x.is_finite()) || !is_coefficient(row[0])
+        };
+        if let Some(row) = table.table.iter().find(is_wrong) {
+            return Err(format!("the friction table has the row {row:?}"));
+        }
+        let at = |row: &[f64], variable: usize| columns[variable].map_or(0.0, |column| row[column]);
+        let axes = [0, 1, 2].map(|variable| {
+            let mut values: Vec<f64> = table.table.iter().map(|row| at(row, variable)).collect();
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+            values
+        });
+        let [speeds, pressures, temperatures] = [0, 1, 2].map(|variable: usize| axes[variable].iter());
+        let mut mu = Vec::new();
+        for &v in speeds {
+            for &q in pressures.clone() {
+                for &t in temperatures.clone() {
+                    let place = [v, q, t];
+                    let row = table.table.iter().filter(|row| (0..3).all(|i| at(row, i) == place[i]));
+                    let [row] = row.collect::<Vec<_>>()[..] else {
+                        return Err("the friction table has a combination of values not at all or twice".into());
+                    };
+                    mu.push(row[0]);
+                }
+            }
+        }
+        Ok(Grid { axes, mu })
+    }
+
+    /// The factor on the friction value at a temperature, linear between the table's.
+    fn at_temperature(self, temperature: Option<f64>, value: f64) -> FrictionTable {
+        let [speeds, pressures, temperatures] = self.axes;
+        let (lower, fraction) = bracket(&temperatures, temperature.unwrap_or(0.0));
+        let upper = (lower + 1).min(temperatures.len() - 1);
+        let between = |mu: &[f64]| ((1.0 - fraction) * mu[lower] + fraction * mu[upper]) / value;
+        FrictionTable { speeds, pressures, values: self.mu.chunks(temperatures.len()).map(between).collect() }
+    }
+}
+
+/// The last of some rising values that is not above x, and how far x is on the way to the next: 0 at the ends and
+/// beyond them.
+pub fn bracket(values: &[f64], x: f64) -> (usize, f64) {
+    let above = values.partition_point(|&value| value <= x);
+    match above {
+        0 => (0, 0.0),
+        n if n == values.len() => (n - 1, 0.0),
+        n => (n - 1, (x - values[n - 1]) / (values[n] - values[n - 1])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_between_their_neighbours_and_at_the_ends_beyond() {
+        let values = [1.0, 2.0, 4.0];
+        for (x, expected) in [
+            (0.5, (0, 0.0)),
+            (1.0, (0, 0.0)),
+            (1.5, (0, 0.5)),
+            (2.0, (1, 0.0)),
+            (3.5, (1, 0.75)),
+            (4.0, (2, 0.0)),
+            (9.0, (2, 0.0)),
+        ] {
+            assert_eq!(bracket(&values, x), expected, "{x}");
+        }
+        assert_eq!(bracket(&[3.0], 7.0), (0, 0.0));
+    }
+}
