@@ -1,17 +1,24 @@
 //! What a model is, before anything is computed.
 
 use crate::Result;
+use crate::assembly::JointKind;
+use crate::assembly::joints::tie::TieSummary;
 use crate::contact::interface::ContactPair;
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
-use crate::model::{Load, LoadKind};
+use crate::model::{Load, LoadKind, PointMass, RigidBody, Tie};
 use crate::native::{Comm, Factor, FactorKind};
-use crate::output::model_summary::{LayoutRow, LoadRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow};
+use crate::output::model_summary::{
+    LayoutRow, LoadRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow, TieRow,
+};
 use crate::structure::{FullModel, Ranked, plausibility};
 
 /// Masses, contact pairs, mesh quality, constraints and loads of a model; with reference contacts their cells, too. The
 /// matrix is left open. Collective.
 pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> ModelSummary {
+    let parts: Vec<PartRow> = (0..full.mesh.parts.len()).map(|i| part(comm, full, i)).collect();
+    let masses = &full.model.masses;
+    let mass_kg = parts.iter().map(|row| row.mass_kg).chain(masses.iter().map(|own| own.mass)).sum();
     let load = |load: &Load| LoadRow { load: load.name.clone(), on: load.on.clone(), what: amount(&load.kind) };
     let sliding = || full.interface.pairs.iter().filter(|pair| pair.is_sliding());
     ModelSummary {
@@ -22,11 +29,16 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
             elements: comm.sum(full.own_elements().count()),
             size_m: full.extents(comm),
         },
-        parts: (0..full.mesh.parts.len()).map(|i| part(comm, full, i)).collect(),
+        parts,
         pairs: full.interface.pairs.iter().map(pair).collect(),
         layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
         constrained_dofs: full.held.as_flattened().iter().filter(|&&h| h).count(),
-        connectors: full.links.len(),
+        connectors: full.joints.count(JointKind::Connector),
+        ties: full.model.ties.iter().zip(&full.joints.ties).map(|(own, summary)| tie(own, summary)).collect(),
+        rigid_sets: full.model.rigid_bodies.iter().map(|own| rigid_set(full, own)).collect(),
+        masses: masses.iter().map(mass).collect(),
+        equations: full.joints.count(JointKind::Equation),
+        mass_kg,
         loads: full.model.loads.iter().map(load).collect(),
         sum_of_loads_n: full.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i])),
         warnings: plausibility::warnings(full, comm),
@@ -67,6 +79,26 @@ fn pair(pair: &ContactPair) -> PairRow {
         gap_max_m: statistics.gap[1],
         friction: pair.friction,
     }
+}
+
+fn tie(tie: &Tie, summary: &TieSummary) -> TieRow {
+    TieRow {
+        tie: tie.name.clone(),
+        nodes: summary.n_tied,
+        dropped: summary.n_dropped,
+        area_m2: summary.area,
+        distance_m: summary.distance,
+        stiffness_n_per_m3: summary.stiffness,
+    }
+}
+
+fn rigid_set(full: &FullModel, body: &RigidBody) -> RigidRow {
+    let nodes = full.mesh.node_set(&body.nodes).map_or(0, |nodes| nodes.len());
+    RigidRow { rigid: body.name.clone(), nodes }
+}
+
+fn mass(mass: &PointMass) -> MassRow {
+    MassRow { mass: mass.name.clone(), on: mass.nodes.clone(), mass_kg: mass.mass }
 }
 
 /// The reference nodes of a sliding pair.

@@ -1,6 +1,7 @@
-//! What explains a mode of a brake, by part, connector and contact pair.
+//! What explains a mode of a brake, by part, joint and contact pair.
 
 use crate::Result;
+use crate::assembly::JointKind;
 use crate::equilibrium::Equilibrium;
 use crate::reduction::super_element::Member;
 use crate::results::{Kind, Source};
@@ -70,7 +71,7 @@ impl Sweep<'_> {
     }
 }
 
-/// Explains a mode of a structure by parts, connectors and contact pairs: [`Sweep::explain`]. Collective.
+/// Explains a mode of a structure by parts, joints and contact pairs: [`Sweep::explain`]. Collective.
 ///
 /// # Errors
 /// [`crate::Error::Input`] where a part has no material; PETSc's.
@@ -103,11 +104,22 @@ pub fn explain_full(
     left: Option<Complex>,
 ) -> Result<Vec<Source>> {
     let parts = full.mesh.parts.iter().map(|name| (Kind::Part, name.clone()));
-    let connectors = full.model.connectors.iter().map(|connector| (Kind::Connector, connector.name.clone()));
-    let named: Vec<_> = parts.chain(connectors).collect();
+    let joints = full.joints.names.iter().map(|(kind, name)| (kind_of(*kind), name.clone()));
+    let named: Vec<_> = parts.chain(joints).collect();
     let part = |e: usize| full.mesh.elements.get(e).part as usize;
-    let link = |e: usize| full.mesh.parts.len() + e;
+    let joint = |e: usize| full.mesh.parts.len() + full.joints.elements[e].joint;
     let families = full.families()?;
-    let sources: [Sources; 2] = [(&families.solids, &part), (families.links, &link)];
+    let sources: [Sources; 2] = [(&families.solids, &part), (families.joints, &joint)];
     sweep.explain((&sources, &named), equilibrium, mode, left)
+}
+
+/// A joint as results call it.
+fn kind_of(joint: JointKind) -> Kind {
+    match joint {
+        JointKind::Connector => Kind::Connector,
+        JointKind::Tie => Kind::Tie,
+        JointKind::Rigid => Kind::Rigid,
+        JointKind::Equation => Kind::Equation,
+        JointKind::Mass => Kind::Mass,
+    }
 }

@@ -15,13 +15,17 @@
 mod axes;
 mod boundary;
 mod dofs;
-mod families;
+pub mod joints;
+mod loads;
 mod pattern;
 mod scatter;
+mod solids;
 mod system;
 
 pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
-pub use families::{ConnectorElement, Solids, connector_elements, constraints, loads, require_supported};
+pub use joints::{JointElement, JointKind, Joints};
+pub use loads::{constraints, loads};
 pub use pattern::Pattern;
+pub use solids::Solids;
 pub use system::{Connectivity, ElementMatrices, Elements, System};

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::Connectivity;
+use crate::contact::GapOperator;
 use crate::mesh::Numbering;
 
 /// The graph of coupled nodes in CSR form: for each node of this rank its neighbours and itself, by rising number.
@@ -51,6 +52,17 @@ impl Pattern {
     /// The second nodes of all pairs; within a node's [`Pattern::pairs`] they rise.
     pub fn neighbours(&self) -> &[u32] {
         &self.neighbours
+    }
+}
+
+/// Contact points couple the nodes that their relative displacement depends on.
+impl Connectivity for GapOperator {
+    fn len(&self) -> usize {
+        GapOperator::len(self)
+    }
+
+    fn nodes(&self, a: usize) -> &[u32] {
+        self.point(a).0
     }
 }
 

@@ -45,4 +45,5 @@ pub use gap_operator::GapOperator;
 pub use interface::{ContactPair, ContactPoint, Interface, Stage, Statistics, TangentialKind};
 pub use law::{FrictionLaw, PointLaw, Response, Status, Tangential};
 pub use motion::sliding;
+pub use pairing::NothingFound;
 pub use tangent_change::{Dyad, Tangent, TangentChange};

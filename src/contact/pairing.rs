@@ -82,7 +82,13 @@ impl ContactSurfaces<'_> {
         };
         let found = search(self.contact.search_distance);
         if found.points.is_empty() {
-            return Err(self.nothing_found(&found, &search(Some(f64::INFINITY))));
+            let (Contact { slave, master, .. }, anywhere) = (self.contact, search(Some(f64::INFINITY)));
+            let reason = NothingFound {
+                surfaces: [slave, master],
+                search_distance: self.contact.search_distance,
+                mesh_unit: self.model.mesh_unit,
+            };
+            return Err(self.refuse(&reason.text(&anywhere)));
         }
         let masters: BTreeSet<u32> = self.master.nodes().collect();
         let slaves: BTreeSet<u32> = found.points.iter().flat_map(|point| point.slave.nodes.iter().copied()).collect();
@@ -93,31 +99,6 @@ impl ContactSurfaces<'_> {
                  separately (in Gmsh: no fragment or duplicate removal across the contact)"
             ))),
         }
-    }
-
-    /// Says how far away the master is from a slave of which no point was found.
-    fn nothing_found(&self, found: &Found, anywhere: &Found) -> Error {
-        let (slave, master) = (&self.contact.slave, &self.contact.master);
-        let distances = anywhere.points.iter().map(|p| p.distance);
-        let closest = distances.fold(f64::INFINITY, f64::min);
-        if closest.is_infinite() {
-            return self.refuse(&format!(
-                "no facet of \"{master}\" faces \"{slave}\": nowhere do their outward normals oppose each other. \
-                 Check that these are the surfaces that meet"
-            ));
-        }
-        // In the mesh's unit, to a few digits without the noise of the conversion.
-        let length = |x: f64| format!("{:.6e}", x / self.model.mesh_unit).parse::<f64>().unwrap_or(x);
-        let limit = self.contact.search_distance.map_or_else(
-            || "half an edge of the slave's facets".to_owned(),
-            |distance| format!("the search distance {}", length(distance)),
-        );
-        self.refuse(&format!(
-            "none of the {} points of \"{slave}\" lies within {limit} of \"{master}\"; the closest is {} away, in the mesh's \
-             unit. Set search above that if the surfaces are to touch, else look at the names and the mesh",
-            found.n_dropped,
-            length(closest)
-        ))
     }
 
     /// The law of a point, on which the master slides with its rotation or rests.
@@ -137,6 +118,43 @@ impl ContactSurfaces<'_> {
             normal_law: self.contact.law,
             tangential,
         }
+    }
+}
+
+/// A slave of which no point lies near enough to the master.
+pub struct NothingFound<'a> {
+    /// The slave and the master.
+    pub surfaces: [&'a str; 2],
+    /// The search distance, where one is given, m.
+    pub search_distance: Option<f64>,
+    /// Metres per unit of the mesh.
+    pub mesh_unit: f64,
+}
+
+impl NothingFound<'_> {
+    /// How far away the master is, from a search at any distance.
+    pub fn text(&self, anywhere: &Found) -> String {
+        let [slave, master] = self.surfaces;
+        let distances = anywhere.points.iter().map(|p| p.distance);
+        let closest = distances.fold(f64::INFINITY, f64::min);
+        if closest.is_infinite() {
+            return format!(
+                "no facet of \"{master}\" faces \"{slave}\": nowhere do their outward normals oppose each other. \
+                 Check that these are the surfaces that meet"
+            );
+        }
+        // In the mesh's unit, to a few digits without the noise of the conversion.
+        let length = |x: f64| format!("{:.6e}", x / self.mesh_unit).parse::<f64>().unwrap_or(x);
+        let limit = self.search_distance.map_or_else(
+            || "half an edge of the slave's facets".to_owned(),
+            |distance| format!("the search distance {}", length(distance)),
+        );
+        let n_points = anywhere.points.len() + anywhere.n_dropped;
+        format!(
+            "none of the {n_points} points of \"{slave}\" lies within {limit} of \"{master}\"; the closest is {} away, in the mesh's \
+             unit. Set search above that if the surfaces are to touch, else look at the names and the mesh",
+            length(closest)
+        )
     }
 }
 

@@ -10,12 +10,13 @@
 
 use super::facet::FacetGeometry;
 use super::projection::{Projection, project};
-use super::surface_points::{Interpolated, Place, SurfacePoint, interpolated, surface_points};
+use super::surface_points::{Interpolated, Place, SurfacePoint, interpolated, surface_nodes, surface_points};
 use crate::mesh::Surface;
 use nalgebra::Vector3;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Facets face each other where the product of their unit normals is below this.
@@ -78,6 +79,8 @@ pub trait Team {
     fn share(&self, n: usize) -> Range<usize>;
     /// Everyone's values, in the order of the shares.
     fn join(&self, own: Vec<Option<Foot>>) -> Vec<Option<Foot>>;
+    /// Replaces each value by the largest that any member has in its place.
+    fn largest(&self, values: &mut [f64]);
 }
 
 /// Where a point's projection lies on the master.
@@ -100,14 +103,31 @@ impl Team for Alone {
     fn join(&self, own: Vec<Option<Foot>>) -> Vec<Option<Foot>> {
         own
     }
+
+    fn largest(&self, _: &mut [f64]) {}
 }
 
 /// Finds the contact points of `slave` on `master`. Both refer to `nodes`, m. All of the team find the same.
 ///
 /// A degenerate facet of the master (no normal) faces nothing and is passed over.
 pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Options, team: &dyn Team) -> Found {
-    let target = Target::new(master, nodes);
     let (candidates, area) = surface_points(slave, nodes);
+    Found { area, ..meet(candidates, master, nodes, options, team) }
+}
+
+/// Finds where all nodes of `slave` meet `master`; they have no weight, and the surface no area.
+pub fn find_nodes(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Options, team: &dyn Team) -> Found {
+    meet(surface_nodes(slave, nodes), master, nodes, options, team)
+}
+
+fn meet(
+    candidates: BTreeMap<Place, SurfacePoint>,
+    master: &Surface,
+    nodes: &[[f64; 3]],
+    options: &Options,
+    team: &dyn Team,
+) -> Found {
+    let target = Target::new(master, nodes);
     let candidates: Vec<(Place, SurfacePoint)> = candidates.into_iter().collect();
     let search = |(_, point): &(Place, SurfacePoint)| {
         let reach = options.search_distance.unwrap_or(0.5 * point.size());
@@ -115,7 +135,7 @@ pub fn find(slave: &Surface, master: &Surface, nodes: &[[f64; 3]], options: &Opt
         hit.map(|hit| Foot { facet: hit.facet, at: hit.projection.at })
     };
     let feet = team.join(candidates[team.share(candidates.len())].iter().map(search).collect());
-    let mut found = Found { area, ..Found::default() };
+    let mut found = Found::default();
     for ((place, point), foot) in candidates.into_iter().zip(feet) {
         match foot {
             None => found.n_dropped += 1,

@@ -113,6 +113,23 @@ pub fn surface_points(surface: &Surface, nodes: &[[f64; 3]]) -> (BTreeMap<Place,
     (found, total)
 }
 
+/// All nodes of a surface as points that are at no place between them, by rising number; they have no weight.
+pub fn surface_nodes(surface: &Surface, nodes: &[[f64; 3]]) -> BTreeMap<Place, SurfacePoint> {
+    let mut found: BTreeMap<Place, SurfacePoint> = BTreeMap::new();
+    for facet in &surface.facets {
+        let geometry = FacetGeometry::gather(nodes, facet);
+        for (&n, &at) in facet.nodes().iter().zip(facet.shape().interpolation().nodes()) {
+            let point = found.entry(Place::Node(n)).or_default();
+            point.slave = Interpolated { nodes: vec![n], shape: vec![1.0] };
+            point.position = nodes[n as usize].into();
+            point.normal += geometry.area() * geometry.normal(at);
+            point.sizes[0] += geometry.size();
+            point.sizes[1] += 1.0;
+        }
+    }
+    found
+}
+
 /// Each point's share of a facet's area.
 fn shares(geometry: &FacetGeometry, at: &[[f64; 2]]) -> Vec<f64> {
     if geometry.shape.is_triangle() {

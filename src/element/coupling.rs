@@ -91,6 +91,13 @@ impl MeanMotion {
         (sum(&self.displacement), sum(&self.rotation))
     }
 
+    /// The motion as six linear functionals: displacement x, y, z (no unit), then rotation x, y, z (1/m), each a row on
+    /// the nodes' dofs, three a node.
+    pub fn rows(&self) -> [Vec<f64>; 6] {
+        let of = |blocks: &[[[f64; 3]; 3]], i: usize| blocks.iter().flat_map(|block| block[i]).collect();
+        std::array::from_fn(|r| of(if r < 3 { &self.displacement } else { &self.rotation }, r % 3))
+    }
+
     /// Nodal forces (N) that carry a force (N) and a moment (N m) at the reference point: `f_n = U_n^T F + P_n^T M`.
     pub fn spread(&self, force: [f64; 3], moment: [f64; 3]) -> Vec<[f64; 3]> {
         let blocks = self.displacement.iter().zip(&self.rotation);

@@ -161,6 +161,18 @@ pub fn pressure_load(x: &[[f64; 3]], pressure: f64) -> Vec<[f64; 3]> {
     forces
 }
 
+/// `integral of N_a N_b dA`, m2, row-major: exact on plane facets with straight edges.
+pub fn shape_products(x: &[[f64; 3]]) -> Vec<f64> {
+    let mut products = vec![0.0; x.len() * x.len()];
+    for (shape, normal) in area_normals(x) {
+        let da = norm(normal);
+        for (line, left) in products.chunks_exact_mut(x.len()).zip(shape) {
+            line.iter_mut().zip(shape).for_each(|(entry, right)| *entry += da * (left * right));
+        }
+    }
+    products
+}
+
 /// At each point of the rule: shape values and `w (a_xi x a_eta)`.
 fn area_normals(x: &[[f64; 3]]) -> impl Iterator<Item = ([f64; MAX_FACET_NODES], [f64; 3])> + '_ {
     let shape = FacetShape::of(x.len());

@@ -13,7 +13,7 @@
 //!   solid          stiffness, mass, mass properties, mean stress of any kind
 //!   voigt          the order of stresses and strains
 //!   coupling       a cloud's mean rigid motion as 3x3 blocks on its nodes (distributing coupling)
-//!   connector      spring and damper between the mean motions of two clouds
+//!   linear         stiffness, damping and mass on linear functionals of displacements
 //! ```
 //!
 //! Symbols, the same in all files of this module:
@@ -26,11 +26,11 @@
 //! | `D` | elasticity, 6x6 |
 //! | `w` | quadrature weight (they add up to the reference element's volume or area) |
 
-pub mod connector;
 pub mod coupling;
 pub mod facet;
 pub mod interpolation;
 mod kind;
+pub mod linear;
 pub mod quadrature;
 #[cfg(test)]
 pub(crate) mod samples;

@@ -26,6 +26,16 @@ pub struct ModelSummary {
     pub constrained_dofs: usize,
     /// Connectors.
     pub connectors: usize,
+    /// One row a tie.
+    pub ties: Vec<TieRow>,
+    /// One row a rigid set.
+    pub rigid_sets: Vec<RigidRow>,
+    /// One row a point mass.
+    pub masses: Vec<MassRow>,
+    /// Equations.
+    pub equations: usize,
+    /// Mass of all parts and point masses.
+    pub mass_kg: f64,
     /// One row a load.
     pub loads: Vec<LoadRow>,
     /// Sum of all loads.
@@ -109,6 +119,43 @@ pub struct LayoutRow {
     pub cell_points_max: usize,
 }
 
+/// A tie.
+#[derive(Serialize)]
+pub struct TieRow {
+    /// Its name.
+    pub tie: String,
+    /// Nodes of the slave that are tied.
+    pub nodes: usize,
+    /// Nodes of the slave that are not.
+    pub dropped: usize,
+    /// Area that is tied.
+    pub area_m2: f64,
+    /// Largest distance of a tied node from the master.
+    pub distance_m: f64,
+    /// Penalty.
+    pub stiffness_n_per_m3: f64,
+}
+
+/// A rigid set.
+#[derive(Serialize)]
+pub struct RigidRow {
+    /// Its name.
+    pub rigid: String,
+    /// Its nodes.
+    pub nodes: usize,
+}
+
+/// A point mass.
+#[derive(Serialize)]
+pub struct MassRow {
+    /// Its name.
+    pub mass: String,
+    /// The node set or surface that it moves with.
+    pub on: String,
+    /// Mass.
+    pub mass_kg: f64,
+}
+
 /// A load.
 #[derive(Serialize)]
 pub struct LoadRow {
@@ -142,15 +189,28 @@ impl ModelSummary {
         let loads: String = self.loads.iter().map(load).collect();
         format!(
             "{}\n\n{deck}mesh: {nodes} nodes, {elements} elements, {size} mm\n{}{}{}\n{} constrained dofs, {} connectors\n\
-             {loads}sum of the loads: {} N\n\n",
+             {}{loads}sum of the loads: {} N\n\n",
             self.title,
             self.parts_text(),
             paragraph(&self.pairs_text()),
             paragraph(&layouts),
             self.constrained_dofs,
             self.connectors,
+            self.joints_text(),
             joined(self.sum_of_loads_n, 1.0, 3, " ")
         )
+    }
+
+    /// Ties, rigid sets, equations and masses, a line each; nothing where there is none.
+    fn joints_text(&self) -> String {
+        let ties = self.ties.iter().map(TieRow::text);
+        let rigid = self.rigid_sets.iter().map(|row| format!("rigid {:?}: {} nodes\n", row.rigid, row.nodes));
+        let equations = (self.equations > 0).then(|| format!("{} equations\n", self.equations));
+        let masses =
+            self.masses.iter().map(|row| format!("mass {:?} on {}: {:.4} kg\n", row.mass, row.on, row.mass_kg));
+        let total =
+            (!self.masses.is_empty()).then(|| format!("mass of parts and point masses: {:.4} kg\n", self.mass_kg));
+        ties.chain(rigid).chain(equations).chain(masses).chain(total).collect()
     }
 
     fn parts_text(&self) -> String {
@@ -171,6 +231,17 @@ impl ModelSummary {
         };
         let heading = "pair\tkind\tpoints\tdropped\ttouching\tarea mm2\tgap mm (min max)\tfriction";
         aligned(heading, self.pairs.iter().map(row))
+    }
+}
+
+impl TieRow {
+    fn text(&self) -> String {
+        let TieRow { tie, nodes, dropped, stiffness_n_per_m3, .. } = self;
+        let (area, distance) = (1e6 * self.area_m2, 1e3 * self.distance_m);
+        format!(
+            "tie {tie:?}: {nodes} nodes on {area:.2} mm2 tied, {dropped} not; up to {distance:.1e} mm apart; \
+             {stiffness_n_per_m3:.2e} N/m3\n"
+        )
     }
 }
 
@@ -237,6 +308,14 @@ pub(super) mod tests {
             cell_points_min: 3,
             cell_points_max: 5,
         };
+        let tie = TieRow {
+            tie: "shim / plate".into(),
+            nodes: 81,
+            dropped: 3,
+            area_m2: 4e-4,
+            distance_m: 2e-6,
+            stiffness_n_per_m3: 2.1e17,
+        };
         let load = LoadRow { load: "push".into(), on: "top".into(), what: "a pressure of 1 Pa".into() };
         ModelSummary {
             title: "blocks".into(),
@@ -247,6 +326,11 @@ pub(super) mod tests {
             layouts: Some(vec![layout]),
             constrained_dofs: 12,
             connectors: 0,
+            ties: vec![tie],
+            rigid_sets: vec![RigidRow { rigid: "mount".into(), nodes: 12 }],
+            masses: vec![MassRow { mass: "sensor".into(), on: "ear".into(), mass_kg: 0.05 }],
+            equations: 2,
+            mass_kg: 0.1139,
             loads: vec![load],
             sum_of_loads_n: [0.0, 0.0, -1000.0],
             warnings: vec![],

@@ -1,4 +1,4 @@
-//! What explains a mode, source by source: parts, connectors, contact pairs.
+//! What explains a mode, source by source: parts, joints, contact pairs.
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,14 @@ pub enum Kind {
     Part,
     /// A connector.
     Connector,
+    /// A tie of two surfaces.
+    Tie,
+    /// A rigid set.
+    Rigid,
+    /// An equation.
+    Equation,
+    /// A point mass.
+    Mass,
     /// A contact pair.
     Contact,
 }

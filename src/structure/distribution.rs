@@ -50,4 +50,8 @@ impl Team for Comm {
     fn join(&self, own: Vec<Option<Foot>>) -> Vec<Option<Foot>> {
         self.join_values(own).concat()
     }
+
+    fn largest(&self, values: &mut [f64]) {
+        self.max_all(values);
+    }
 }

@@ -22,7 +22,7 @@ impl EquilibriumChecks {
     /// Those of a full model. Collective.
     pub(super) fn of_full(full: &FullModel, system: &System, equilibrium: &Equilibrium) -> Result<EquilibriumChecks> {
         let (u, families) = (system.nodal(&[&equilibrium.u])?.remove(0), full.families()?);
-        let balance = Balance::new(
+        let mut balance = Balance::new(
             system,
             &full.mesh.nodes,
             &families.list(),
@@ -31,6 +31,10 @@ impl EquilibriumChecks {
             &u,
             &equilibrium.responses,
         );
+        // Joints to the ground, and equations, are supports; of all others the forces cancel.
+        for (node, force) in full.joints.elements.iter().flat_map(|element| element.forces(&u)) {
+            balance.support.add(full.mesh.nodes[node as usize], force.map(|f| -f));
+        }
         let text = balance_text(&balance) + &torques_text(system.k.comm(), full, &balance);
         Ok(EquilibriumChecks { pairs: balance.pairs, text })
     }

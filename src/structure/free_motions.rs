@@ -1,15 +1,16 @@
-//! Unconstrained bodies: rigid-body motions that no support, connector or contact resists.
+//! Unconstrained bodies: rigid-body motions that no support, joint or contact resists.
 //!
 //! Every body of parts that share nodes has six rigid motions `q` about its centroid, rotations scaled by its size.
-//! Each support, connector and closed contact point is a linear functional of them, `s = R q`; motions with `R q = 0`
-//! are free. They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a body along an
-//! axis, a contact pair, a connector) has the same say whatever its number of points and the model's unit of length.
+//! Each support, closed contact point and row of a joint is a linear functional of them, `s = R q`; motions with
+//! `R q = 0` are free. They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a body
+//! along an axis, a contact pair, a joint) has the same say whatever its number of points and the model's unit of
+//! length.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use pathfinding::undirected::connected_components::separate_components;
 
 use crate::algebra::cross;
-use crate::assembly::ConnectorElement;
+use crate::assembly::Joints;
 use crate::contact::interface::Interface;
 use crate::contact::law::Tangential;
 use crate::mesh::{Mesh, Numbering};
@@ -132,21 +133,21 @@ fn extents(comm: &Comm, own: impl Iterator<Item = ([f64; 3], usize)> + Clone, n:
 }
 
 /// The free motions of a model; none where every body is held. `held` says which displacements are zero. Collective:
-/// each rank has a piece of the mesh, with all nodes of contacts, supports and connectors.
+/// each rank has a piece of the mesh, with all nodes of contacts, supports and joints.
 pub fn free_motions(
     comm: &Comm,
     mesh: &Mesh,
     nodes: &Numbering,
     interface: &Interface,
     held: &[[bool; 3]],
-    links: &[ConnectorElement],
+    joints: &Joints,
 ) -> Vec<FreeMotion> {
     let bodies = Bodies::new(comm, mesh, nodes);
     let width = 6 * bodies.parts.len();
     let mut resistance = Resistance { bodies: &bodies, mesh, gram: DMatrix::zeros(width, width) };
     resistance.add_supports(held);
     resistance.add_contacts(interface);
-    resistance.add_connectors(links);
+    resistance.add_joints(joints);
     null_space(resistance.gram, &bodies)
 }
 
@@ -189,14 +190,16 @@ impl Resistance<'_> {
         }
     }
 
-    fn add_connectors(&mut self, links: &[ConnectorElement]) {
-        for link in links {
-            for (values, _) in link.motion.rows.iter().zip(link.stiffness).filter(|(_, k)| *k > 0.0) {
+    fn add_joints(&mut self, joints: &Joints) {
+        let n_elements = joints.n_elements();
+        for element in &joints.elements {
+            for (values, _) in element.rows.iter().zip(&element.stiffness).filter(|(_, k)| **k > 0.0) {
                 // A rotation has the unit 1/m: taken times the size of the node set, it is a displacement as all
                 // others are.
                 let size = values.iter().map(|v| v.abs()).sum::<f64>();
-                let at_nodes = link.nodes.iter().copied().zip(values.as_chunks().0.iter().copied());
-                self.add(size.powi(-2), &at_nodes.collect::<Vec<_>>());
+                let at_nodes = element.nodes.iter().copied().zip(values.as_chunks().0.iter().copied());
+                let weight = size.powi(-2) / n_elements[element.joint] as f64;
+                self.add(weight, &at_nodes.collect::<Vec<_>>());
             }
         }
     }

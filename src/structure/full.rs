@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::assembly::{self, Boundary, Connectivity, ConnectorElement, Elements, Solids, System};
+use crate::assembly::joints::Sets;
+use crate::assembly::{self, Boundary, Connectivity, Elements, Joints, Solids, System};
 use crate::contact::search::Team;
 use crate::contact::{ContactPair, Interface, Response};
 use crate::deck::DeckSummary;
@@ -34,8 +35,8 @@ pub struct FullModel {
     pub loads: Vec<(u32, [f64; 3])>,
     /// Which displacements of each node are zero.
     pub held: Vec<[bool; 3]>,
-    /// Connectors.
-    pub links: Vec<ConnectorElement>,
+    /// Connectors, ties, rigid sets, equations and point masses.
+    pub joints: Joints,
     /// What was understood of the deck, where there is one.
     pub deck: Option<DeckSummary>,
 }
@@ -47,14 +48,14 @@ const SMALLEST_OVERLAP: f64 = 1e-8;
 pub struct Families<'a> {
     /// The solid elements.
     pub solids: Solids<'a>,
-    /// The connectors.
-    pub links: &'a Vec<ConnectorElement>,
+    /// The joints.
+    pub joints: &'a Joints,
 }
 
 impl Families<'_> {
     /// All of them, as the assembly takes them.
     pub fn list(&self) -> [&dyn Elements; 2] {
-        [&self.solids, self.links]
+        [&self.solids, self.joints]
     }
 }
 
@@ -111,12 +112,12 @@ impl FullModel {
     pub fn new(model: Model, piece: Piece, team: &dyn Team) -> Result<FullModel> {
         let Piece { mesh, nodes } = piece;
         model.check_against(&mesh)?;
-        assembly::require_supported(&model, &mesh)?;
         let interface = Interface::build(&model, &mesh, team)?;
-        let loads = assembly::loads(&model, &mesh)?;
         let held = assembly::constraints(&model, &mesh)?;
-        let links = assembly::connector_elements(&model, &mesh)?;
-        Ok(FullModel { model, mesh, nodes, interface, loads, held, links, deck: None })
+        let sets = Sets::new(&model, &mesh, &nodes)?;
+        let loads = assembly::loads(&model, &mesh, &sets)?;
+        let joints = Joints::new(&model, &mesh, &nodes, &sets, team)?;
+        Ok(FullModel { model, mesh, nodes, interface, loads, held, joints, deck: None })
     }
 
     /// Refuses a brake of which a part is unconstrained, or constrained by contacts that nothing presses. Collective.
@@ -159,7 +160,7 @@ impl FullModel {
 
     /// The motions that nothing resists, a line each, with the contacts of an interface. Collective.
     fn free_motions(&self, comm: &Comm, interface: &Interface) -> String {
-        let free = free_motions(comm, &self.mesh, &self.nodes, interface, &self.held, &self.links);
+        let free = free_motions(comm, &self.mesh, &self.nodes, interface, &self.held, &self.joints);
         free.iter().map(|motion| format!("  {motion}")).collect::<Vec<_>>().join("\n")
     }
 
@@ -232,7 +233,7 @@ impl FullModel {
     /// # Errors
     /// [`Error::Input`] where a part has no material.
     pub fn families(&self) -> Result<Families<'_>> {
-        Ok(Families { solids: Solids::new(&self.model, &self.mesh)?, links: &self.links })
+        Ok(Families { solids: Solids::new(&self.model, &self.mesh)?, joints: &self.joints })
     }
 
     /// Assembles M, C, K and the load. Collective.

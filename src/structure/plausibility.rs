@@ -19,6 +19,8 @@ const SIZE: [f64; 2] = [0.01, 10.0];
 /// Normal stiffness of contacts over E/h of the softer neighbour: below, surfaces visibly overlap; above, digits are
 /// lost.
 const CONTACT_RATIO: [f64; 2] = [1e-3, 1e4];
+/// Facets of a tie's slave over those of its master: above, nodes of the master between those of the slave are free.
+const TIE_RATIO: f64 = 1.25;
 /// N/m3 in a N/mm3.
 const PER_CUBIC_MILLIMETRE: f64 = 1e9;
 
@@ -80,6 +82,17 @@ pub fn contact_stiffness(contact: &str, stiffness: f64, neighbour: f64) -> Optio
     ))
 }
 
+/// The facets of a tie's slave beside those of its master, edges in m.
+pub fn tie_sizes(tie: &str, [slave, master]: [f64; 2]) -> Option<String> {
+    let ratio = slave / master;
+    (ratio > TIE_RATIO).then(|| {
+        format!(
+            "the facets of the slave of tie {tie:?} are {ratio:.1} times as long as those of its master, whose nodes between \
+             those of the slave are then free. Swap slave and master"
+        )
+    })
+}
+
 /// Everything about a brake that can hardly be meant. Collective.
 pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     let model = &full.model;
@@ -100,9 +113,10 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
             softest[0].min(softest[1]) / full.mesh.surfaces[&contact.slave].facet_size(pair.statistics.area);
         contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())
     });
+    let ties = model.ties.iter().zip(&full.joints.ties).filter_map(|(tie, own)| tie_sizes(&tie.name, own.sizes));
     let extent = full.extents(comm).into_iter().fold(0.0, f64::max);
     let size = size(extent, model.mesh_unit);
-    stiffness.chain(mass).chain(contacts).chain(size).chain(stiff_elements(full, comm)).collect()
+    stiffness.chain(mass).chain(contacts).chain(ties).chain(size).chain(stiff_elements(full, comm)).collect()
 }
 
 /// Parts that have elements too stiff for modes that bend. Collective.
@@ -192,6 +206,12 @@ mod tests {
         warns(density("iron", 7.1e6), "in g/m3?");
         warns(density("iron", 99.0), "is 9.900e1 kg/m3. Give kg/m3");
         warns(density("iron", 3.1e4), "Give kg/m3");
+    }
+
+    #[test]
+    fn ties() {
+        assert_eq!(tie_sizes("bond", [1.24e-3, 1e-3]), None);
+        warns(tie_sizes("bond", [1.5e-3, 1e-3]), "slave of tie \"bond\" are 1.5 times as long");
     }
 
     #[test]

@@ -197,7 +197,7 @@ fn ours(brake: &FullModel, system: &System) -> (Vec<f64>, Vec<Response>) {
 fn compare(comm: &Comm, brake: &FullModel) {
     let families = brake.families().unwrap();
     let (exact, responses) = ours(brake, &brake.assemble(comm, &families).unwrap());
-    let (same, _) = ours(brake, &brake.assemble_families(comm, &[&TheirMass::of(brake), families.links]).unwrap());
+    let (same, _) = ours(brake, &brake.assemble_families(comm, &[&TheirMass::of(brake), families.joints]).unwrap());
     let theirs = calculix(&deck(brake, &responses));
     assert_eq!(theirs.len(), N_MODES);
     println!("mode     CalculiX Hz       squeal Hz  difference  with 4 points for the mass");

@@ -9,6 +9,7 @@ mod eigensolvers;
 mod explain;
 mod factors;
 mod friction_law;
+mod joints;
 mod manufactured_solution;
 mod super_element;
 #[path = "../support/mod.rs"]

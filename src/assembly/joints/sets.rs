@@ -1,0 +1,129 @@
+//! The mean motions of node sets: what connectors, point masses and forces at points act on.
+
+use nalgebra::Matrix3;
+
+use crate::Result;
+use crate::contact::surface_points::nodal_weights;
+use crate::element::coupling::{Cloud, MeanMotion, mean_motion};
+use crate::mesh::{Mesh, Numbering};
+use crate::model::{GROUND, Model};
+
+use super::rigid::{Body, base};
+
+/// The named node sets of a mesh, and which of them move rigidly.
+pub struct Sets<'a> {
+    mesh: &'a Mesh,
+    /// The model's rigid bodies, in its order.
+    pub bodies: Vec<Body>,
+}
+
+/// The mean motion of a node set.
+pub struct SetMotion {
+    /// The nodes that it depends on.
+    pub nodes: Vec<u32>,
+    /// Their blocks.
+    pub motion: MeanMotion,
+}
+
+impl SetMotion {
+    /// Nodal forces (N) with this resultant (N) and moment (N m) at the reference point.
+    pub fn spread(&self, force: [f64; 3], moment: [f64; 3]) -> Vec<(u32, [f64; 3])> {
+        self.nodes.iter().copied().zip(self.motion.spread(force, moment)).collect()
+    }
+
+    /// Takes the rotation along the columns of `axes`: `R^T phi` in place of `phi`.
+    pub fn turn_rotation(&mut self, axes: &Matrix3<f64>) {
+        for block in &mut self.motion.rotation {
+            let turned = axes.transpose() * Matrix3::from_fn(|i, j| block[i][j]);
+            *block = std::array::from_fn(|i| std::array::from_fn(|j| turned[(i, j)]));
+        }
+    }
+}
+
+/// Nodes with weights.
+struct WeightedNodes {
+    nodes: Vec<u32>,
+    weights: Vec<f64>,
+    /// Coordinates, m.
+    positions: Vec<[f64; 3]>,
+}
+
+impl WeightedNodes {
+    fn cloud(&self) -> Cloud<'_> {
+        Cloud { nodes: &self.positions, weights: &self.weights }
+    }
+}
+
+impl<'a> Sets<'a> {
+    /// The sets of a mesh under a model.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) where a rigid set is missing or lies on a line.
+    pub fn new(model: &Model, mesh: &'a Mesh, numbering: &Numbering) -> Result<Sets<'a>> {
+        let mut bodies = Vec::new();
+        for own in &model.rigid_bodies {
+            let body = mesh.node_set(&own.nodes).ok_or_else(|| missing(&own.nodes)).and_then(|nodes| {
+                let base = base(&nodes, &mesh.nodes, numbering.labels())?;
+                Ok(Body { nodes, base })
+            });
+            let refuse = |message: String| model.error(own.place, format_args!("rigid {:?}: {message}", own.name));
+            bodies.push(body.map_err(refuse)?);
+        }
+        Ok(Sets { mesh, bodies })
+    }
+
+    /// Whether a name stands for what does not move.
+    pub fn is_ground(&self, name: &str) -> bool {
+        name == GROUND && self.mesh.node_set(name).is_none()
+    }
+
+    /// The nodes of all rigid bodies.
+    pub fn rigid_nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        self.bodies.iter().flat_map(|body| body.nodes.iter().copied())
+    }
+
+    /// The centroid of a set, m.
+    ///
+    /// # Errors
+    /// A text where there is no such set.
+    pub fn centroid(&self, name: &str) -> std::result::Result<[f64; 3], String> {
+        self.weighted(name).map(|own| own.cloud().centroid())
+    }
+
+    /// The mean motion of a set at a point (m), or at its centroid. A set within a rigid body has that of the body's
+    /// base, so that sets of thousands of nodes are cheap.
+    ///
+    /// # Errors
+    /// A text: there is no such set, or it lies on a line.
+    pub fn motion(&self, name: &str, at: Option<[f64; 3]>) -> std::result::Result<SetMotion, String> {
+        let own = self.weighted(name)?;
+        let at = at.unwrap_or_else(|| own.cloud().centroid());
+        let is_within = |body: &&Body| own.nodes.iter().all(|node| body.nodes.binary_search(node).is_ok());
+        let acting = match self.bodies.iter().find(is_within) {
+            Some(body) => self.alike(body.base.to_vec()),
+            None => own,
+        };
+        let motion = mean_motion(acting.cloud(), at).map_err(|error| format!("{name:?}: {error}"))?;
+        Ok(SetMotion { nodes: acting.nodes, motion })
+    }
+
+    /// The nodes of a set with their weights: of a surface the midsides (the corners where it is linear) with their
+    /// shares of the area, of any other set all nodes with equal weights.
+    fn weighted(&self, name: &str) -> std::result::Result<WeightedNodes, String> {
+        let Some(surface) = self.mesh.surfaces.get(name) else {
+            return self.mesh.node_set(name).map(|nodes| self.alike(nodes)).ok_or_else(|| missing(name));
+        };
+        let (nodes, weights) = nodal_weights(surface, &self.mesh.nodes).into_iter().unzip();
+        Ok(WeightedNodes { weights, ..self.alike(nodes) })
+    }
+
+    /// Nodes with equal weights.
+    fn alike(&self, nodes: Vec<u32>) -> WeightedNodes {
+        let positions = nodes.iter().map(|&n| self.mesh.nodes[n as usize]).collect();
+        WeightedNodes { weights: vec![1.0; nodes.len()], nodes, positions }
+    }
+}
+
+fn missing(name: &str) -> String {
+    format!("the mesh has no {name:?}")
+}

@@ -1,0 +1,81 @@
+//! The solid elements of a model on its mesh, by part.
+
+use crate::element::solid;
+use crate::mesh::Mesh;
+use crate::model::{Model, Part};
+use crate::{Error, Result};
+
+use super::{Connectivity, ElementMatrices, Elements};
+
+/// The solid elements of a mesh with the materials of their parts.
+pub struct Solids<'a> {
+    mesh: &'a Mesh,
+    /// Model part of each mesh part.
+    parts: Vec<&'a Part>,
+}
+
+impl<'a> Solids<'a> {
+    /// Matches the mesh's parts with the model's by name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a part of the mesh is not in the model.
+    pub fn new(model: &'a Model, mesh: &'a Mesh) -> Result<Solids<'a>> {
+        let part = |name: &String| {
+            model.parts.iter().find(|part| part.name == *name).ok_or_else(|| {
+                Error::input(format!("{}: the mesh's part {name:?} has no material", model.file.display()))
+            })
+        };
+        Ok(Solids { mesh, parts: mesh.parts.iter().map(part).collect::<Result<_>>()? })
+    }
+
+    /// Von Mises stress (Pa) of the mean stress of element `e`, for nodal displacements `u` (m).
+    pub fn von_mises(&self, e: usize, u: &[[f64; 3]]) -> f64 {
+        let element = self.mesh.elements.get(e);
+        let displacements: Vec<[f64; 3]> = element.nodes.iter().map(|&n| u[n as usize]).collect();
+        let elasticity = &self.part(e).material.elasticity;
+        let stress = solid::mean_stress(element.kind, &self.mesh.element_nodes(e), elasticity, &displacements);
+        solid::von_mises(&stress)
+    }
+
+    /// Model part of element `e`.
+    pub fn part(&self, e: usize) -> &'a Part {
+        self.parts[self.mesh.elements.get(e).part as usize]
+    }
+}
+
+impl Connectivity for Solids<'_> {
+    fn len(&self) -> usize {
+        self.mesh.elements.len()
+    }
+
+    fn nodes(&self, e: usize) -> &[u32] {
+        self.mesh.elements.get(e).nodes
+    }
+}
+
+impl Elements for Solids<'_> {
+    fn mass_couples_axes(&self) -> bool {
+        false
+    }
+
+    /// `C = alpha M + beta K` with the part's own coefficients; the mass does not couple axes.
+    fn matrices(&self, e: usize, out: &mut ElementMatrices) {
+        let (kind, x, part) = (self.mesh.elements.get(e).kind, self.mesh.element_nodes(e), self.part(e));
+        let n = x.len();
+        out.k.resize(9 * n * n, 0.0);
+        out.m.resize(n * n, 0.0);
+        solid::stiffness(kind, &x, &part.material.elasticity, &mut out.k);
+        solid::scalar_mass(kind.shape(), &x, part.material.density, &mut out.m);
+        let (alpha, beta) = (part.rayleigh.alpha, part.rayleigh.beta);
+        out.c.clear();
+        if alpha == 0.0 && beta == 0.0 {
+            return;
+        }
+        out.c.extend(out.k.iter().map(|k| beta * k));
+        for a in 0..n {
+            for b in 0..n {
+                (0..3).for_each(|i| out.c[3 * n * (3 * a + i) + 3 * b + i] += alpha * out.m[n * a + b]);
+            }
+        }
+    }
+}
