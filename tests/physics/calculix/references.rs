@@ -82,7 +82,7 @@ pub fn difference(comm: &Comm, deck: &Deck, converted: Converted, reference: &Re
             Ok(off / size)
         }
         Reference::Frequencies(theirs) => {
-            let families = [&TheirMass::of(&brake) as &dyn squeal::assembly::Elements, &brake.links];
+            let families = [&TheirMass::of(&brake) as &dyn squeal::assembly::Elements, &brake.joints];
             let system = brake.assemble_families(comm, &families).unwrap();
             let ours = frequencies(&brake, &system, theirs)?;
             let off = ours.iter().zip(theirs).map(|(ours, theirs)| (ours / theirs - 1.0).abs());
