@@ -12,6 +12,7 @@ use std::path::Path;
 
 use squeal::analysis::{ExternalOptions, external_modes};
 use squeal::matrices::family;
+use squeal::model::InstabilityCriterion;
 use squeal::{Error, Result, Session};
 
 const FILES: [(&str, &str); 4] = [
@@ -34,7 +35,13 @@ pub fn main() -> Result<()> {
         std::fs::write(&path, text).map_err(Error::io(&path))?;
     }
     let family = family::read(&folder.path().join("hoffmann.toml"))?;
-    let options = ExternalOptions { band: [0.0, 1.0], values: vec![0.5, 0.8], branches: true, shapes: false };
+    let options = ExternalOptions {
+        band: [0.0, 1.0],
+        criterion: InstabilityCriterion::default(),
+        values: vec![0.5, 0.8],
+        branches: true,
+        shapes: false,
+    };
     let results = external_modes(&comm, &family, &options, &mut ())?;
     for value in &results.values {
         for mode in &value.modes {

@@ -48,10 +48,10 @@
 //! | `hdf` | what all HDF5 files of the program share | |
 //! | `algebra` | vectors of three and matrices of 3 x 3 | |
 //! | [`native`] | the only `unsafe`: MPI, LAPACK, PETSc, SLEPc, MUMPS, METIS | [`native::Session::start`] |
-//! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
 //! | [`element`] | solid elements, facets, quadrature, couplings: pure functions | [`element::solid`] |
 //! | [`mesh`] | nodes, elements by part, surfaces; Gmsh meshes | [`mesh::read`] |
 //! | [`model`] | what is analysed, from the user's file, checked, in SI units | [`model::read`] |
+//! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
 //! | [`deck`] | input files of Abaqus and CalculiX, read and written | [`deck::read`] |
 //! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
 //! | [`matrices`] | external M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |

@@ -3,16 +3,15 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-use num_complex::Complex64;
-
 use crate::matrices::ExternalMatrices;
 use crate::matrices::family::MatrixFamily;
+use crate::model::InstabilityCriterion;
 use crate::native::{Comm, Vector};
 use crate::results::{ExternalMode, ExternalResults, ExternalValue};
 use crate::stability::Mode;
 use crate::{ErrorKind, Result};
 
-use super::external_sweep::{ExternalModes, ExternalSweep};
+use super::external_sweep::{ExternalModes, ExternalSweep, is_rigid};
 use super::observer::{Event, Observer};
 
 /// What [`external_modes`] is asked for.
@@ -20,6 +19,8 @@ use super::observer::{Event, Observer};
 pub struct ExternalOptions {
     /// Frequency band, Hz.
     pub band: [f64; 2],
+    /// What counts as an unstable mode.
+    pub criterion: InstabilityCriterion,
     /// Values of the parameter; one where nothing depends on it.
     pub values: Vec<f64>,
     /// Whether modes are followed over the parameter.
@@ -59,8 +60,9 @@ pub fn external_modes(
             true => add(&mut results, &matrices, options, value, modes),
             false => Ok(()),
         };
-        let (diagram, outcome) = sweep.follow(&values, each, observer)?;
+        let (diagram, outcome) = sweep.follow(&values, options.criterion, each, observer)?;
         results.diagram = Some(diagram);
+        results.notes.extend(rigid_note(&results));
         outcome
     } else {
         options.values.iter().try_for_each(|&value| {
@@ -74,6 +76,15 @@ pub fn external_modes(
     }
     (results.seconds, results.n_ranks) = (start.elapsed().as_secs_f64(), comm.size());
     Ok(results)
+}
+
+/// How many modes are not followed because they are rigid motions at all values: real eigenvalues, which come in
+/// pairs, count half.
+fn rigid_note(results: &ExternalResults) -> Option<String> {
+    let lambdas = results.values.first()?.modes.iter().map(|mode| mode.lambda);
+    let halves = lambdas.filter(|&z| is_rigid(z, results.band)).map(|z| if z.im == 0.0 { 1 } else { 2 });
+    let n = halves.sum::<usize>().div_ceil(2);
+    (n > 0).then(|| format!("rigid-body modes at 0 Hz, left out of the branches: {n}"))
 }
 
 /// What is known before any mode is.
@@ -94,6 +105,7 @@ fn empty(
         symmetry: matrices.symmetry,
         is_damped: matrices.is_damped(),
         band: options.band,
+        criterion: options.criterion,
         evidence: sweep.evidence(),
         values: Vec::new(),
         diagram: None,
@@ -126,7 +138,7 @@ fn add(
             number: modes.len() + 1,
             lambda: mode.lambda,
             backward_error: mode.backward_error,
-            is_unstable: mode.lambda.re > growth_threshold(mode.lambda, band),
+            is_unstable: !is_rigid(mode.lambda, band) && mode.lambda.re > options.criterion.limit(mode.lambda, 0.0),
             largest_row: results.rows.get(row).map_or(0, |row| row + 1),
             largest_dof: results.names.as_ref().map(|names| names[row]),
         });
@@ -160,22 +172,4 @@ fn largest(matrices: &ExternalMatrices, [re, im]: &[Vec<f64>; 2]) -> (f64, usize
     let largest = comm.max_loc(own);
     let here = moduli.iter().position(|&modulus| modulus == own).unwrap_or_default();
     (largest.value, comm.broadcast_value(largest.rank(), matrices.owned.start + here))
-}
-
-/// Growth rates above this are no noise, 1/s: a millionth of the frequency; of a real eigenvalue, as which the double
-/// zero of a free motion may come out, a hundred-thousandth of the band's end.
-fn growth_threshold(lambda: Complex64, band: [f64; 2]) -> f64 {
-    if lambda.im == 0.0 { 1e-5 * TAU * band[1] } else { 1e-6 * lambda.im.abs() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn growth_counts_above_a_millionth_of_the_frequency() {
-        let band = [0.0, 1000.0];
-        assert!((growth_threshold(Complex64::new(0.0, 1e4), band) - 1e-2).abs() < 1e-15);
-        assert!((growth_threshold(Complex64::new(3.0, 0.0), band) - 1e-2 * TAU).abs() < 1e-12);
-    }
 }

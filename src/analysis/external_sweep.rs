@@ -8,9 +8,10 @@ use super::family::{FrictionFamily, Snapshot, Vectors, widened};
 use super::observer::{Event, Observer};
 use crate::equilibrium::LabelledFactor;
 use crate::matrices::{ExternalMatrices, Sums};
+use crate::model::InstabilityCriterion;
 use crate::native::{Factor, FactorKind, Mck, Precision};
 use crate::stability::{
-    self, Band, BandRequest, BandSolver, EigenOptions, Evidence, QuadraticProblem, condition, condition_at,
+    self, Band, BandRequest, BandSolver, EigenOptions, Evidence, Mode, QuadraticProblem, condition, condition_at,
 };
 use crate::tracking::{Diagram, Options, track};
 use crate::{Error, Result};
@@ -48,12 +49,19 @@ const ACCURACY: f64 = 1e-7;
 /// Hopf points are bracketed this closely, as a fraction of the parameter's range.
 const BRACKET: f64 = 1e-6;
 
-/// Up to so many rows eigenvalues have nearly all digits.
+/// Up to so many rows a factor costs nothing.
 const SMALL: usize = 1000;
+/// Eigenvalues up to this fraction of the band's end are rigid-body modes: a double zero comes out as large as that.
+const RIGID: f64 = 1e-5;
 
-/// The growth rate (1/s) from which an eigenvalue of `n` rows is unstable beyond noise.
-fn threshold(n: usize) -> fn(Complex64) -> f64 {
-    if n <= SMALL { |lambda| 1e-9 * lambda.norm() } else { |lambda| 1e-6 * lambda.norm() }
+/// Whether an eigenvalue counts as zero where a band (Hz) is analysed.
+pub fn is_rigid(lambda: Complex64, band: [f64; 2]) -> bool {
+    lambda.norm() <= RIGID * TAU * band[1]
+}
+
+/// The places of the modes whose eigenvalues count as zero.
+fn rigid_modes(modes: &[Mode], band: [f64; 2]) -> Vec<usize> {
+    (0..modes.len()).filter(|&i| is_rigid(modes[i].lambda, band)).collect()
 }
 
 impl<'a> ExternalSweep<'a> {
@@ -122,17 +130,20 @@ impl<'a> ExternalSweep<'a> {
     }
 
     /// Modes at all values, followed as branches, with their Hopf points; `each` is given those of every value that is
-    /// solved. Collective.
+    /// solved. Where the first value has rigid-body modes, eigenvalues that count as zero are left out at all values;
+    /// elsewhere an eigenvalue may pass zero, which is a divergence. Collective.
     ///
     /// # Errors
     /// See [`ExternalSweep::modes`] and [`track`]. What was found before an error is in the diagram.
     pub fn follow(
         &mut self,
         values: &[f64],
+        criterion: InstabilityCriterion,
         mut each: impl FnMut(f64, &ExternalModes) -> Result<()>,
         observer: &mut dyn Observer,
     ) -> Result<(Diagram, Result<()>)> {
         let (given, band) = (self.given, self.band);
+        let mut is_free = None;
         let first = given.at(values[0])?;
         let mut solve = |value: f64| {
             let sums = given.at(value)?;
@@ -141,12 +152,16 @@ impl<'a> ExternalSweep<'a> {
             let found = &modes.band.modes;
             let left = self.solver.left_vectors(&self.problem(&sums), &mut self.lu, found, |_| ACCURACY)?;
             let right = stability::right_vectors(&sums.m, found)?;
-            Ok(Snapshot::of(&modes.band, band[1], Vectors { right, left, c: Some(sums.c), m: Some(sums.m) }))
+            let mut rigid = rigid_modes(found, band);
+            if !*is_free.get_or_insert(!rigid.is_empty()) {
+                rigid.clear();
+            }
+            Ok(Snapshot::of(&modes.band, band[1], &rigid, Vectors { right, left, c: Some(sums.c), m: Some(sums.m) }))
         };
         let mut family = FrictionFamily { solutions: &mut solve, m: &first.m, c: &first.c };
         let range = values.iter().fold([f64::MAX, f64::MIN], |[low, high], v| [low.min(*v), high.max(*v)]);
         let tolerance = BRACKET * (range[1] - range[0]);
-        let options = Options { band: band.map(|f| TAU * f), tolerance, threshold: threshold(given.n) };
+        let options = Options { band: band.map(|f| TAU * f), tolerance, criterion, rigid: 0.0 };
         Ok(track(&mut family, values, &options))
     }
 
@@ -238,11 +253,5 @@ mod tests {
         with_sweep(UNIT, [40.0, 10.0, -10.0, 40.0], |sweep| {
             assert_eq!(sweep.evidence(), Evidence::Repetition { estimated: true });
         });
-    }
-
-    #[test]
-    fn eigenvalues_of_few_rows_are_stable_to_more_digits() {
-        let lambda = Complex64::new(0.0, 1e4);
-        assert_eq!((threshold(SMALL)(lambda), threshold(SMALL + 1)(lambda)), (1e-9 * 1e4, 1e-6 * 1e4));
     }
 }

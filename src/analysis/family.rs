@@ -9,8 +9,9 @@ use num_complex::Complex64;
 
 use super::sweep::Sweep;
 use crate::Result;
+use crate::model::InstabilityCriterion;
 use crate::native::{Block, Matrix, Vector};
-use crate::stability::{Band, growth_threshold};
+use crate::stability::{Band, RIGID_RATE};
 use crate::tracking::{Family, Options};
 
 /// The modes at one value with right and left vectors, and what their products need.
@@ -109,8 +110,8 @@ pub fn widened(band: [f64; 2]) -> [f64; 2] {
 }
 
 /// How modes of a band (Hz) are followed over the friction coefficient.
-pub fn tracking_options(band: [f64; 2]) -> Options {
-    Options { band: band.map(|f| TAU * f), tolerance: TOLERANCE, threshold: growth_threshold }
+pub fn tracking_options(band: [f64; 2], criterion: InstabilityCriterion) -> Options {
+    Options { band: band.map(|f| TAU * f), tolerance: TOLERANCE, criterion, rigid: RIGID_RATE }
 }
 
 impl Snapshot {
@@ -134,17 +135,21 @@ impl Snapshot {
 
     /// With the accuracy of stable modes' left vectors.
     fn with(sweep: &mut Sweep, band: &Band, end: f64, of_stable: f64) -> Result<Snapshot> {
-        let left = sweep.left_vectors(&band.modes, |mode| if mode.is_unstable() { EXPLAINS } else { of_stable })?;
+        let left = sweep.left_vectors(&band.modes, |mode| if mode.grows() { EXPLAINS } else { of_stable })?;
         let right = sweep.right_vectors(&band.modes)?;
-        Ok(Snapshot::of(band, end, Vectors { right, left, c: sweep.own_damping()?, m: None }))
+        Ok(Snapshot::of(band, end, &[], Vectors { right, left, c: sweep.own_damping()?, m: None }))
     }
 
     /// The modes of a band with their vectors.
-    pub(super) fn of(band: &Band, end: f64, vectors: Vectors) -> Snapshot {
-        let n = band.modes.len();
+    /// Those at the places `rigid` are left out: rounding alone moves rigid-body modes.
+    pub(super) fn of(band: &Band, end: f64, rigid: &[usize], vectors: Vectors) -> Snapshot {
+        let followed: Vec<usize> = (0..band.modes.len()).filter(|i| !rigid.contains(i)).collect();
         let low = |i: &usize| band.modes[*i].lambda.im > 0.0 && band.modes[*i].lambda.im < BEYOND * TAU * end;
-        let places: Vec<(usize, bool)> =
-            (0..n).map(|i| (i, false)).chain((0..n).filter(low).map(|i| (i, true))).collect();
+        let places: Vec<(usize, bool)> = followed
+            .iter()
+            .map(|&i| (i, false))
+            .chain(followed.iter().copied().filter(low).map(|i| (i, true)))
+            .collect();
         let lambda = |&(i, conjugate): &(usize, bool)| {
             let lambda = band.modes[i].lambda;
             if conjugate { lambda.conj() } else { lambda }

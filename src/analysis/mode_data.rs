@@ -2,7 +2,7 @@
 
 use crate::Result;
 use crate::native::Vector;
-use crate::results::{ModeData, Shape, Source, largest};
+use crate::results::{About, ModeData, Shape, Source, largest};
 use crate::stability::{Band, Mode};
 use crate::structure::SurfaceMotion;
 
@@ -19,19 +19,21 @@ pub(super) struct UnstableMode<'a> {
     pub shape: &'a Shape,
 }
 
-/// The modes within a band (Hz). Where the value was asked for, unstable ones get a shape on the whole surface and the
-/// sources that `explain` finds. Collective.
+/// The modes within the band of a study. Where the value was asked for, unstable ones get a shape on the whole surface
+/// and the sources that `explain` finds. Collective.
 pub(super) fn mode_data(
     motion: &mut SurfaceMotion,
     found: &Band,
-    [from, to]: [f64; 2],
     asked: bool,
+    about: &About,
     mut explain: impl FnMut(UnstableMode) -> Result<Vec<Source>>,
 ) -> Result<ValueResult> {
+    let [from, to] = about.band;
     let is_within = |mode: &Mode| (from..=to).contains(&mode.frequency());
     let within: Vec<(usize, &Mode)> = found.modes.iter().enumerate().filter(|(_, mode)| is_within(mode)).collect();
     let modes: Vec<&Mode> = within.iter().map(|(_, mode)| *mode).collect();
-    let mut data = shapes(motion, &modes, |mode| asked && mode.is_unstable())?;
+    let mut data = shapes(motion, &modes, |mode| asked && mode.is_unstable(about.criterion))?;
+    data.iter_mut().zip(&modes).for_each(|(data, mode)| data.unstable = mode.is_unstable(about.criterion));
     for ((number, &(index, mode)), data) in (1..).zip(&within).zip(&mut data) {
         if let Some(shape) = &data.shape {
             data.sources = explain(UnstableMode { index, number, mode, shape })?;
@@ -62,7 +64,7 @@ fn one(mode: &Mode, samples: &[Vec<f64>], all: Option<&[Vec<f64>]>) -> ModeData 
     ModeData {
         lambda: mode.lambda,
         backward_error: mode.backward_error,
-        unstable: mode.is_unstable(),
+        unstable: false,
         sampled: Shape::over(&samples[0], &samples[1], divisor),
         shape: all.map(|all| Shape::over(&all[0], &all[1], divisor)),
         sources: Vec::new(),

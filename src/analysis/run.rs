@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
+use crate::model::InstabilityCriterion;
 use crate::native::{Comm, libraries};
 use crate::output::fields::FieldWriter;
 use crate::output::folder::Folder;
@@ -44,6 +45,8 @@ pub(super) struct Job {
     pub values: Vec<f64>,
     /// The band analysed, Hz.
     pub band: [f64; 2],
+    /// What counts as an unstable mode.
+    pub criterion: InstabilityCriterion,
     /// The results as text for people, given with the folder's name.
     pub summary: fn(&Results, &str) -> String,
 }
@@ -163,6 +166,7 @@ fn about(comm: &Comm, structure: &Structure, job: &Job, output: Option<&Output>)
         command: output.map_or_else(String::new, |output| output.command.clone()),
         n_ranks: comm.size(),
         band: job.band,
+        criterion: job.criterion,
         friction_values: job.values.clone(),
         ..structure.about(comm)?
     })
@@ -175,6 +179,7 @@ fn identity(job: &Job, output: &Output, about: &About) -> Vec<(&'static str, Str
         ("analysis", format!("{}{}", job.name, job.options)),
         ("friction values", numbers(&job.values)),
         ("band", numbers(&job.band)),
+        ("unstable", job.criterion.to_string()),
         ("SHA-256 of the model", about.model_digest.clone()),
         ("SHA-256 of the mesh", about.mesh_digest.clone()),
         ("number of ranks", about.n_ranks.to_string()),
@@ -349,6 +354,7 @@ mod tests {
             options: options.into(),
             values: values.to_vec(),
             band: [0.0, 6000.0],
+            criterion: InstabilityCriterion::default(),
             summary: |_, _| String::new(),
         }
     }
@@ -362,6 +368,11 @@ mod tests {
         for other in [
             identity(&job(" --no-branches", &[0.1, 0.2]), &output, &about),
             identity(&job("", &[0.1, 0.3]), &output, &about),
+            identity(
+                &Job { criterion: InstabilityCriterion::GrowthRate(5.0), ..job("", &[0.1, 0.2]) },
+                &output,
+                &about,
+            ),
             identity(&Job { band: [0.0, 5000.0], ..job("", &[0.1, 0.2]) }, &output, &about),
             identity(&job("", &[0.1, 0.2]), &output, &About { n_ranks: 2, ..about.clone() }),
             identity(&job("", &[0.1, 0.2]), &output, &About { mesh_digest: "0".into(), ..about.clone() }),

@@ -4,10 +4,11 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use crate::equilibrium::Equilibrium;
+use crate::model::InstabilityCriterion;
 use crate::native::{Comm, Vector};
 use crate::output::fields::FieldWriter;
 use crate::output::summary;
-use crate::results::{Results, Source};
+use crate::results::{About, Results, Source};
 use crate::stability::{Complex, Mode};
 use crate::structure::Structure;
 use crate::tracking::track;
@@ -27,6 +28,8 @@ pub struct StabilityOptions {
     pub friction_values: Option<Vec<f64>>,
     /// Frequency band, Hz; the structure's own where there is none.
     pub band: Option<[f64; 2]>,
+    /// What counts as an unstable mode; the structure's own where there is none.
+    pub criterion: Option<InstabilityCriterion>,
     /// Whether modes are followed over the friction coefficient, which solves at more values to find where they become
     /// unstable.
     pub branches: bool,
@@ -39,7 +42,14 @@ pub struct StabilityOptions {
 impl Default for StabilityOptions {
     /// The structure's own values and band, with branches, nothing written.
     fn default() -> Self {
-        StabilityOptions { friction_values: None, band: None, branches: true, reduce_each: false, output: None }
+        StabilityOptions {
+            friction_values: None,
+            band: None,
+            criterion: None,
+            branches: true,
+            reduce_each: false,
+            output: None,
+        }
     }
 }
 
@@ -98,7 +108,14 @@ impl StabilityOptions {
         let values = order(values, follows);
         let given = [(self.reduce_each, " --reduce-each"), (!self.branches, " --no-branches")];
         let options = given.iter().filter(|(given, _)| *given).map(|(_, name)| *name).collect();
-        Ok(Job { name: "stability", options, values, band: structure.band(self.band)?, summary: summary::stability })
+        Ok(Job {
+            name: "stability",
+            options,
+            values,
+            band: structure.band(self.band)?,
+            criterion: self.criterion.unwrap_or(structure.criterion()),
+            summary: summary::stability,
+        })
     }
 }
 
@@ -113,7 +130,8 @@ fn order(mut values: Vec<f64>, follows: bool) -> Vec<f64> {
 /// Modes at all values, followed as branches, and at those in between that this needs.
 fn follow(run: &mut Run) -> Result<()> {
     let (system, values) = (run.system, run.values());
-    let options = tracking_options(run.results.about.band);
+    let About { band, criterion, .. } = run.results.about;
+    let options = tracking_options(band, criterion);
     let mut family = FrictionFamily { solutions: run, m: &system.m, c: &system.c };
     let (diagram, outcome) = track(&mut family, &values, &options);
     run.results.diagram = Some(diagram);
@@ -125,10 +143,10 @@ impl Solutions for Run<'_> {
     fn solve(&mut self, friction: f64) -> Result<Snapshot> {
         let snapshot = self.visit(friction, |run, equilibrium| {
             let (band, asked) = (run.results.about.band, run.is_asked(friction));
-            let Run { sweep, motion, fields, observer, .. } = run;
+            let Run { sweep, motion, fields, observer, results, .. } = run;
             let modes = sweep.modes(equilibrium, widened(band), *observer)?;
             let snapshot = Snapshot::new(sweep, &modes, band[1])?;
-            let found = mode_data(motion, &modes, band, asked, |unstable| {
+            let found = mode_data(motion, &modes, asked, &results.about, |unstable| {
                 write_and_explain(sweep, fields, equilibrium, &unstable, snapshot.left(unstable.index)?)
             })?;
             Ok(ValueResult { snapshot: Some(snapshot), ..found })
@@ -152,11 +170,11 @@ impl Solutions for Run<'_> {
 /// The modes at one value; left vectors of unstable ones alone.
 fn modes_at(run: &mut Run, equilibrium: &Equilibrium) -> Result<ValueResult> {
     let (band, asked) = (run.results.about.band, run.is_asked(equilibrium.friction));
-    let Run { sweep, motion, fields, observer, .. } = run;
+    let Run { sweep, motion, fields, observer, results, .. } = run;
     let modes = sweep.modes(equilibrium, band, *observer)?;
-    let any_unstable = modes.modes.iter().any(Mode::is_unstable);
-    let snapshot = any_unstable.then(|| Snapshot::of_unstable(sweep, &modes, band[1])).transpose()?;
-    mode_data(motion, &modes, band, asked, |unstable| match &snapshot {
+    let any_grows = modes.modes.iter().any(Mode::grows);
+    let snapshot = any_grows.then(|| Snapshot::of_unstable(sweep, &modes, band[1])).transpose()?;
+    mode_data(motion, &modes, asked, &results.about, |unstable| match &snapshot {
         Some(snapshot) => write_and_explain(sweep, fields, equilibrium, &unstable, snapshot.left(unstable.index)?),
         None => Ok(Vec::new()),
     })
@@ -172,7 +190,7 @@ fn reduced_modes_at(run: &mut Run, full: &Equilibrium) -> Result<ValueResult> {
     let equilibrium = sweep.equilibrium(friction, run.observer)?;
     let modes = sweep.modes(&equilibrium, band, run.observer)?;
     let fields = FieldWriter { structure: &structure, system: &system, folder: run.fields.folder };
-    mode_data(&mut structure.surface_motion(&system)?, &modes, band, asked, |unstable| {
+    mode_data(&mut structure.surface_motion(&system)?, &modes, asked, &run.results.about, |unstable| {
         fields.mode(friction, unstable.number, unstable.mode, unstable.shape)?;
         Ok(Vec::new())
     })

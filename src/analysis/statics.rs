@@ -34,7 +34,14 @@ pub fn statics(
 ) -> Result<Results> {
     let results = structure.on_its_ranks(comm, |comm| {
         let values = structure.friction_values(options.friction_values.as_deref())?;
-        let job = Job { name: "static", options: String::new(), values, band: [0.0; 2], summary: summary::statics };
+        let job = Job {
+            name: "static",
+            options: String::new(),
+            values,
+            band: [0.0; 2],
+            criterion: structure.criterion(),
+            summary: summary::statics,
+        };
         let none = |_: &mut Run, _: &Equilibrium| Ok(ValueResult::default());
         super::run::run(comm, structure, &job, options.output.as_ref(), observer, |run| run.each(none))
     })?;

@@ -193,6 +193,7 @@ impl<'a> Plan<'a> {
         let options = StabilityOptions {
             friction_values: Some(self.friction_values.clone()),
             band: None,
+            criterion: None,
             branches: *branches,
             reduce_each: *reduce_each,
             output: Some(output),

@@ -9,6 +9,7 @@ use super::{
     Event, ExportOptions, MatrixFormat, Observer, Output, StabilityOptions, StaticOptions, export, stability, statics,
 };
 use crate::equilibrium::testing::{ALONG_X, belt, blocks};
+use crate::model::InstabilityCriterion;
 use crate::native::{Comm, Session};
 use crate::output::folder::{RESUME, unfinished};
 use crate::reduction::recovery::OuterSurface;
@@ -37,6 +38,7 @@ fn pressed_by(force: f64) -> Structure {
             band: [0.0, 10.0],
             limit: 100.0,
             friction_damping: false,
+            criterion: InstabilityCriterion::default(),
         },
         points: vec![[0.0; 3]; 2 * N],
         frequencies: Vec::new(),

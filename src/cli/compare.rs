@@ -8,7 +8,7 @@ use crate::comparison;
 use crate::output::comparison as tables;
 use crate::output::folder::Folder;
 use crate::report::comparison_plot;
-use crate::results::{Results, file};
+use crate::results::{About, Results, file};
 use crate::{Error, Result};
 
 use super::Shell;
@@ -65,7 +65,8 @@ fn read(place: &Path) -> Result<Results> {
 fn name(place: &Path, results: &Results) -> String {
     let about = &results.about;
     let n_contacts: usize = about.pairs.iter().filter(|pair| pair.sliding).map(|pair| pair.n_points).sum();
-    format!("{}: {}, {} dofs, {n_contacts} sliding contact points", place.display(), about.model, about.n_dofs)
+    let About { model, n_dofs, criterion, .. } = about;
+    format!("{}: {model}, {n_dofs} dofs, {n_contacts} sliding contact points; unstable: {criterion}", place.display())
 }
 
 /// Names the results that could not be compared.

@@ -7,6 +7,7 @@ use clap::Args;
 use crate::analysis::{ExternalOptions, FreeModesOptions, external_modes, free_modes};
 use crate::matrices::family::{self, Coefficient, MatrixFamily};
 use crate::matrices::{Role, Term};
+use crate::model::InstabilityCriterion;
 use crate::output;
 use crate::output::external::ExternalDocument;
 use crate::output::folder::Folder;
@@ -38,6 +39,10 @@ pub struct Modes {
     /// Frequency band in Hz (with --part default: the model file's)
     #[arg(long, value_name = "FROM:TO", value_parser = values::band, allow_hyphen_values = true)]
     band: Option<[f64; 2]>,
+    /// What counts as unstable, of external matrices: damping_ratio:X for damping ratios below X (a fraction: -0.001
+    /// is -0.1 %), or growth_rate:X for growth rates above X in 1/s (default: all growth that is not rounding)
+    #[arg(long, value_name = "CRITERION", value_parser = values::criterion)]
+    unstable: Option<InstabilityCriterion>,
     /// Values of a family's parameter: one value, a list or a range FROM:TO:STEP
     #[arg(long, value_name = "VALUES", value_parser = values::values, allow_hyphen_values = true)]
     parameter: Option<Values>,
@@ -96,6 +101,7 @@ fn of_matrices(shell: &Shell, arguments: &Modes) -> Result<()> {
     comm.agree(if comm.is_root() { may_write_folder(&place, arguments.force) } else { Ok(()) })?;
     let options = ExternalOptions {
         band: arguments.band.ok_or_else(|| Error::input("which band? Give --band FROM:TO in Hz"))?,
+        criterion: arguments.unstable.unwrap_or_default(),
         values: arguments.parameter.as_ref().map_or_else(|| vec![0.0], |values| values.0.clone()),
         branches: !arguments.no_branches,
         shapes: arguments.shapes,

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::Shell;
+use super::{Shell, values};
+use crate::model::InstabilityCriterion;
 use crate::output::files::write_whole;
 use crate::output::folder::add_to_listed;
 use crate::output::json::Reported;
@@ -33,6 +34,10 @@ pub struct Report {
     /// Write the instabilities in motion for ParaView into a folder, too: a .pvd file each, with 24 moments of a cycle
     #[arg(long, value_name = "FOLDER")]
     paraview: Option<PathBuf>,
+    /// What counts as unstable, instead of the run's: damping_ratio:X for damping ratios below X (a fraction:
+    /// -0.001 is -0.1 %), or growth_rate:X for growth rates above X in 1/s
+    #[arg(long, value_name = "CRITERION", value_parser = values::criterion)]
+    unstable: Option<InstabilityCriterion>,
     /// Replace earlier files
     #[arg(long)]
     force: bool,
@@ -56,6 +61,8 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     may_write_file(&html, &page::KIND, report.force)?;
     [&report.plots, &report.paraview].into_iter().flatten().try_for_each(|folder| may_fill(folder, report.force))?;
     let results = file::read(&source)?;
+    let criterion = report.unstable.unwrap_or(results.about.criterion);
+    let results = results.by(criterion);
     if results.about.band[1] <= 0.0 {
         return Err(Error::input(format!(
             "{} has no modes: squeal report shows results of squeal stability",

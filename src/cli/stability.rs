@@ -4,6 +4,7 @@ use clap::Args;
 
 use crate::Result;
 use crate::analysis::{StabilityOptions, stability};
+use crate::model::InstabilityCriterion;
 use crate::output::summary;
 use crate::structure::Structure;
 
@@ -20,6 +21,10 @@ pub struct Stability {
     /// Frequency band in Hz, instead of the model file's
     #[arg(long, value_name = "FROM:TO", value_parser = values::band, allow_hyphen_values = true)]
     band: Option<[f64; 2]>,
+    /// What counts as unstable, instead of the model file's: damping_ratio:X for damping ratios below X (a fraction:
+    /// -0.001 is -0.1 %), or growth_rate:X for growth rates above X in 1/s
+    #[arg(long, value_name = "CRITERION", value_parser = values::criterion)]
+    unstable: Option<InstabilityCriterion>,
     /// Reduce the model to a super-element at each friction coefficient, and find the modes of that
     #[arg(long)]
     reduce_each: bool,
@@ -35,6 +40,7 @@ pub fn run(shell: &Shell, arguments: &Stability) -> Result<()> {
     let options = StabilityOptions {
         friction_values: run.friction_values(),
         band: arguments.band,
+        criterion: arguments.unstable,
         branches: !arguments.no_branches,
         reduce_each: arguments.reduce_each,
         output: Some(run.output(shell, "stability")),

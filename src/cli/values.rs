@@ -1,6 +1,6 @@
 //! Values, bands and laws as people type them.
 
-use crate::model::{LARGEST_FRICTION, NormalLaw, UnitSystem, spaced};
+use crate::model::{InstabilityCriterion, LARGEST_FRICTION, NormalLaw, UnitSystem, spaced};
 
 /// Values of friction or of any parameter, no two of them the same.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,6 +60,18 @@ fn number(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }
 }
 
+/// `damping_ratio:X` or `growth_rate:X`.
+pub fn criterion(text: &str) -> Result<InstabilityCriterion, String> {
+    let wanted = "expected damping_ratio:-0.001 (a fraction: -0.1 %) or growth_rate:5 (1/s)";
+    let (kind, limit) = text.split_once(':').ok_or(wanted)?;
+    let criterion = match kind {
+        "damping_ratio" => InstabilityCriterion::DampingRatio(number(limit)?),
+        "growth_rate" => InstabilityCriterion::GrowthRate(number(limit)?),
+        _ => return Err(wanted.into()),
+    };
+    criterion.mistake().map_or(Ok(criterion), |mistake| Err(mistake.into()))
+}
+
 /// A system of units, such as mm-t-s.
 pub fn units(text: &str) -> Result<UnitSystem, String> {
     UnitSystem::named(text)
@@ -107,6 +119,21 @@ mod tests {
         }
         assert!(band("6000:0").is_err() && band("0:0").is_err() && band("5").is_err());
         assert_eq!(band("0:6000").unwrap(), [0.0, 6000.0]);
+    }
+
+    #[test]
+    fn criteria_have_their_kind_and_a_limit_that_can_be() {
+        assert_eq!(criterion("damping_ratio:-0.001"), Ok(InstabilityCriterion::DampingRatio(-0.001)));
+        assert_eq!(criterion("growth_rate:5"), Ok(InstabilityCriterion::GrowthRate(5.0)));
+        for (text, reason) in [
+            ("0.1", "expected damping_ratio:"),
+            ("zeta:0.1", "expected damping_ratio:"),
+            ("growth_rate:x", "is not a number"),
+            ("growth_rate:-1", "must be 0 or above"),
+            ("damping_ratio:0.1", "from -1 to 0"),
+        ] {
+            assert!(criterion(text).unwrap_err().contains(reason), "{text}");
+        }
     }
 
     #[test]

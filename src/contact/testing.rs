@@ -3,7 +3,7 @@
 use super::facet::FacetGeometry;
 use crate::element::FacetShape;
 use crate::mesh::{self, Facet, Mesh, Surface};
-use crate::model::{Contact, Model, NormalLaw, Place, Rotation};
+use crate::model::{Contact, InstabilityCriterion, Model, NormalLaw, Place, Rotation};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -125,6 +125,7 @@ pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
         loads: Vec::new(),
         band: [0.0, 1.0],
         friction_damping: false,
+        criterion: InstabilityCriterion::default(),
         swept: Vec::new(),
         frictions: Vec::new(),
         files: vec!["brake.toml".into()],

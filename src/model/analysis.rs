@@ -4,7 +4,7 @@ use super::friction::friction;
 use super::item::{Item, Number};
 use super::keys::{self, FrictionSweepTable, Text};
 use super::source::ModelText;
-use super::{Contact, Place, Reduction};
+use super::{Contact, InstabilityCriterion, Place, Reduction};
 use crate::Result;
 use toml::Spanned;
 
@@ -93,6 +93,15 @@ pub fn spaced(from: f64, to: f64, step: f64) -> Option<Vec<f64>> {
     let n_steps = ((to - from) / step + 1e-6).floor();
     let value = |i: usize| ((from + i as f64 * step) * 1e12).round() / 1e12;
     (0.0..LONGEST_SWEEP).contains(&n_steps).then(|| (0..=n_steps as usize).map(value).collect())
+}
+
+/// What counts as unstable.
+pub fn criterion(item: &Item, raw: Option<&Spanned<InstabilityCriterion>>) -> Result<InstabilityCriterion> {
+    let Some(raw) = raw else { return Ok(InstabilityCriterion::default()) };
+    match raw.get_ref().mistake() {
+        Some(mistake) => Err(item.error(&raw.span(), "unstable has a wrong limit", mistake)),
+        None => Ok(*raw.get_ref()),
+    }
 }
 
 /// The reduction.

@@ -1,6 +1,7 @@
 //! The keys of a model file as serde sees them; `example.toml` explains each. Values are unchecked, their places are
 //! kept.
 
+use super::InstabilityCriterion;
 use super::item::{Number, Vector};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -213,6 +214,7 @@ tables! {
         pub band: Spanned<[f64; 2]>,
         #[serde(default)]
         pub friction_damping: bool,
+        pub unstable: Option<Spanned<InstabilityCriterion>>,
     }
 
     pub struct SweepTable {

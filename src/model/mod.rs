@@ -24,6 +24,7 @@ mod analysis;
 mod bodies;
 mod check;
 mod contacts;
+mod criterion;
 pub mod elasticity;
 pub mod friction;
 mod item;
@@ -44,6 +45,7 @@ mod units;
 mod write;
 
 pub use analysis::spaced;
+pub use criterion::InstabilityCriterion;
 pub use friction::LARGEST_FRICTION;
 pub use place::Place;
 pub use read::{is_deck, parse, read};

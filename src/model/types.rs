@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::youngs;
 use super::friction::FrictionCurve;
-use super::{Place, names};
+use super::{InstabilityCriterion, Place, names};
 use crate::{Error, Result};
 
 /// Everything the user states about a brake, in SI units. Names of the mesh are still names here.
@@ -52,6 +52,8 @@ pub struct Model {
     pub band: [f64; 2],
     /// Whether friction that turns with the velocity damps the modes.
     pub friction_damping: bool,
+    /// What counts as an unstable mode.
+    pub criterion: InstabilityCriterion,
     /// Names of the contacts whose friction a sweep changes (all sliding pairs where the file does not say).
     pub swept: Vec<String>,
     /// Friction values of the sweep (empty: as in the contacts).
@@ -69,6 +71,13 @@ impl Model {
     /// Where the place is in no file of the model.
     pub fn error(&self, place: Place, message: impl Display) -> Error {
         place.error(&self.files, message)
+    }
+
+    /// Whether anything takes energy out of its motions.
+    pub fn is_damped(&self) -> bool {
+        self.friction_damping
+            || self.parts.iter().any(|part| part.rayleigh != Rayleigh::default())
+            || self.connectors.iter().any(|connector| connector.damping != [0.0; 3])
     }
 
     /// The model of one part alone, which nothing constrains, touches or loads, so that there is nothing to sweep

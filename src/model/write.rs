@@ -10,7 +10,7 @@ use nalgebra::Matrix6;
 use super::elasticity::{from_compliance, isotropic_compliance};
 use super::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use super::read::UNITS;
-use super::{Contact, Material, Model, NormalLaw};
+use super::{Contact, InstabilityCriterion, Material, Model, NormalLaw};
 use loads::loads;
 
 /// Elasticities are isotropic to this relative difference.
@@ -191,6 +191,14 @@ fn analysis(out: &mut Text, model: &Model) {
     out.table("[stability]");
     out.line("band", list(&model.band));
     out.line("friction_damping", model.friction_damping);
+    match model.criterion {
+        InstabilityCriterion::DampingRatio(ratio) => {
+            out.line("unstable", format_args!("{{ damping_ratio = {} }}", number(ratio)));
+        }
+        InstabilityCriterion::GrowthRate(rate) => {
+            out.line("unstable", format_args!("{{ growth_rate = {} }}", number(rate)));
+        }
+    }
     if !model.frictions.is_empty() {
         let mut contacts = String::new();
         if !model.swept.is_empty() {

@@ -39,6 +39,7 @@ pub fn summary(results: &ExternalResults, place: &str) -> String {
             text += &aligned(&heading, values.iter().map(line));
         }
     }
+    text += &format!("criterion of instability: {}\n", results.criterion);
     if let Some(diagram) = &results.diagram {
         text += &branches::summary(diagram, &results.parameter);
     }

@@ -23,11 +23,12 @@ pub struct ResultsDocument<'a> {
     folder: &'a str,
 }
 
-/// The status, its first reason, and both as the summary has them.
+/// The status, its reasons, what counts as unstable, and all as the summary has them.
 #[derive(Serialize)]
 struct VerdictDocument {
     status: Status,
     reason: String,
+    criterion: String,
     text: String,
 }
 
@@ -78,7 +79,8 @@ impl VerdictDocument {
     fn new(results: &Results) -> VerdictDocument {
         let verdict = results.verdict();
         let text = sweep_text::verdict(results).trim_end().to_owned();
-        VerdictDocument { status: verdict.status, reason: verdict.reason(), text }
+        let criterion = results.about.criterion.to_string();
+        VerdictDocument { status: verdict.status, reason: verdict.reason(), criterion, text }
     }
 }
 

@@ -34,7 +34,7 @@ pub fn verdict(results: &Results) -> String {
         }
     };
     let doubts: String = doubts.iter().map(|doubt| format!("doubt: {doubt}\n")).collect();
-    format!("{first}\n{doubts}")
+    format!("{first}\n{doubts}criterion of instability: {}\n", results.about.criterion)
 }
 
 /// Which mode grows first, and which one most: at the values asked for, else at those in between.

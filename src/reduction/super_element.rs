@@ -17,7 +17,7 @@ use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
 use crate::contact::interface::ContactPair;
 use crate::contact::{ContactPoint, GapOperator, Interface};
 use crate::mesh::Numbering;
-use crate::model::NormalLaw;
+use crate::model::{InstabilityCriterion, NormalLaw};
 use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
@@ -50,6 +50,9 @@ pub struct Origin {
     pub limit: f64,
     /// Whether friction that turns with the velocity damps the modes.
     pub friction_damping: bool,
+    /// What counts as an unstable mode.
+    #[serde(rename = "unstable", default)]
+    pub criterion: InstabilityCriterion,
 }
 
 /// A contact between a slave point and a master point, with the full model's equilibrium there.

@@ -137,6 +137,7 @@ fn answer_section(findings: &Findings) -> Markup {
         section #answer aria-label="Answer" {
             p.verdict.(style) { (unbroken(&words::headline(findings))) }
             (list("cautions", &words::cautions(findings)))
+            p.hint { "A mode is unstable here with a " (findings.results.about.criterion.to_string()) "." }
             div.split {
                 div.answers {
                     @for (i, one) in findings.instabilities.iter().enumerate() { (answer(findings, i, one)) }

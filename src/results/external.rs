@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 
 use crate::matrices::Symmetry;
+use crate::model::InstabilityCriterion;
 use crate::stability::{Count, Evidence};
 use crate::tracking::Diagram;
 
@@ -27,6 +28,8 @@ pub struct ExternalResults {
     pub is_damped: bool,
     /// Band analysed, Hz.
     pub band: [f64; 2],
+    /// What counts as an unstable mode.
+    pub criterion: InstabilityCriterion,
     /// What shows that no mode is missing.
     pub evidence: Evidence,
     /// One value after the other.
@@ -72,7 +75,7 @@ pub struct ExternalMode {
     pub lambda: Complex64,
     /// Backward error of the scaled problem.
     pub backward_error: f64,
-    /// Whether it grows, more than noise explains.
+    /// Whether it is unstable by the criterion, and no rigid-body mode.
     pub is_unstable: bool,
     /// Row of the matrices in which its vector is largest, from 1.
     pub largest_row: usize,

@@ -23,7 +23,8 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 use crate::equilibrium::{PairForces, Step};
-use crate::stability::Count;
+use crate::model::InstabilityCriterion;
+use crate::stability::{Count, RIGID_RATE};
 use crate::tracking::Diagram;
 
 /// A study and what it found.
@@ -105,10 +106,16 @@ pub struct About {
     /// Band analysed, Hz.
     #[serde(rename = "band_hz")]
     pub band: [f64; 2],
+    /// What counts as an unstable mode.
+    #[serde(rename = "unstable", default)]
+    pub criterion: InstabilityCriterion,
     /// Frictions asked for, in their order.
     pub friction_values: Vec<f64>,
     /// Whether neither a load nor an overlap presses the contacts together.
     pub unloaded: bool,
+    /// Whether nothing takes energy out of the motions.
+    #[serde(default)]
+    pub undamped: bool,
     /// Doubtful properties of the model, a sentence each.
     pub warnings: Vec<String>,
     /// The parts, which `Surface::part` counts.
@@ -210,7 +217,7 @@ pub struct ModeData {
     pub lambda: Complex64,
     /// Normwise backward error.
     pub backward_error: f64,
-    /// Whether it grows more than rounding explains.
+    /// Whether it is unstable by the criterion of [`About`].
     pub unstable: bool,
     /// Displacements at the samples of the surface.
     pub sampled: Shape,
@@ -236,6 +243,20 @@ impl Results {
         self.asked().flat_map(|value| (1..).zip(&value.modes).map(|(number, mode)| (value.friction, number, mode)))
     }
 
+    /// The results by another criterion of what is unstable. Hopf points, which are those of the criterion by which
+    /// modes were followed, are left out where it differs.
+    pub fn by(mut self, criterion: InstabilityCriterion) -> Results {
+        if criterion == self.about.criterion {
+            return self;
+        }
+        self.about.criterion = criterion;
+        for mode in self.values.iter_mut().flat_map(|value| &mut value.modes) {
+            mode.unstable = mode.lambda.re > criterion.limit(mode.lambda, RIGID_RATE);
+        }
+        self.diagram.iter_mut().for_each(|diagram| diagram.hopf.clear());
+        self
+    }
+
     /// The requested values.
     pub fn asked(&self) -> impl Iterator<Item = &Value> {
         self.values.iter().filter(|value| value.asked)
@@ -256,5 +277,24 @@ impl ModeData {
     /// `-Re lambda / |lambda|`.
     pub fn damping_ratio(&self) -> f64 {
         -self.lambda.re / self.lambda.norm()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing;
+    use crate::model::InstabilityCriterion;
+
+    #[test]
+    fn another_criterion_has_other_unstable_modes_and_no_hopf_points() {
+        let results = testing::results();
+        let n_unstable = |results: &super::Results| results.modes().filter(|(_, _, mode)| mode.unstable).count();
+        let rates = || results.modes().map(|(_, _, mode)| mode.growth_rate());
+        let limit = 0.5 * rates().fold(0.0, f64::max);
+        let by = results.clone().by(InstabilityCriterion::GrowthRate(limit));
+        assert_eq!(n_unstable(&by), rates().filter(|&rate| rate > limit).count());
+        assert!(0 < n_unstable(&by) && n_unstable(&by) < n_unstable(&results));
+        assert_eq!(by.diagram.as_ref().map(|diagram| diagram.hopf.len()), Some(0));
+        assert_eq!(results.clone().by(results.about.criterion), results);
     }
 }

@@ -38,6 +38,8 @@ pub enum Doubt {
     NoLoad,
     /// No sliding contact carries a force at these values.
     NoContact(Vec<f64>),
+    /// Nothing in the model takes energy out.
+    Undamped,
     /// Doubtful properties of the model.
     Implausible(String),
     /// No mode lies in the band, Hz.
@@ -103,6 +105,7 @@ impl Results {
             when(n_done < n_asked, Doubt::Missing(n_asked.saturating_sub(n_done), n_asked)),
             when(!not_converged.is_empty(), Doubt::NotConverged(not_converged)),
             when(!intervals.is_empty(), Doubt::NotFollowed(intervals)),
+            when(self.about.undamped, Doubt::Undamped),
         ];
         let implausible = self.about.warnings.iter().cloned().map(Doubt::Implausible);
         let all = first.into_iter().flatten().chain(implausible).chain(ended);
@@ -135,6 +138,11 @@ impl Display for Doubt {
             Doubt::NoContact(values) => {
                 write!(f, "no sliding contact carries a force at \u{3bc} = {}: the loads close none", list(values))
             }
+            Doubt::Undamped => write!(
+                f,
+                "the model has no damping: modes that do not grow do not decay either, and growth rates are too large. \
+                 Give parts rayleigh"
+            ),
             Doubt::Implausible(what) => write!(f, "{what}"),
             Doubt::NoModes([from, to]) => {
                 write!(
@@ -232,7 +240,8 @@ mod tests {
     fn what_was_not_looked_at_is_unknown_and_an_instability_stays_one() {
         let step = Step { label: String::new(), converged: false, iterations: vec![] };
         type Change<'a> = (&'a str, &'a dyn Fn(&mut Results));
-        let changes: [Change; 7] = [
+        let changes: [Change; 8] = [
+            ("the model has no damping", &|results| results.about.undamped = true),
             ("no mode lies in the band from 0 to 6000 Hz", &|results| results.values[0].modes.clear()),
             ("young is 210", &|results| results.about.warnings.push("young is 210".into())),
             ("ended early: out of luck.", &|results| {

@@ -40,7 +40,7 @@ pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequ
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::right_vectors;
 pub use linearise::{Linearised, with_friction_damping};
-pub use mode::{Mode, UNSTABLE_RATIO, growth_threshold};
+pub use mode::{Mode, RIGID_RATE};
 pub use options::{BlockedOptions, EigenOptions, Evidence};
 pub use problem::{FrozenPoints, QuadraticProblem};
 pub use shares::{Sensitivity, Share, self_product, sensitivity, shares};

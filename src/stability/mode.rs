@@ -4,13 +4,12 @@ use num_complex::Complex64;
 
 use super::QuadraticProblem;
 use crate::Result;
+use crate::model::InstabilityCriterion;
 use crate::native::{Block, Matrix, Mck, Vector};
 
-/// A mode is called unstable where its growth rate exceeds this fraction of its angular frequency: below is noise.
-pub const UNSTABLE_RATIO: f64 = 1e-6;
-
-/// A real eigenvalue above this, 1/s, is an instability.
-const DIVERGENCE_RATE: f64 = 1.0;
+/// A real eigenvalue up to this (1/s) is no divergence: a rigid motion's double zero may come out as a real pair of
+/// some 1e-2/s.
+pub const RIGID_RATE: f64 = 1.0;
 
 /// An eigenvalue with non-negative frequency, its vector, and how well the two solve the problem.
 pub struct Mode {
@@ -22,12 +21,6 @@ pub struct Mode {
     pub re: Vector,
     /// Imaginary part of the vector.
     pub im: Vector,
-}
-
-/// The growth rate (1/s) beyond which an eigenvalue is unstable: [`UNSTABLE_RATIO`] of its angular frequency. A rigid
-/// motion's double zero may come out as a real pair of some 1e-2/s: divergence, a real eigenvalue, counts from 1/s on.
-pub fn growth_threshold(lambda: Complex64) -> f64 {
-    if lambda.im == 0.0 { DIVERGENCE_RATE } else { UNSTABLE_RATIO * lambda.im.abs() }
 }
 
 impl Mode {
@@ -46,9 +39,14 @@ impl Mode {
         -self.lambda.re / self.lambda.norm()
     }
 
-    /// Whether the mode grows, beyond noise.
-    pub fn is_unstable(&self) -> bool {
-        self.lambda.re > growth_threshold(self.lambda)
+    /// Whether the mode is unstable by a criterion.
+    pub fn is_unstable(&self, criterion: InstabilityCriterion) -> bool {
+        self.lambda.re > criterion.limit(self.lambda, RIGID_RATE)
+    }
+
+    /// Whether the mode grows beyond rounding.
+    pub fn grows(&self) -> bool {
+        self.is_unstable(InstabilityCriterion::default())
     }
 
     /// Turns and scales the vector so that its largest entry (in modulus) is 1, real.

@@ -308,6 +308,7 @@ impl FullModel {
             n_elements,
             parts,
             unloaded: self.is_unloaded(),
+            undamped: !self.model.is_damped(),
             warnings: plausibility::warnings(self, comm),
             pairs: self.pairs(),
             ..About::default()

@@ -40,7 +40,7 @@ use crate::assembly::System;
 use crate::contact::{Interface, Response};
 use crate::equilibrium::Equilibrium;
 use crate::hdf::is_hdf5;
-use crate::model::NormalLaw;
+use crate::model::{InstabilityCriterion, NormalLaw};
 use crate::native::Comm;
 use crate::results::{About, ContactFaces, Pair};
 use crate::{Error, Result};
@@ -152,6 +152,14 @@ impl Structure {
         match self {
             Structure::Full(full) => full.model.friction_damping,
             Structure::Reduced(reduced) => reduced.element.origin.friction_damping,
+        }
+    }
+
+    /// What counts as an unstable mode.
+    pub fn criterion(&self) -> InstabilityCriterion {
+        match self {
+            Structure::Full(full) => full.model.criterion,
+            Structure::Reduced(reduced) => reduced.element.origin.criterion,
         }
     }
 

@@ -65,6 +65,7 @@ impl FullModel {
             band: self.model.band,
             limit,
             friction_damping: self.model.friction_damping,
+            criterion: self.model.criterion,
         })
     }
 }

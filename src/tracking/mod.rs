@@ -47,6 +47,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use crate::Result;
+use crate::model::InstabilityCriterion;
 
 /// An eigenproblem that depends on one parameter.
 pub trait Family {
@@ -78,14 +79,16 @@ pub struct Options {
     pub band: [f64; 2],
     /// Hopf points are bracketed this closely, and no step is halved below it; in units of the parameter.
     pub tolerance: f64,
-    /// The growth rate (1/s) above which an eigenvalue is unstable: what is below is noise.
-    pub threshold: fn(Complex64) -> f64,
+    /// What counts as unstable.
+    pub criterion: InstabilityCriterion,
+    /// Real eigenvalues up to this are rigid-body motions and no divergence, 1/s.
+    pub rigid: f64,
 }
 
 impl Options {
-    /// Growth rate above noise, 1/s.
+    /// Growth rate above that from which an eigenvalue is unstable, 1/s.
     fn excess(&self, lambda: Complex64) -> f64 {
-        lambda.re - (self.threshold)(lambda)
+        lambda.re - self.criterion.limit(lambda, self.rigid)
     }
 
     fn in_band(&self, lambda: Complex64) -> bool {

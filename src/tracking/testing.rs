@@ -5,6 +5,7 @@ use num_complex::Complex64;
 
 use super::{Family, Options};
 use crate::Result;
+use crate::model::InstabilityCriterion;
 use crate::native::lapack::{Eigen, eigen};
 
 pub type Real = DMatrix<f64>;
@@ -112,7 +113,12 @@ impl<F: FnMut(f64) -> [Real; 3]> Family for Model<F> {
 
 /// The whole spectrum, noise 1e-6 of omega, Hopf points to 1e-3.
 pub fn options() -> Options {
-    Options { band: [f64::NEG_INFINITY, f64::INFINITY], tolerance: 1e-3, threshold: |z| (1e-6 * z.im.abs()).max(1e-9) }
+    Options {
+        band: [f64::NEG_INFINITY, f64::INFINITY],
+        tolerance: 1e-3,
+        criterion: InstabilityCriterion::default(),
+        rigid: 1e-9,
+    }
 }
 
 /// Values from `from` to `to` about a step apart, rounded.

@@ -50,7 +50,8 @@ use crate::{Error, Result};
 ///     }
 /// }
 ///
-/// let options = Options { band: [0.5, 2.0], tolerance: 1e-3, threshold: |_| 0.0 };
+/// let criterion = InstabilityCriterion::default();
+/// let options = Options { band: [0.5, 2.0], tolerance: 1e-3, criterion, rigid: 0.0 };
 /// let (diagram, outcome) = track(&mut Oscillator, &[0.1, 0.9], &options);
 /// outcome?;
 /// assert_eq!((diagram.branches.len(), diagram.hopf.len()), (1, 1));

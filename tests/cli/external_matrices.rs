@@ -303,3 +303,50 @@ fn an_ill_conditioned_stiffness_is_warned_of() {
     assert_eq!(finished.code, 0, "{}", finished.err);
     assert!(finished.out.contains("warning: it is above 1e12"), "{}", finished.out);
 }
+
+/// A free chain of three masses whose stiffness has a circulatory part, with a damping matrix if there is one.
+fn free_chain(damping: &str) -> Place {
+    let place = Place::empty();
+    let symmetric = "%%MatrixMarket matrix coordinate real symmetric\n3 3";
+    place.write("m.mtx", format!("{symmetric} 3\n1 1 1\n2 2 1\n3 3 1\n"));
+    place.write("k0.mtx", format!("{symmetric} 5\n1 1 1000\n2 1 -1000\n2 2 3000\n3 2 -2000\n3 3 2000\n"));
+    place.write("c.mtx", format!("{symmetric} 5\n1 1 0.2\n2 1 -0.2\n2 2 0.4\n3 2 -0.2\n3 3 0.2\n"));
+    let general = "%%MatrixMarket matrix coordinate real general\n3 3";
+    place.write("k1.mtx", format!("{general} 4\n1 2 100\n1 3 -100\n2 1 50\n2 3 -50\n"));
+    let terms = "parameter = \"mu\"\n[[mass]]\nfile = \"m.mtx\"\n[[stiffness]]\nfile = \"k0.mtx\"\n[[stiffness]]\n\
+                 file = \"k1.mtx\"\nfactor = \"mu\"\n";
+    place.write("fam.toml", format!("{terms}{damping}"));
+    place
+}
+
+#[test]
+fn rigid_motions_of_a_family_are_not_followed() {
+    for damping in ["", "[[damping]]\nfile = \"c.mtx\"\n"] {
+        let place = free_chain(damping);
+        let run = place.run(&["modes", "fam.toml", "--parameter", "0:1:0.25", "--band", "0:20", "-o", "out"]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        assert!(run.out.contains("rigid-body modes at 0 Hz, left out of the branches: 1\n"), "{}", run.out);
+        assert!(run.out.contains("2 branches over 5 values of mu"), "{}", run.out);
+        assert_eq!(place.read("out/hopf.csv").lines().count(), 1, "{}", place.read("out/hopf.csv"));
+        assert!(!run.out.contains("unstable: real"), "{}", run.out);
+    }
+}
+
+#[test]
+fn what_is_unstable_is_an_option() {
+    let hoffmann = data("matrices").join("hoffmann.toml");
+    let modes = |criterion: &str| {
+        let place = Place::empty();
+        let family = hoffmann.to_str().unwrap();
+        let run =
+            place.run(&["modes", family, "--parameter", "0.8", "--band", "0:1", "--unstable", criterion, "-o", "o"]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        let unstable = columns(&place.read("o/modes.csv"), &["damping_ratio", "unstable"]);
+        (run.out, unstable.iter().map(|row| row[0]).fold(0.0, f64::min), unstable.iter().any(|row| row[1] == 1.0))
+    };
+    let (text, ratio, is_unstable) = modes("damping_ratio:-0.001");
+    assert!(is_unstable && ratio < -0.001 && text.contains("damping ratio below -0.1 %"), "{text}");
+    let limit = format!("damping_ratio:{}", 1.1 * ratio);
+    assert!(!modes(&limit).2, "{limit}");
+    assert!(!modes("growth_rate:1000").2);
+}

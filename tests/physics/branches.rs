@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 use crate::support::data;
 use crate::support::program::{Finished, Place};
 use squeal::analysis::{FrictionFamily, Snapshot, Sweep, tracking_options, widened};
+use squeal::model::InstabilityCriterion;
 use squeal::native::{Comm, Session};
 use squeal::structure::FullModel;
 use squeal::tracking::{Diagram, track};
@@ -24,7 +25,7 @@ fn followed(comm: &Comm, values: &[f64], band: [f64; 2]) -> Diagram {
         Snapshot::new(&mut sweep, &modes, band[1])
     };
     let mut family = FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c };
-    let (diagram, outcome) = track(&mut family, values, &tracking_options(band));
+    let (diagram, outcome) = track(&mut family, values, &tracking_options(band, InstabilityCriterion::default()));
     outcome.unwrap();
     assert_eq!(diagram.doubtful, Vec::<[f64; 2]>::new());
     diagram

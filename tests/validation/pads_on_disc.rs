@@ -67,7 +67,7 @@ pub fn cases(comm: &Comm) -> Vec<Case> {
 
 /// Unstable modes beside the reference's, by rising frequency.
 fn unstable(friction: f64, band: &Band, expected: &[Value]) -> Vec<Row> {
-    let modes = band.modes.iter().filter(|mode| mode.is_unstable());
+    let modes = band.modes.iter().filter(|mode| mode.grows());
     let pairs = modes.filter_map(|mode| {
         let nearest = expected
             .iter()

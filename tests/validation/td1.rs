@@ -28,6 +28,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use squeal::analysis::{FrictionFamily, Snapshot, Sweep, tracking_options, widened};
+use squeal::model::InstabilityCriterion;
 use squeal::native::{Comm, Session};
 use squeal::stability::Mode;
 use squeal::structure::FullModel;
@@ -137,7 +138,8 @@ fn followed(comm: &Comm, size: &str) -> Diagram {
         Snapshot::new(&mut sweep, &modes, band[1])
     };
     let mut family = FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c };
-    let (diagram, outcome) = track(&mut family, &brake.model.frictions, &tracking_options(band));
+    let (diagram, outcome) =
+        track(&mut family, &brake.model.frictions, &tracking_options(band, InstabilityCriterion::default()));
     outcome.unwrap();
     diagram
 }

@@ -32,7 +32,7 @@ use super::summary::{DeckSummary, ProposedStiffness};
 use super::types::Deck;
 use crate::Result;
 use crate::mesh::Mesh;
-use crate::model::{Model, Place, UnitSystem};
+use crate::model::{InstabilityCriterion, Model, Place, UnitSystem};
 use bodies::Bodies;
 use equations::Axes;
 use regions::Regions;
@@ -130,6 +130,7 @@ impl Conversion<'_> {
             loads,
             band: settings.band,
             friction_damping: settings.friction_damping,
+            criterion: InstabilityCriterion::default(),
             swept: Vec::new(),
             frictions: Vec::new(),
             sweep_place: Place::default(),
