@@ -52,7 +52,10 @@ const READ: &[(&str, Treatment)] = &[
     ("*AMPLITUDE", Read(&["NAME", "DEFINITION", "VALUE"], &["TIME", "SMOOTH"])),
     ("*SURFACE INTERACTION", Read(&["NAME"], &[])),
     ("*SURFACE BEHAVIOR", Read(&["PRESSURE-OVERCLOSURE", "NOSEPARATION"], &["PENALTY", "AUGMENTEDLAGRANGE", "DIRECT"])),
-    ("*FRICTION", Read(&["TAUMAX", "ROUGH", "ANISOTROPIC"], &["SLIPTOLERANCE", "ELASTICSLIP", "LAGRANGE"])),
+    (
+        "*FRICTION",
+        Read(&["TAUMAX", "ROUGH", "ANISOTROPIC", "EXPONENTIALDECAY"], &["SLIPTOLERANCE", "ELASTICSLIP", "LAGRANGE"]),
+    ),
     (
         "*CONTACT PAIR",
         Read(

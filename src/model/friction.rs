@@ -113,37 +113,67 @@ fn tabular(
     raw: &Spanned<keys::Friction>,
     table: &keys::FrictionRows,
 ) -> Result<(f64, Option<FrictionCurve>)> {
-    let refuse = |what: String, advice: &str| item.error(&raw.span(), what, advice);
-    let columns = columns(table).map_err(|what| {
-        refuse(what, "Give by = [\"speed\"], or several of \"speed\", \"pressure\" and \"temperature\", each once")
-    })?;
-    if columns[2].is_some() != table.temperature.is_some() {
-        let advice = "Give temperature = ... beside a table by temperature, in the table's unit, and only there";
-        return Err(refuse("the table and the temperature do not go together".into(), advice));
-    }
-    let grid = Grid::new(table, columns).map_err(|what| {
-        refuse(
-            what,
-            "A row is [mu, value, ...] in the order of `by`, all finite, mu from 0 to 2; every value with every other",
-        )
-    })?;
-    let first = grid.mu[0];
-    if first <= 0.0 {
-        return Err(refuse("the first row's coefficient is 0".into(), "It is the friction value, and must be above 0"));
-    }
-    Ok((first, Some(FrictionCurve::Table(grid.at_temperature(table.temperature, first)))))
+    let by: Vec<&str> = table.by.iter().map(String::as_str).collect();
+    let tabulated = FrictionTable::of_rows(&by, &table.table, table.temperature);
+    let (friction, table) = tabulated.map_err(|Refusal { what, advice }| item.error(&raw.span(), what, advice))?;
+    Ok((friction, Some(FrictionCurve::Table(table))))
 }
 
-/// The column of speed, pressure and temperature in the rows, each where the table depends on it.
-fn columns(table: &keys::FrictionRows) -> std::result::Result<[Option<usize>; 3], String> {
+/// Why rows make no friction table, and what to do.
+#[derive(Debug)]
+pub struct Refusal {
+    /// What is wrong.
+    pub what: String,
+    /// What to do.
+    pub advice: &'static str,
+}
+
+impl FrictionTable {
+    /// The table of rows `[mu, value, ...]` at a temperature, and the friction value, which is the mu of the first
+    /// combination: of the lowest speed, pressure and temperature. `by` says what the values are: `"speed"` (m/s),
+    /// `"pressure"` (Pa), `"temperature"` (in the unit of the temperature given).
+    ///
+    /// # Errors
+    /// [`Refusal`] where a row is wrong, or where the rows are not a full grid.
+    pub fn of_rows(
+        by: &[&str],
+        rows: &[Vec<f64>],
+        temperature: Option<f64>,
+    ) -> std::result::Result<(f64, FrictionTable), Refusal> {
+        let refuse = |what: String, advice: &'static str| Refusal { what, advice };
+        let columns = columns(by).ok_or_else(|| {
+            let advice = "Give by = [\"speed\"], or several of \"speed\", \"pressure\" and \"temperature\", each once";
+            refuse(format!("the friction table is by {by:?}"), advice)
+        })?;
+        if columns[2].is_some() != temperature.is_some() {
+            let advice = "Give temperature = ... beside a table by temperature, in the table's unit, and only there";
+            return Err(refuse("the table and the temperature do not go together".into(), advice));
+        }
+        let grid = Grid::new(rows, by.len(), columns).map_err(|what| {
+            let advice = "A row is [mu, value, ...] in the order of `by`, all finite, mu from 0 to 2; \
+                          every value with every other";
+            refuse(what, advice)
+        })?;
+        let first = grid.mu[0];
+        if first <= 0.0 {
+            let advice = "It is the friction value, and must be above 0";
+            return Err(refuse("the first row's coefficient is 0".into(), advice));
+        }
+        Ok((first, grid.at_temperature(temperature, first)))
+    }
+}
+
+/// The column of speed, pressure and temperature in the rows, each where the table depends on it; none where `by` has an
+/// unknown variable or one twice.
+fn columns(by: &[&str]) -> Option<[Option<usize>; 3]> {
     let mut columns = [None; 3];
-    for (i, name) in table.by.iter().enumerate() {
-        match VARIABLES.iter().position(|known| known == name) {
-            Some(variable) if columns[variable].is_none() => columns[variable] = Some(i + 1),
-            _ => return Err(format!("the friction table is by {:?}", table.by)),
+    for (i, name) in by.iter().enumerate() {
+        let variable = VARIABLES.iter().position(|known| known == name)?;
+        if columns[variable].replace(i + 1).is_some() {
+            return None;
         }
     }
-    Ok(columns)
+    Some(columns)
 }
 
 /// Coefficients on the full grid of speeds, pressures and temperatures.
@@ -155,19 +185,19 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(table: &keys::FrictionRows, columns: [Option<usize>; 3]) -> std::result::Result<Grid, String> {
-        if table.table.is_empty() {
+    fn new(rows: &[Vec<f64>], n_variables: usize, columns: [Option<usize>; 3]) -> std::result::Result<Grid, String> {
+        if rows.is_empty() {
             return Err("the friction table is empty".into());
         }
         let is_wrong = |row: &&Vec<f64>| {
-            row.len() != table.by.len() + 1 || !row.iter().all(|x| x.is_finite()) || !is_coefficient(row[0])
+            row.len() != n_variables + 1 || !row.iter().all(|x| x.is_finite()) || !is_coefficient(row[0])
         };
-        if let Some(row) = table.table.iter().find(is_wrong) {
+        if let Some(row) = rows.iter().find(is_wrong) {
             return Err(format!("the friction table has the row {row:?}"));
         }
         let at = |row: &[f64], variable: usize| columns[variable].map_or(0.0, |column| row[column]);
         let axes = [0, 1, 2].map(|variable| {
-            let mut values: Vec<f64> = table.table.iter().map(|row| at(row, variable)).collect();
+            let mut values: Vec<f64> = rows.iter().map(|row| at(row, variable)).collect();
             values.sort_by(f64::total_cmp);
             values.dedup();
             values
@@ -178,7 +208,7 @@ impl Grid {
             for &q in pressures.clone() {
                 for &t in temperatures.clone() {
                     let place = [v, q, t];
-                    let row = table.table.iter().filter(|row| (0..3).all(|i| at(row, i) == place[i]));
+                    let row = rows.iter().filter(|row| (0..3).all(|i| at(row, i) == place[i]));
                     let [row] = row.collect::<Vec<_>>()[..] else {
                         return Err("the friction table has a combination of values not at all or twice".into());
                     };

@@ -38,8 +38,8 @@ impl FrictionFunction for Stribeck {
 
 impl FrictionFunction for FrictionTable {
     /// With a and b the fractions of the way between the neighbours of v and q in the grid,
-    /// `phi = (1 - a) ((1 - b) phi_00 + b phi_01) + a ((1 - b) phi_10 + b phi_11)`. Where a slope jumps it is that of the
-    /// greater argument; beyond the grid it is 0.
+    /// `phi = (1 - a) ((1 - b) phi_00 + b phi_01) + a ((1 - b) phi_10 + b phi_11)`. Where a slope jumps it is that of
+    /// the greater argument; beyond the grid it is 0.
     fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {
         let (at_speed, at_pressure) = (Place::new(&self.speeds, speed), Place::new(&self.pressures, pressure));
         let phi = |i: usize, j: usize| self.values[i * self.pressures.len() + j];

@@ -67,9 +67,9 @@ impl<'d> State<'d> {
     }
 
     /// The friction that an interaction changes to.
-    pub fn friction(&self, interaction: &str) -> Option<Friction> {
+    pub fn friction(&self, interaction: &str) -> Option<&Friction> {
         let changed = self.actions().filter_map(|(_, action)| match &action.what {
-            ActionKind::Friction(name, friction) if name == interaction => Some(*friction),
+            ActionKind::Friction(name, friction) if name == interaction => Some(friction),
             _ => None,
         });
         changed.last()

@@ -1,11 +1,14 @@
 //! Contact pairs.
 
+use std::fmt::Display;
+
 use super::Conversion;
 use super::history::State;
 use crate::Result;
 use crate::deck::summary::ProposedStiffness;
-use crate::deck::types::{Behaviour, ContactPair, Interaction};
+use crate::deck::types::{Behaviour, ContactPair, Dependence, Friction, Interaction};
 use crate::mesh::Mesh;
+use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay};
 use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, names};
 
 /// Tables of a contact law are straight to this relative difference.
@@ -86,19 +89,48 @@ impl<'d> Conversion<'d> {
     /// The contacts with the friction of the last step.
     pub(super) fn with_friction_of(&mut self, state: &State, mut contacts: Vec<Contact>) -> Result<Vec<Contact>> {
         for (contact, pair) in contacts.iter_mut().zip(self.contact_pairs()?) {
-            let own = self.interaction(pair)?.friction;
-            let friction = state.friction(&pair.interaction).or(own);
-            let Some(friction) = friction else { continue };
+            let own = self.interaction(pair)?.friction.as_ref();
+            let Some(friction) = state.friction(&pair.interaction).or(own) else { continue };
             if friction.coefficient > LARGEST_FRICTION {
                 let what =
                     format_args!("a friction coefficient of {} is above {LARGEST_FRICTION}", friction.coefficient);
                 return Err(self.assembly.error(friction.place, what));
             }
-            contact.friction = friction.coefficient;
+            (contact.friction, contact.friction_curve) = self.friction(friction)?;
             contact.stick =
                 friction.stick.or(own.and_then(|own| own.stick)).map(|stick| stick * self.units.foundation());
         }
         Ok(contacts)
+    }
+}
+
+impl Conversion<'_> {
+    /// The friction value, and how the coefficient depends on other things, in SI units.
+    fn friction(&self, friction: &Friction) -> Result<(f64, Option<FrictionCurve>)> {
+        let value = friction.coefficient;
+        let refuse = |what: &dyn Display| self.assembly.error(friction.place, what);
+        let speed = self.units.length / self.units.time;
+        match &friction.dependence {
+            Dependence::None => Ok((value, None)),
+            &Dependence::Decay { kinetic, decay } if value > 0.0 && kinetic >= 0.0 && decay > 0.0 => {
+                let decay = SpeedDecay { kinetic_ratio: kinetic / value, decay: decay / speed };
+                Ok((value, Some(FrictionCurve::Decay(decay))))
+            }
+            Dependence::Decay { .. } => Err(refuse(
+                &"an exponential decay needs a static coefficient and a decay above 0, and a kinetic one from 0",
+            )),
+            Dependence::Table(rows) if rows.iter().any(|row| row[3] != rows[0][3]) => {
+                let advice = "Keep the rows of one, or give the table and the temperature in a model file";
+                Err(refuse(&format_args!("friction depends on the temperature, which no deck says. {advice}")))
+            }
+            Dependence::Table(rows) => {
+                let in_si = |&[mu, v, q, _]: &[f64; 4]| vec![mu, v * speed, q * self.units.stress()];
+                let rows: Vec<Vec<f64>> = rows.iter().map(in_si).collect();
+                let (value, table) = FrictionTable::of_rows(&["speed", "pressure"], &rows, None)
+                    .map_err(|refusal| refuse(&format_args!("{}. {}", refusal.what, refusal.advice)))?;
+                Ok((value, Some(FrictionCurve::Table(table))))
+            }
+        }
     }
 }
 

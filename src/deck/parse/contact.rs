@@ -6,7 +6,9 @@ use crate::Result;
 use crate::deck::card::Card;
 use crate::deck::catalogue::treatment;
 use crate::deck::row::Row;
-use crate::deck::types::{Action, ActionKind, Behaviour, ContactPair, Coupling, Entry, Friction, Interaction};
+use crate::deck::types::{
+    Action, ActionKind, Behaviour, ContactPair, Coupling, Dependence, Entry, Friction, Interaction,
+};
 
 impl Parser {
     pub(super) fn contact(&mut self, card: &Card) -> Result<()> {
@@ -74,15 +76,23 @@ impl Parser {
                 card.error(format_args!("{parameter} is not supported ({}): Coulomb friction only", card.spelled))
             );
         }
-        let mut friction = None;
-        while let Some(row) = self.lines.row()? {
-            if friction.is_some() {
-                let what = "a second coefficient: friction that depends on slip rate, pressure or temperature is not supported. Keep one row";
-                return Err(row.error(what));
-            }
-            friction = Some(coefficient(&row)?);
+        let first = self.lines.row()?.ok_or_else(|| card.error("the friction coefficient is missing"))?;
+        let mut friction = coefficient(&first)?;
+        if card.has("EXPONENTIALDECAY") {
+            let [kinetic, decay] = [first.real(1, "the kinetic coefficient")?, first.real(2, "the decay")?];
+            (friction.dependence, friction.stick) = (Dependence::Decay { kinetic, decay }, None);
+            return Ok(friction);
         }
-        friction.ok_or_else(|| card.error("the friction coefficient is missing"))
+        let of_table = |row: &Row| row.reals::<4>(0, "coefficient, slip rate, pressure, temperature");
+        let mut rows = vec![of_table(&first)?];
+        while let Some(row) = self.lines.row()? {
+            coefficient(&row)?;
+            rows.push(of_table(&row)?);
+        }
+        if rows.len() > 1 {
+            (friction.dependence, friction.stick) = (Dependence::Table(rows), None);
+        }
+        Ok(friction)
     }
 
     fn change_friction(&mut self, card: &Card) -> Result<()> {
@@ -136,9 +146,9 @@ fn coefficient(row: &Row) -> Result<Friction> {
     if coefficient < 0.0 {
         return Err(row.error(format_args!("the friction coefficient must be 0 or above, not {coefficient}")));
     }
-    // The second number is CalculiX's stick slope; Abaqus has slip rates there.
+    // In a single row the second number is CalculiX's stick slope.
     let stick = row.real_or(1, 0.0, "the stiffness of sticking")?;
-    Ok(Friction { coefficient, stick: (stick > 0.0).then_some(stick), place: row.place })
+    Ok(Friction { coefficient, dependence: Dependence::None, stick: (stick > 0.0).then_some(stick), place: row.place })
 }
 
 /// First and last axis (1 to 6) from a field on; the last is the first where it is missing.

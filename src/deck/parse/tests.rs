@@ -1,7 +1,7 @@
 //! What the parser decides, keyword by keyword.
 
 use super::*;
-use crate::deck::types::{ActionKind, Behaviour, ElasticKind, Entry, Procedure};
+use crate::deck::types::{ActionKind, Behaviour, Dependence, ElasticKind, Entry, Procedure};
 
 /// Reads a deck of these lines; messages without the folder.
 fn read(text: &str) -> std::result::Result<Deck, String> {
@@ -119,7 +119,15 @@ fn laws_of_contact() {
     assert_eq!(linear.friction.map(|friction| (friction.coefficient, friction.stick)), Some((0.4, Some(1e4))));
     assert!(law("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n0.").unwrap_err().contains("must be above 0"));
     assert!(law("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=EXPONENTIAL\n1,2").unwrap_err().contains("not supported"));
-    assert!(law("*FRICTION\n.3\n.4").unwrap_err().contains("a second coefficient"));
+    let friction = |card: &str| law(card).map(|law| law.friction.unwrap()).unwrap();
+    let decay = friction("*FRICTION, EXPONENTIAL DECAY\n.6, .4, 1e-3");
+    assert_eq!((decay.coefficient, decay.stick), (0.6, None));
+    assert_eq!(decay.dependence, Dependence::Decay { kinetic: 0.4, decay: 1e-3 });
+    let table = friction("*FRICTION\n.3, 0., 1.\n.2, 5., 1.");
+    assert_eq!((table.coefficient, table.stick), (0.3, None));
+    assert_eq!(table.dependence, Dependence::Table(vec![[0.3, 0.0, 1.0, 0.0], [0.2, 5.0, 1.0, 0.0]]));
+    assert!(law("*FRICTION\n.3\n-.4, 1.").unwrap_err().contains("must be 0 or above"));
+    assert!(law("*FRICTION, EXPONENTIAL DECAY\n.6").unwrap_err().contains("the kinetic coefficient"));
     assert!(law("*FRICTION, TAUMAX=3.\n.3").unwrap_err().contains("TAUMAX is not supported"));
     refused("*CONTACT PAIR, INTERACTION=i\n", "a.inp:1: the two surfaces are missing");
 }

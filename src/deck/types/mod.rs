@@ -20,7 +20,9 @@ pub use mesh::{
     ElementBlock, Entry, Instance, Nodes, Orientation, Property, PropertyKind, Scope, Section, SetDefinition,
     SurfaceDefinition, SurfaceItem, Turn,
 };
-pub use physics::{Behaviour, ContactPair, Coupling, Elastic, ElasticKind, Friction, Interaction, Material};
+pub use physics::{
+    Behaviour, ContactPair, Coupling, Dependence, Elastic, ElasticKind, Friction, Interaction, Material,
+};
 
 /// A deck.
 #[derive(Debug, Default)]

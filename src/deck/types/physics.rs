@@ -85,14 +85,32 @@ pub enum Behaviour {
 }
 
 /// Coulomb friction.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Friction {
-    /// Coefficient.
+    /// Coefficient; the static one, or the first of a table.
     pub coefficient: f64,
+    /// How it depends on other things.
+    pub dependence: Dependence,
     /// Tangential stress over slip while sticking.
     pub stick: Option<f64>,
     /// Where it stands.
     pub place: Place,
+}
+
+/// How a friction coefficient depends on other things.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Dependence {
+    /// Not at all.
+    None,
+    /// It falls with the slip rate v: `mu_k + (mu_s - mu_k) exp(-d v)`.
+    Decay {
+        /// `mu_k`
+        kinetic: f64,
+        /// d
+        decay: f64,
+    },
+    /// Rows of coefficient, slip rate, pressure and temperature.
+    Table(Vec<[f64; 4]>),
 }
 
 /// A contact pair.

@@ -12,6 +12,7 @@ mod joints;
 use super::*;
 use crate::deck::parse;
 use crate::error::ErrorKind;
+use crate::model::friction::{FrictionCurve, SpeedDecay};
 use crate::model::{Contact, LoadKind, NormalLaw};
 use std::fmt::Write;
 
@@ -229,6 +230,32 @@ fn friction_is_that_of_the_last_step() {
     let changed = "*CHANGE FRICTION, INTERACTION=I\n*FRICTION\n0.55\n*COMPLEX FREQUENCY, FRICTION DAMPING=YES";
     let model = with("*COMPLEX FREQUENCY, FRICTION DAMPING=YES", changed).unwrap().model;
     assert_eq!(model.contacts[0].friction, 0.55);
+}
+
+#[test]
+fn friction_that_depends_on_slip_rate_and_pressure_comes_in_si_units() {
+    let curve = |rows: &str| {
+        with("*FRICTION\n0.4\n", &format!("*FRICTION{rows}\n")).map(|deck| {
+            let contact = &deck.model.contacts[0];
+            (contact.friction, contact.friction_curve.clone().unwrap())
+        })
+    };
+    // A slip rate in mm/s, a pressure in MPa.
+    let decay = FrictionCurve::Decay(SpeedDecay { kinetic_ratio: 0.5, decay: 2.0 });
+    assert_eq!(curve(", EXPONENTIAL DECAY\n0.4, 0.2, 2e-3").unwrap(), (0.4, decay));
+    let (value, FrictionCurve::Table(table)) = curve("\n0.4, 0., 2.\n0.2, 1000., 2.").unwrap() else {
+        panic!("a table")
+    };
+    assert_eq!((value, table.values, table.speeds), (0.4, vec![1.0, 0.5], vec![0.0, 1.0]));
+    assert!(close(table.pressures[0], 2e6));
+    for (rows, said) in [
+        ("\n0.4, 0., 2., 20.\n0.2, 0., 2., 200.", "friction depends on the temperature, which no deck says"),
+        ("\n0.4, 0., 2.\n0.2, 1., 3.", "a combination of values not at all or twice"),
+        (", EXPONENTIAL DECAY\n0., 0.3, 1.", "an exponential decay needs a static coefficient"),
+    ] {
+        let message = curve(rows).unwrap_err();
+        assert!(message.contains(said), "{message}");
+    }
 }
 
 #[test]
