@@ -96,11 +96,10 @@ fn stribeck(
     let &keys::StribeckTable { at_rest, kinetic, stribeck_speed: speed, exponent, viscous } = table;
     let numbers = [speed, exponent, viscous].into_iter().all(f64::is_finite);
     let holds = numbers && is_positive(at_rest) && is_coefficient(kinetic) && speed > 0.0;
-    let advice = "Give static above 0 and kinetic from 0, both up to 2, a stribeck_speed above 0 in m/s, an exponent of 1 or \
-                  above, and viscous from 0 in s/m";
-    let what = format_args!(
-        "friction has static = {at_rest}, kinetic = {kinetic}, stribeck_speed = {speed}, exponent = {exponent}, viscous = {viscous}"
-    );
+    let advice = "Give static above 0 and kinetic from 0, both up to 2, a stribeck_speed above 0 in m/s, \
+                  an exponent of 1 or above, and viscous from 0 in s/m";
+    let falling = format_args!("static = {at_rest}, kinetic = {kinetic}, stribeck_speed = {speed}");
+    let what = format_args!("friction has {falling}, exponent = {exponent}, viscous = {viscous}");
     item.require_at(&raw.span(), holds && exponent >= 1.0 && viscous >= 0.0, what, advice)?;
     let curve = Stribeck { kinetic_ratio: kinetic / at_rest, speed, exponent, viscous: viscous / at_rest };
     Ok((at_rest, Some(FrictionCurve::Stribeck(curve))))
@@ -163,8 +162,8 @@ impl FrictionTable {
     }
 }
 
-/// The column of speed, pressure and temperature in the rows, each where the table depends on it; none where `by` has an
-/// unknown variable or one twice.
+/// The column of speed, pressure and temperature in the rows, each where the table depends on it; none where `by` has
+/// an unknown variable or one twice.
 fn columns(by: &[&str]) -> Option<[Option<usize>; 3]> {
     let mut columns = [None; 3];
     for (i, name) in by.iter().enumerate() {
