@@ -42,7 +42,11 @@ pub fn loads(model: &Model, mesh: &Mesh, sets: &Sets) -> Result<Vec<(u32, [f64; 
                 forces.extend(surface_load(mesh, surface, |x| facet::traction_load(x, traction)));
             }
             LoadKind::ForceAt { force, moment, at } => {
-                let spread = sets.motion(&load.on, at).map(|motion| motion.spread(force, moment));
+                let acting = std::array::from_fn(|i| if i < 3 { force[i] != 0.0 } else { moment[i - 3] != 0.0 });
+                let spread = sets.motion(&load.on, at).and_then(|motion| {
+                    motion.require(&load.on, acting)?;
+                    Ok(motion.spread(force, moment))
+                });
                 let refuse = |message| model.error(load.place, format_args!("load {:?}: {message}", load.name));
                 forces.extend(spread.map_err(refuse)?);
             }

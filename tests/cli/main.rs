@@ -5,6 +5,7 @@ mod browser;
 mod command_line;
 mod deck;
 mod external_matrices;
+mod joints;
 mod json;
 mod matrix_formats;
 mod no_convergence;

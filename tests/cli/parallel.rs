@@ -16,7 +16,7 @@ fn numbers(table: &str) -> Vec<Vec<f64>> {
 }
 
 /// Frequency (Hz) and growth rate (1/s) of all modes, and the contact table, on some ranks.
-fn stability(place: &Place, band: &str, ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
+pub fn stability(place: &Place, band: &str, ranks: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let arguments = ["stability", "brake.toml", "--band", band, "-o", "run", "--force"];
     let Finished { code, err, .. } = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
     assert_eq!(code, 0, "{err}");
@@ -26,16 +26,26 @@ fn stability(place: &Place, band: &str, ranks: usize) -> (Vec<[f64; 2]>, Vec<f64
 }
 
 /// Requires the same modes and contact tables, to 1e-9.
-fn assert_same((modes, contact): &(Vec<[f64; 2]>, Vec<f64>), (others, other_contact): &(Vec<[f64; 2]>, Vec<f64>)) {
+fn assert_same(one: &(Vec<[f64; 2]>, Vec<f64>), other: &(Vec<[f64; 2]>, Vec<f64>)) {
+    assert_same_modes(&one.0, &other.0);
+    assert_same_contact(&one.1, &other.1, 1e-9);
+}
+
+/// Requires the same modes, to 1e-9.
+pub fn assert_same_modes(modes: &[[f64; 2]], others: &[[f64; 2]]) {
     assert_eq!(others.len(), modes.len());
     for ([f, s], [g, t]) in modes.iter().zip(others) {
         let omega = std::f64::consts::TAU * f;
         let difference = (std::f64::consts::TAU * (f - g)).hypot(s - t);
         assert!(difference <= 1e-9 * omega, "{f} Hz {s} /s on one rank, {g} Hz {t} /s on several");
     }
-    assert_eq!(other_contact.len(), contact.len());
-    for (a, b) in contact.iter().zip(other_contact) {
-        assert!((a - b).abs() <= 1e-9 * a.abs(), "{a} on one rank, {b} on several");
+}
+
+/// Requires the same contact tables.
+pub fn assert_same_contact(contact: &[f64], others: &[f64], tolerance: f64) {
+    assert_eq!(others.len(), contact.len());
+    for (a, b) in contact.iter().zip(others) {
+        assert!((a - b).abs() <= tolerance * a.abs(), "{a} on one rank, {b} on several");
     }
 }
 

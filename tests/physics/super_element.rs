@@ -197,6 +197,34 @@ fn all_modes_kept_give_the_full_models_eigenvalues() {
     assert!(found.len() >= 5 && error < 1e-10, "{error}");
 }
 
+/// A tie, a rigid set, a mass, springs to the ground and an equation in place of the piston's contact and supports.
+fn with_joints() -> String {
+    let (before, rest) = MODEL.split_once("[[fix]]\nnodes = \"piston_z1\"\naxes = \"xy\"\n").unwrap();
+    let (contacts, loads) = rest.split_once("[[contact]]\nname = \"piston / pad\"").unwrap();
+    let (_, loads) = loads.split_once("[[load]]").unwrap();
+    let joints = "[[tie]]\nslave = \"piston_z0\"\nmaster = \"pad_z1\"\n[[rigid]]\nnodes = \"piston_z1\"\n\
+                  [[mass]]\nnodes = \"piston_z1\"\nmass = 0.1\nat = [0.014, 0.016, 0.03]\n\
+                  inertia = [2e-5, 2e-5, 2e-5, 0, 0, 0]\n\
+                  [[connector]]\nbetween = [\"piston_z1\", \"ground\"]\nstiffness = [2e8, 1e8, 1e5]\n\
+                  rotational_stiffness = [1e3, 1e3, 1e3]\n";
+    format!("{before}{contacts}{joints}[[load]]{loads}")
+}
+
+/// With joints the super-element has the full model's eigenvalues, too: all modes kept 1e-9, those up to 60 kHz 1e-3.
+#[test]
+fn joints_are_in_the_super_element() {
+    let comm = Session::start(&[]).unwrap();
+    let full = Full::new(&comm, &with_joints(), FRICTION);
+    assert!(full.eigenvalues.len() >= 3, "{:?}", full.eigenvalues);
+    for (limit, allowed) in [(f64::INFINITY, 1e-9), (100e3, 1e-3)] {
+        let (_, element) = full.reduce(limit);
+        let (_, _, found) = analyse(&comm, &element, None, FRICTION);
+        let error = largest_error(&found, &full.eigenvalues);
+        println!("{} modes, largest error {error:.1e}", found.len());
+        assert!(error < allowed, "{error} up to {limit} Hz");
+    }
+}
+
 /// In the modal coordinates of the first friction the others have the modes that a search with a factor of their own
 /// finds: eigenvalues to 1e-9 (measured 2.7e-10, the other search's), and left vectors solve the transposed problem to
 /// 1e-10, which is the largest backward error accepted (measured 4e-12; the first value's are found one by one, since

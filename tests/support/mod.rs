@@ -6,6 +6,7 @@
 
 pub mod block;
 pub mod browser;
+pub mod gmsh;
 pub mod pad_on_disc;
 pub mod program;
 

@@ -207,11 +207,14 @@ fn connector(sets: &Sets, connector: &Connector) -> std::result::Result<JointEle
     let middle = [0, 1, 2].map(|i| share * centres.iter().map(|centre| centre[i]).sum::<f64>());
     let at = connector.at.unwrap_or(middle);
     let mut rows = Rows::new(6);
-    for (end, sign) in ends {
-        rows.add_motion(&sets.motion(end, Some(at))?, sign);
-    }
     let stiffness = [connector.stiffness, connector.rotational_stiffness].concat();
     let damping = [connector.damping, [0.0; 3]].concat();
+    let acting = std::array::from_fn(|i| stiffness[i] != 0.0 || damping[i] != 0.0);
+    for (end, sign) in ends {
+        let motion = sets.motion(end, Some(at))?;
+        motion.require(end, acting)?;
+        rows.add_motion(&motion, sign);
+    }
     Ok(JointElement { damping, ..JointElement::springs(rows, stiffness) })
 }
 
@@ -236,6 +239,8 @@ fn equation(equation: &Equation, nodes: &[u32], neighbours: &Neighbours) -> Join
 /// `q = [u_R, R^T phi]` with the principal axes R of the inertia, on which it is diagonal.
 fn point_mass(sets: &Sets, mass: &PointMass) -> std::result::Result<JointElement, String> {
     let mut motion = sets.motion(&mass.nodes, mass.at)?;
+    let (has_mass, has_inertia) = (mass.mass != 0.0, mass.inertia != [0.0; 6]);
+    motion.require(&mass.nodes, std::array::from_fn(|i| if i < 3 { has_mass } else { has_inertia }))?;
     let matrix = PointMass::matrix(mass.mass, mass.inertia);
     let inertia: Matrix3<f64> = matrix.fixed_view::<3, 3>(3, 3).into_owned();
     let principal = SymmetricEigen::new(inertia);

@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::Result;
+use crate::algebra::norm;
 use crate::contact::surface_points::nodal_weights;
 use crate::element::coupling::{Cloud, MeanMotion, mean_motion};
 use crate::mesh::{Mesh, Numbering};
@@ -23,9 +24,31 @@ pub struct SetMotion {
     pub nodes: Vec<u32>,
     /// Their blocks.
     pub motion: MeanMotion,
+    /// Of a set of one node, which does not rotate: the way from it to the reference point, m.
+    lever: Option<[f64; 3]>,
 }
 
+/// A way across an axis below this fraction of the distance from the origin is rounding.
+const ON_AXIS: f64 = 1e-6;
+
 impl SetMotion {
+    /// Refuses what one node cannot take: a moment, and a force off its line; `acting` says what acts, along and about
+    /// x, y, z.
+    ///
+    /// # Errors
+    /// A text.
+    pub fn require(&self, name: &str, acting: [bool; 6]) -> std::result::Result<(), String> {
+        let Some(lever) = self.lever else { return Ok(()) };
+        if acting[3..].contains(&true) {
+            return Err(format!("{name:?} is one node, which does not rotate; name nodes that span a plane"));
+        }
+        let is_across = |i: usize| (0..3).any(|j| j != i && lever[j] != 0.0);
+        match (0..3).any(|i| acting[i] && is_across(i)) {
+            true => Err(format!("{name:?} is one node, and what acts has a lever about it; leave out `at`")),
+            false => Ok(()),
+        }
+    }
+
     /// Nodal forces (N) with this resultant (N) and moment (N m) at the reference point.
     pub fn spread(&self, force: [f64; 3], moment: [f64; 3]) -> Vec<(u32, [f64; 3])> {
         self.nodes.iter().copied().zip(self.motion.spread(force, moment)).collect()
@@ -91,7 +114,8 @@ impl<'a> Sets<'a> {
     }
 
     /// The mean motion of a set at a point (m), or at its centroid. A set within a rigid body has that of the body's
-    /// base, so that sets of thousands of nodes are cheap.
+    /// base, so that sets of thousands of nodes are cheap. A set of one node has its displacement and no rotation:
+    /// [`SetMotion::require`].
     ///
     /// # Errors
     /// A text: there is no such set, or it lies on a line.
@@ -103,8 +127,15 @@ impl<'a> Sets<'a> {
             Some(body) => self.alike(body.base.to_vec()),
             None => own,
         };
+        if let [x] = acting.positions[..] {
+            let significant = |x: f64, from: f64| if (x - from).abs() > ON_AXIS * norm(at) { x - from } else { 0.0 };
+            let lever = [0, 1, 2].map(|i| significant(at[i], x[i]));
+            let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            let motion = MeanMotion { displacement: vec![identity], rotation: vec![[[0.0; 3]; 3]] };
+            return Ok(SetMotion { nodes: acting.nodes, motion, lever: Some(lever) });
+        }
         let motion = mean_motion(acting.cloud(), at).map_err(|error| format!("{name:?}: {error}"))?;
-        Ok(SetMotion { nodes: acting.nodes, motion })
+        Ok(SetMotion { nodes: acting.nodes, motion, lever: None })
     }
 
     /// The nodes of a set with their weights: of a surface the midsides (the corners where it is linear) with their

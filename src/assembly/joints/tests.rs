@@ -316,3 +316,26 @@ fn neighbours_are_the_softest_and_largest_elements_beside_a_node() {
     let both = neighbours.around(&[0, 3]);
     assert!((both.young / 2e11 - 1.0).abs() < 1e-12 && both.size == 10.0_f64.sqrt());
 }
+
+#[test]
+fn a_set_of_one_node_takes_forces_on_their_line_and_no_moments() {
+    let mut mesh = plates(FacetShape::Triangle3, 0.1);
+    mesh.node_sets.insert("tip".into(), vec![2]);
+    let tip = mesh.nodes[2];
+    let sets = Sets::new(&model(vec![], false), &mesh, &Numbering::even(mesh.nodes.len(), 0, 1)).unwrap();
+    let along_x = [true, false, false, false, false, false];
+    let about_x = [false, false, false, true, false, false];
+    let said = |at: [f64; 3], acting| sets.motion("tip", Some(at)).unwrap().require("tip", acting).err();
+    let ahead = [tip[0] + 5.0, tip[1], tip[2]];
+    let above = [tip[0], tip[1], tip[2] + 0.1];
+    assert_eq!((said(tip, along_x), said(ahead, along_x)), (None, None));
+    assert!(said(above, along_x).unwrap().starts_with("\"tip\" is one node, and what acts has a lever about it"));
+    assert!(said(tip, about_x).unwrap().starts_with("\"tip\" is one node, which does not rotate"));
+    let of = |mesh: &Mesh, mass: f64, inertia| {
+        let own = PointMass { name: "m".into(), nodes: "tip".into(), at: None, mass, inertia, place: Place::default() };
+        joints(&Model { masses: vec![own], ..model(vec![], false) }, mesh)
+    };
+    let [_, m] = assembled(&of(&mesh, 2.5, [0.0; 6]).unwrap(), &mesh);
+    assert_eq!((m[(6, 6)], m[(7, 7)], m[(8, 8)], m.sum()), (2.5, 2.5, 2.5, 7.5));
+    assert!(of(&mesh, 0.0, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]).is_err());
+}
