@@ -24,8 +24,8 @@ pub fn constraints(model: &Model, mesh: &Mesh) -> Result<Vec<[bool; 3]>> {
 /// The nodal forces (N) of the model's loads.
 ///
 /// # Errors
-/// [`Error::Input`](crate::Error::Input) where a set is missing, a traction is asked of something that is not a surface,
-/// or a force at a point acts on nodes of one line.
+/// [`Error::Input`](crate::Error::Input) where a set is missing, a traction acts on something that is not a surface, or
+/// a force at a point on nodes of one line.
 pub fn loads(model: &Model, mesh: &Mesh, sets: &Sets) -> Result<Vec<(u32, [f64; 3])>> {
     let mut forces = Vec::new();
     for load in &model.loads {

@@ -151,12 +151,12 @@ fn remedies(sources: &[Source]) -> Vec<String> {
 fn changes(source: &Source) -> Vec<(f64, String)> {
     let name = &source.name;
     let mut all = Vec::new();
-    if let Some(s) = source.sensitivity {
+    if let Some(s) = source.sensitivity.filter(|_| !source.kind.is_penalty()) {
         let percent = 100.0 * CHANGE;
         let stiffer = sign(s.stiffness.re < 0.0);
         all.push((-CHANGE * s.stiffness.re.abs(), format!("stiffness of {name} {stiffer}{percent} %")));
         all.push((CHANGE * s.damping.re, format!("damping of {name} +{percent} %")));
-        if source.kind == Kind::Part {
+        if matches!(source.kind, Kind::Part | Kind::Mass) {
             let heavier = sign(s.mass.re < 0.0);
             all.push((-CHANGE * s.mass.re.abs(), format!("mass of {name} {heavier}{percent} %")));
         }
@@ -267,6 +267,16 @@ mod tests {
         let findings = Findings::new(&results);
         let answers = findings.instabilities.iter().map(|one| format!("{:#?}\n", answer(&findings, one)));
         insta::assert_snapshot!(answers.collect::<String>());
+    }
+
+    #[test]
+    fn penalties_are_no_remedies_and_masses_are() {
+        let results = testing::results();
+        let mut sources = results.values.iter().flat_map(|value| &value.modes).flat_map(|mode| &mode.sources);
+        let part = sources.find(|source| source.kind == Kind::Part && source.sensitivity.is_some()).unwrap();
+        let n_changes = |kind| changes(&Source { kind, ..part.clone() }).len();
+        assert_eq!([Kind::Part, Kind::Mass, Kind::Connector].map(n_changes), [3, 3, 2]);
+        assert_eq!([Kind::Tie, Kind::Rigid, Kind::Equation].map(n_changes), [0, 0, 0]);
     }
 
     #[test]

@@ -26,7 +26,14 @@ pub enum Kind {
     Contact,
 }
 
-/// A part, connector or contact pair and its role in a mode.
+impl Kind {
+    /// Whether its stiffness is a penalty and no property of the brake.
+    pub fn is_penalty(self) -> bool {
+        matches!(self, Kind::Tie | Kind::Rigid | Kind::Equation)
+    }
+}
+
+/// A part, joint or contact pair and its role in a mode.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Source {
     /// What it is.

@@ -2,8 +2,8 @@
 //!
 //! Every body of parts that share nodes has six rigid motions `q` about its centroid, rotations scaled by its size.
 //! Each support, closed contact point and row of a joint is a linear functional of them, `s = R q`; motions with
-//! `R q = 0` are free. They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a body
-//! along an axis, a contact pair, a joint) has the same say whatever its number of points and the model's unit of
+//! `R q = 0` are free. They are the null space of the Gram matrix `R^T R`, in which every source (the supports of a
+//! body along an axis, a contact pair, a joint) has the same say whatever its number of points and the model's unit of
 //! length.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};

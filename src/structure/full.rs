@@ -139,7 +139,7 @@ impl FullModel {
             ),
         };
         Err(Error::input(format!(
-            "{}: unconstrained:\n{free}\nAdd a [[fix]], a [[connector]] or a [[contact]] that stops these motions{gaps}",
+            "{}: unconstrained:\n{free}\nAdd a [[fix]], a [[connector]], a [[tie]] or a [[contact]] that stops these motions{gaps}",
             self.model.file.display()
         )))
     }

@@ -141,30 +141,26 @@ fn the_patch_test_holds_where_meshes_match() {
     }
 }
 
-/// Where they do not match, what a node passes on is not the pressure's share: stress is off by a tenth and less beside
-/// the tie, and the length not at all.
+/// Where facets overlap in part, nodes do not pass on the pressure's share: stress is off by a tenth beside the tie
+/// [0.061, 0.041, 0.10], the length by a hundredth [0.0036, 0.0018, 0.012]. Where the finer facets divide the coarser
+/// ones, stress is uniform [7e-12].
 #[test]
 fn stress_beside_a_tie_of_meshes_that_do_not_match_is_nearly_uniform() {
     let comm = Session::start(&[]).unwrap();
-    for (kind, n, allowed) in [
-        (ElementKind::C3D10, [2, 3], 0.12),
-        (ElementKind::C3D20, [2, 3], 0.12),
-        (ElementKind::C3D8I, [2, 3], 0.12),
-        (ElementKind::C3D10, [2, 4], 0.12),
-        (ElementKind::C3D20, [2, 4], 0.12),
-        (ElementKind::C3D8I, [2, 4], 0.12),
-    ] {
+    let cases = KINDS.into_iter().flat_map(|kind| [(kind, [2, 3], 0.12), (kind, [2, 4], 1e-9)]);
+    for (kind, n, allowed) in cases {
         let brake = brake(&pulled(), two(kind, n));
         let u = displacements(&comm, &brake);
         let top = brake.mesh.node_set("upper_z1").unwrap();
         let mean = top.iter().map(|&node| u[node as usize][2]).sum::<f64>() / top.len() as f64;
-        let (stress, length): (f64, f64) = (stress_error(&brake, &u), mean / (STRESS / YOUNG * 0.02) - 1.0);
+        let (stress, length) = (stress_error(&brake, &u), mean / (STRESS / YOUNG * 0.02) - 1.0);
         println!("{} {n:?}: stress {stress:.1e}, length {length:.1e}", kind.name());
         assert!(stress < allowed && length.abs() < 0.02);
     }
 }
 
-/// Two tied blocks beside one block of the same mesh: a side force and the first ten frequencies.
+/// Two tied blocks beside one block of the same mesh: a side force [softer by 3.3e-5 to 3.8e-5] and the first ten
+/// frequencies [lower by 3e-6 to 3e-5].
 #[test]
 fn tied_blocks_are_one_block() {
     let comm = Session::start(&[]).unwrap();
@@ -187,7 +183,7 @@ fn tied_blocks_are_one_block() {
     }
 }
 
-/// Meshes that do not match, beside one block of the finer mesh.
+/// Meshes that do not match, beside one block of the finer mesh: the first ten frequencies [1.5, 0.9, 2.2 %].
 #[test]
 fn tied_blocks_of_different_meshes_are_nearly_one_block() {
     let comm = Session::start(&[]).unwrap();
@@ -201,7 +197,7 @@ fn tied_blocks_of_different_meshes_are_nearly_one_block() {
     }
 }
 
-/// The upper end is rigid while its edge is pulled: its own strain beside that of the block.
+/// The upper end is rigid while its edge is pulled: its own strain beside that of the block [2.3e-5].
 #[test]
 fn a_rigid_set_keeps_its_distances() {
     let comm = Session::start(&[]).unwrap();
@@ -228,7 +224,8 @@ fn a_rigid_set_keeps_its_distances() {
     }
 }
 
-/// A body without noticeable mass on springs to the ground with a mass of 10 kg on its rigid face: `sqrt(k / m)` to 1e-6.
+/// A body without noticeable mass, on springs to the ground with a mass of 10 kg on its rigid face: `sqrt(k / m)` to
+/// 1e-6 [1.4e-8].
 #[test]
 fn a_point_mass_on_springs_swings_at_its_frequency() {
     let comm = Session::start(&[]).unwrap();
@@ -285,7 +282,7 @@ fn a_mass_with_inertia_and_offset_adds_to_the_bodys() {
     }
 }
 
-/// Two nodes of the free end that move against each other, pushed by a force at one of them.
+/// Two nodes of the free end that move against each other, pushed by a force at one of them [1e-5].
 #[test]
 fn an_equation_holds_to_its_penalty() {
     let comm = Session::start(&[]).unwrap();

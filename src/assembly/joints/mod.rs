@@ -8,8 +8,8 @@
 //! | equation | `sum a_k u_k` | penalty |
 //! | point mass | motion of a node set, about the principal axes | mass, moments of inertia |
 //!
-//! Each is one or more linear elements `K = G^T diag(k) G` ([`crate::element::linear`]), with the same rows for C and
-//! M. A penalty is [`PENALTY`] times the stiffness of the elements beside it; so it gives way by 1e-4 of the deformation
+//! Each is one or more linear elements `K = G^T diag(k) G` ([`crate::element::linear`]), with the same rows for C, M.
+//! A penalty is [`PENALTY`] times the stiffness of the elements beside it; so it gives way by 1e-4 of the deformation
 //! of one layer of these elements.
 
 pub mod neighbours;

@@ -15,8 +15,8 @@
 //! ```
 //!
 //! With the factor `L L^T` of that matrix of products the element has the rows `L^T [u]` and the stiffness p for each.
-//! As many jumps are penalised as the slave has nodes: a tie does not lock, and no motion of the slave escapes it. Where
-//! the meshes match node by node a uniform stress stays uniform, with the jump `sigma / p` everywhere.
+//! As many jumps are penalised as the slave has nodes: a tie does not lock, and no motion of the slave escapes it.
+//! Where the meshes match node by node a uniform stress stays uniform, with the jump `sigma / p` everywhere.
 
 use std::collections::{BTreeSet, HashMap};
 
