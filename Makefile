@@ -19,7 +19,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help install deb demo demo-deck test python-test report-test calculix td1 validation docs full bench lint setup build clean
+.PHONY: help install deb demo demo-deck test python-test report-test calculix td1 validation docs full fuzz bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## print this list
@@ -59,6 +59,12 @@ report-test: setup ## test the report's page in a browser
 td1: setup meshes/build/td1-coarse.msh ## compare a whole brake with the frequencies that Ansys publishes
 	@scripts/setup.sh --tests
 	cargo nextest run --release --test validation --no-capture -E 'test(/^td1::/)'
+
+FUZZ_SECONDS ?= 450
+
+fuzz: setup ## read damaged files of every format, FUZZ_SECONDS (450) for each
+	@scripts/setup.sh --tests
+	SQUEAL_FUZZ_SECONDS=$(FUZZ_SECONDS) cargo nextest run --test fuzz --no-capture --no-fail-fast
 
 docs: build ## build the manual: target/manual/index.html
 	@scripts/docs.sh $(BINARY) target/manual

@@ -129,7 +129,7 @@ fn entities(scan: &mut Scan, entities: &mut HashMap<(i32, i32), Vec<i32>>) -> Re
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
                 scan.double()?;
             }
-            let groups = ints(scan)?.into_iter().map(i32::abs).collect();
+            let groups = ints(scan)?.into_iter().map(i32::saturating_abs).collect();
             if dimension > 0 {
                 ints(scan)?;
             }
@@ -195,7 +195,7 @@ fn elements(scan: &mut Scan, blocks: &mut Vec<ElementBlock>) -> Result<()> {
     scan.close_section()
 }
 
-/// Number of blocks, of things in them, and their least and greatest tag, which nobody needs.
+/// Number of blocks, of things in them, and their least and greatest tag, which are not used.
 fn block_header(scan: &mut Scan) -> Result<(usize, usize)> {
     let counts = (scan.count()?, scan.count()?);
     scan.size()?;

@@ -1,0 +1,132 @@
+//! Small files of every format, all of them right.
+
+use std::path::Path;
+
+use crate::support::data;
+use crate::support::program::Place;
+
+fn all(names: &[&str]) -> Vec<Vec<u8>> {
+    names.iter().map(|name| std::fs::read(data(name)).unwrap()).collect()
+}
+
+pub fn models() -> Vec<Vec<u8>> {
+    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut all = all(&["pad_on_disc.toml", "pads_on_disc.toml"]);
+    all.extend(
+        ["src/model/example.toml", "meshes/brake-small.toml"].map(|name| std::fs::read(project.join(name)).unwrap()),
+    );
+    all
+}
+
+pub fn meshes() -> Vec<Vec<u8>> {
+    all(&[
+        "hexahedra_wedges.msh",
+        "hexahedra_wedges_linear.msh",
+        "two_blocks_ascii.msh",
+        "two_blocks_binary.msh",
+        "mixed.msh",
+    ])
+}
+
+/// A deck of a model of blocks, and one with instances, sets and steps.
+pub fn decks() -> Vec<Vec<u8>> {
+    let place = Place::blocks();
+    let written = place.run(&["convert", "brake.toml", "-o", "brake.inp"]);
+    assert_eq!(written.code, 0, "{}", written.err);
+    vec![place.read("brake.inp").into_bytes(), INSTANCES.as_bytes().to_vec()]
+}
+
+const INSTANCES: &str = "*HEADING
+two cubes
+*PART, NAME=CUBE
+*NODE, NSET=ALL
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+5, 0., 0., 1.
+6, 1., 0., 1.
+7, 1., 1., 1.
+8, 0., 1., 1.
+*ELEMENT, TYPE=C3D8I, ELSET=BODY
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*NSET, NSET=LOW, GENERATE
+1, 4, 1
+*ELSET, ELSET=EACH
+BODY
+*SURFACE, NAME=TOP
+BODY, S2
+*SURFACE, NAME=BOTTOM
+BODY, S1
+*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL
+*END PART
+*ASSEMBLY, NAME=A
+*INSTANCE, NAME=ONE, PART=CUBE
+*END INSTANCE
+*INSTANCE, NAME=TWO, PART=CUBE
+0., 0., 1.
+0., 0., 0., 0., 0., 1., 90.
+*END INSTANCE
+*NSET, NSET=HELD, INSTANCE=ONE
+LOW
+*END ASSEMBLY
+*MATERIAL, NAME=STEEL
+*ELASTIC
+210000., 0.3
+*DENSITY
+7.85e-9
+*DAMPING, ALPHA=5., BETA=1e-7
+*SURFACE INTERACTION, NAME=I
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+2e4
+*FRICTION
+0.3
+*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE
+TWO.BOTTOM, ONE.TOP
+*BOUNDARY
+HELD, 1, 3
+*STEP
+*STATIC
+*DSLOAD
+TWO.TOP, P, 1.5
+*END STEP
+*STEP
+*COMPLEX FREQUENCY
+10, 0., 6000.
+*END STEP
+";
+
+pub fn matrix_market() -> Vec<Vec<u8>> {
+    all(&["matrices/bicycle_m.mtx", "matrices/qep1_k.mtx", "matrices/sinou_k0.mtx"])
+}
+
+/// A dense and a sparse matrix of two rows: class, rows, columns, number of entries, then numbers.
+pub fn petsc() -> Vec<Vec<u8>> {
+    let file = |header: &[i32], values: &[f64]| {
+        let mut bytes: Vec<u8> = header.iter().flat_map(|number| number.to_be_bytes()).collect();
+        bytes.extend(values.iter().flat_map(|value| value.to_be_bytes()));
+        bytes
+    };
+    const MATRIX: i32 = 1_211_216;
+    let sparse = file(&[MATRIX, 2, 2, 3, 1, 2, 0, 0, 1], &[2.0, -1.0, 3.0]);
+    vec![sparse, file(&[MATRIX, 2, 2, -1], &[2.0, -1.0, -1.0, 3.0])]
+}
+
+pub fn abaqus() -> Vec<Vec<u8>> {
+    let listed = "1,1, 1,1, 2.0\n1,1, 1,2, -1.0\n1,2, 1,2, 3.0\n";
+    vec![listed.as_bytes().to_vec()]
+}
+
+pub fn results() -> Vec<Vec<u8>> {
+    let place = Place::blocks();
+    let run = place.run(&["stability", "brake.toml", "--friction", "0.1:0.3:0.1", "-o", "out"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    vec![std::fs::read(place.path("out/results.h5")).unwrap()]
+}
+
+pub fn super_elements() -> Vec<Vec<u8>> {
+    let place = Place::blocks();
+    let run = place.run(&["reduce", "brake.toml", "--contacts", "4", "--limit", "240000", "-o", "brake.se.h5"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    vec![std::fs::read(place.path("brake.se.h5")).unwrap()]
+}
