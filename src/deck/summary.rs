@@ -32,7 +32,6 @@ pub struct DeckSummary {
     /// Keywords that change no result, how often they are there, and where first.
     pub ignored: Vec<IgnoredKeyword>,
     /// Contact pairs without a stiffness, and the one proposed.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub proposed: Vec<ProposedStiffness>,
     /// How something was understood, or what was chosen.
     pub notes: Vec<String>,

@@ -151,7 +151,7 @@ pub struct Pair {
     #[serde(rename = "points")]
     pub n_points: usize,
     /// Its normal stiffness, N/m3, where a deck has none and the program proposed it.
-    #[serde(rename = "proposed_stiffness_n_per_m3", default, skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "proposed_stiffness_n_per_m3")]
     pub proposed_stiffness: Option<f64>,
 }
 

@@ -66,10 +66,27 @@ fn what_cannot_be_converted_or_analysed_is_refused() {
     refused(&["convert", "brake.inp", "-o", "own.toml", "--force"], &["is not a file that squeal convert has written"]);
     let text = place.read("brake.inp");
     place.write("tie.inp", text.clone() + "*TIE, NAME=T\nA, B\n");
-    refused(&["stability", "tie.inp"], &["tie.inp:", "*TIE is not supported: ties are not supported yet"]);
+    refused(&["stability", "tie.inp"], &["tie.inp:", "there is no surface B"]);
     place.write("short.toml", "[mesh]\nfile = \"brake.inp\"\nunit = \"m\"\n[stability]\nband = [0, 9]\n");
     refused(&["check", "short.toml"], &["brake.inp:", "no system of units with a unit of length of 1 m"]);
     let parts = "[[rotation]]\npart = \"disk\"\naxis = [0, 0, 1]\nspeed = 1\n[stability]\nband = [0, 9]\n";
     place.write("short.toml", format!("[mesh]\nfile = \"brake.inp\"\nunit = \"mm-t-s\"\n{parts}"));
     refused(&["check", "short.toml"], &["short.toml:4: there is no part \"disk\" to turn. Did you mean \"disc\"?"]);
+}
+
+/// A deck of statics alone needs no densities; modes are refused, also where a model file asks for them.
+#[test]
+fn a_deck_without_densities_has_an_equilibrium_and_no_modes() {
+    let place = place();
+    let text = place.read("brake.inp");
+    let (statics, _) = text.rsplit_once("*STEP\n").unwrap();
+    let mut lines: Vec<&str> = statics.lines().collect();
+    while let Some(at) = lines.iter().position(|line| *line == "*DENSITY") {
+        lines.drain(at..at + 2);
+    }
+    place.write("static.inp", lines.join("\n") + "\n");
+    let said = place.run(&["static", "static.inp", "--friction", "0.3"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let modes = ["stability", "static.inp", "--friction", "0.3"];
+    assert_refused(&place.run(&modes), &["static.inp:", "has no density, so that there are no modes"]);
 }

@@ -155,5 +155,5 @@ fn the_demo_brake_as_a_deck_has_its_matrices() {
     let file = Path::new("meshes/brake-small.toml");
     let (model, deck) = (brake(file), brake_of(&deck_of(file, UnitSystem::ALL[0])));
     assert_same_products(&comm, &model, &deck);
-    assert_eq!(model.joints.names, deck.joints.names);
+    assert_eq!(model.joints.elements.len(), deck.joints.elements.len());
 }

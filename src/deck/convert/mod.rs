@@ -5,7 +5,7 @@
 //!                                  --regions--> surfaces, node sets   (each name once)
 //!                                  --history--> what acts at the end of the last step: supports, loads, rotations
 //!                                  --pairs, ties--> contacts, ties
-//!                                  --references--> joints, discrete: rigid bodies, connectors, masses, forces at points
+//!                                  --references--> joints, discrete: rigid sets, connectors, masses, point forces
 //! ```
 
 use std::collections::HashMap;

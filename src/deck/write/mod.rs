@@ -1,8 +1,8 @@
 //! A model and its mesh as a deck.
 //!
 //! What [`read`](super::read) understands is written so that reading it back gives the same matrices to round-off.
-//! CalculiX reads all of it but `*COUPLING` of connectors and masses, `*ROTARY INERTIA` and `*MOTION`. Numbers have at most 20 characters, which is
-//! what CalculiX reads.
+//! CalculiX reads all of it but `*COUPLING` of connectors and masses, `*ROTARY INERTIA` and `*MOTION`. Numbers have at
+//! most 20 characters, which is what CalculiX reads.
 
 mod history;
 mod joints;

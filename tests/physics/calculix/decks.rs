@@ -15,7 +15,7 @@ use squeal::deck::{self, KnownUnits};
 use squeal::model::UnitSystem;
 use squeal::native::{Comm, Session};
 
-use super::references::{difference, reference};
+use super::references::{Reference, compute, reference};
 
 /// Where Debian installs the decks, some of them packed.
 const FOLDER: &str = "/usr/share/doc/calculix-ccx-test/examples/test";
@@ -25,7 +25,17 @@ const LIST: &str = "docs/manual/src/calculix-decks.md";
 const SAME: f64 = 1e-5;
 
 /// Decks that differ by more than [`SAME`], and why.
-const DIFFERENT: &[(&str, &str)] = &[];
+const DIFFERENT: &[(&str, &str)] = &[
+    ("beampic.inp", "CalculiX's iterative solver stops early: its direct one differs by 1.7e-3"),
+    ("beamptied1.inp", "penalty of the tie: on a beam as slender, rounding leaves a residual of 1e-8, above 1e-9"),
+    ("beamptied2.inp", "penalty of the tie: on a beam as slender, rounding leaves a residual of 1e-8, above 1e-9"),
+    ("contact4.inp", "contact points of second-order faces"),
+    ("cubespring.inp", "CalculiX's springs at nodes, in place of points of a facet"),
+    ("hueeber2.inp", "contact points: CalculiX's faces are cut by the master's edges"),
+    ("hueeber4.inp", "contact points: CalculiX's faces are cut by the master's edges"),
+    ("punch1.inp", "ADJUST is not applied: the punch is off the block, and nothing holds it"),
+    ("punch2.inp", "ADJUST is not applied: the punch is off the block, and nothing holds it"),
+];
 
 /// Unpacks all decks and results into a folder; gives the decks in the order of their names.
 fn unpack(folder: &Path) -> Vec<PathBuf> {
@@ -50,33 +60,69 @@ enum Outcome {
     Refused(String),
     /// Read; there are no results to compare with.
     Read,
-    /// Read and computed, with the largest difference.
-    Compared(f64),
+    /// Read and computed.
+    Compared(Differences),
     /// Read; the computation ends with this message.
     Failed(String),
 }
 
+/// Differences from CalculiX's results.
+struct Differences {
+    /// From those that are published with the deck.
+    published: f64,
+    /// From those of ccx for the deck without NLGEOM and PERTURBATION, where it has one of them.
+    linear: Option<f64>,
+}
+
+impl Differences {
+    fn largest(&self) -> f64 {
+        self.linear.unwrap_or(self.published)
+    }
+}
+
 fn outcome(comm: &Comm, path: &Path) -> Outcome {
     let name = path.file_name().unwrap().to_string_lossy().into_owned();
+    let without_folder = |message: String| message.replace(&format!("{}/", path.parent().unwrap().display()), "");
     // Decks without meaningful units are read in theirs.
     let units = KnownUnits { system: Some(UnitSystem::named("m-kg-s").unwrap()), length: None };
     let parsed = deck::parse(path);
-    match parsed.and_then(|deck| deck::convert::convert(&deck, units).map(|converted| (deck, converted))) {
-        Err(error) => {
-            assert_eq!(error.kind(), ErrorKind::Input, "{name}");
-            let message = error.to_string().replace(&format!("{}/", path.parent().unwrap().display()), "");
-            assert!(message.starts_with(&format!("{name}:")) && message.lines().count() == 1, "{message}");
-            Outcome::Refused(message.strip_prefix(&format!("{name}:")).unwrap().trim().replace('|', "/"))
-        }
-        Ok((deck, converted)) => {
-            let results = fs::read_to_string(path.with_extension("dat.ref")).unwrap_or_default();
-            match reference(&results).map(|reference| difference(comm, &deck, converted, &reference)) {
-                None => Outcome::Read,
-                Some(Ok(difference)) => Outcome::Compared(difference),
-                Some(Err(error)) => Outcome::Failed(error.lines().next().unwrap_or_default().replace('|', "/")),
+    let (deck, converted) =
+        match parsed.and_then(|deck| deck::convert::convert(&deck, units).map(|converted| (deck, converted))) {
+            Ok(both) => both,
+            Err(error) => {
+                assert_eq!(error.kind(), ErrorKind::Input, "{name}");
+                let message = without_folder(error.to_string());
+                assert!(message.starts_with(&format!("{name}:")) && message.lines().count() == 1, "{message}");
+                return Outcome::Refused(message.strip_prefix(&format!("{name}:")).unwrap().trim().replace('|', "/"));
             }
+        };
+    let results = fs::read_to_string(path.with_extension("dat.ref")).unwrap_or_default();
+    let Some(published) = reference(&results) else { return Outcome::Read };
+    match compute(comm, &deck, converted, &published) {
+        Err(error) => Outcome::Failed(without_folder(error.split(". ").next().unwrap_or_default().replace('|', "/"))),
+        Ok(ours) => {
+            let linear = linear_reference(path).map(|reference| ours.difference(&reference));
+            Outcome::Compared(Differences { published: ours.difference(&published), linear })
         }
     }
+}
+
+/// What ccx finds for a deck without NLGEOM and PERTURBATION, where it has one of them.
+fn linear_reference(path: &Path) -> Option<Reference> {
+    let text = fs::read_to_string(path).unwrap();
+    let is_step = |line: &&str| line.to_uppercase().starts_with("*STEP");
+    let plain = |line: &str| {
+        let fields = line.split(',').map(str::trim);
+        let kept = fields.filter(|field| !["NLGEOM", "PERTURBATION"].contains(&field.to_uppercase().as_str()));
+        kept.collect::<Vec<_>>().join(",")
+    };
+    let linear: Vec<String> =
+        text.lines().map(|line| if is_step(&line) { plain(line) } else { line.to_owned() }).collect();
+    if linear.iter().zip(text.lines()).all(|(one, two)| one.replace(' ', "") == two.trim().replace(' ', "")) {
+        return None;
+    }
+    let folder = super::run(&(linear.join("\n") + "\n"));
+    reference(&fs::read_to_string(folder.path().join("deck.dat")).unwrap())
 }
 
 #[test]
@@ -95,19 +141,21 @@ fn each_deck_of_calculix_is_computed_or_refused_with_one_line() {
                 refused.entry(line).or_default().push(name.clone());
                 continue;
             }
-            Outcome::Read => "no displacements or frequencies are printed | |".to_owned(),
-            Outcome::Compared(difference) => {
-                if difference.is_nan() || (difference > SAME) != reason.is_some() {
-                    wrong.push(format!("{name}: {difference:.1e}, {reason:?}"));
+            Outcome::Read => "nothing to compare is printed | | |".to_owned(),
+            Outcome::Compared(differences) => {
+                let Differences { published, linear } = differences;
+                if differences.largest().is_nan() || (differences.largest() > SAME) != reason.is_some() {
+                    wrong.push(format!("{name}: {published:.1e}, {linear:?}, {reason:?}"));
                 }
-                n_same += usize::from(difference <= SAME);
-                format!("{difference:.0e} | {} |", reason.unwrap_or_default())
+                n_same += usize::from(differences.largest() <= SAME);
+                let linear = linear.map_or_else(String::new, |linear| format!("{linear:.0e}"));
+                format!("{published:.0e} | {linear} | {} |", reason.unwrap_or_default())
             }
             Outcome::Failed(error) => {
                 if reason.is_none() {
                     wrong.push(format!("{name}: {error}"));
                 }
-                format!("not computed: {error} | {} |", reason.unwrap_or_default())
+                format!("not computed: {error} | | {} |", reason.unwrap_or_default())
             }
         };
         println!("{name} {row}");
@@ -127,8 +175,9 @@ fn page(n: usize, n_same: usize, computed: &str, refused: &BTreeMap<String, Vec<
         "# CalculiX's own decks\n\nEach deck of Debian's package calculix-ccx-test is read, or refused with one line. What is read is \
          computed and\ncompared with CalculiX's own results. `make calculix` writes this page.\n\nOf {n} decks {} are read and \
          {n_refused} refused. {n_same} have CalculiX's displacements or frequencies to 1e-5.\n\n## Decks that are computed\n\n\
-         Difference of displacements, relative to the largest one, or of frequencies with the mass of CalculiX's points.\n\n\
-         | deck | difference | why it is above 1e-5 |\n|---|---|---|\n{computed}\n## Decks that are refused\n\n\
+         Difference of displacements, relative to the largest one, or of frequencies with the mass of CalculiX's points: from \
+         the\nresults that come with the deck and, where it has NLGEOM or PERTURBATION, from those of ccx without them.\n\n\
+         | deck | difference | linear | why it is above 1e-5 |\n|---|---|---|---|\n{computed}\n## Decks that are refused\n\n\
          | deck | line, and what is not supported |\n|---|---|\n{rows}",
         n - n_refused
     )

@@ -9,7 +9,7 @@ use squeal::analysis::Sweep;
 use squeal::assembly::System;
 use squeal::contact::search::Alone;
 use squeal::deck::elements::Class;
-use squeal::deck::{Converted, Deck};
+use squeal::deck::{self, Converted, Deck};
 use squeal::mesh::{Numbering, Piece};
 use squeal::native::Comm;
 use squeal::stability::Mode;
@@ -18,7 +18,7 @@ use squeal::structure::FullModel;
 use super::TheirMass;
 
 /// The band ends above the highest frequency of the reference by this factor.
-const ABOVE: f64 = 1.01;
+const ABOVE: f64 = 1.2;
 
 /// Displacements of nodes by their numbers, or frequencies.
 pub enum Reference {
@@ -61,32 +61,47 @@ fn node_indices(deck: &Deck) -> HashMap<u32, usize> {
     numbers.into_iter().zip(0..).collect()
 }
 
-/// The largest difference relative to the largest displacement, or the largest relative difference of a frequency.
-pub fn difference(comm: &Comm, deck: &Deck, converted: Converted, reference: &Reference) -> Result<f64, String> {
-    let Converted { model, mesh, .. } = converted;
+/// What we find for a deck, of the kind of a reference.
+pub fn compute(comm: &Comm, deck: &Deck, converted: Converted, wanted: &Reference) -> Result<Reference, String> {
+    let Converted { mut model, mesh, .. } = converted;
+    deck::settle(&mut model, &mesh, |_| true);
     let nodes = Numbering::even(mesh.nodes.len(), 0, 1);
     let brake = FullModel::new(model, Piece { mesh, nodes }, &Alone).map_err(|error| error.to_string())?;
-    match reference {
-        Reference::Displacements(theirs) => {
+    match wanted {
+        Reference::Displacements(_) => {
             let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
             let u = displacements(&brake, &system)?;
-            let indices = node_indices(deck);
-            let (mut off, mut size) = (0.0_f64, 0.0_f64);
-            for (number, theirs) in theirs.iter().filter(|(number, _)| indices.contains_key(number)) {
-                let ours = u[indices[number]];
-                (0..3).for_each(|i| {
-                    off = off.max((ours[i] - theirs[i]).abs());
-                    size = size.max(theirs[i].abs());
-                });
-            }
-            Ok(off / size)
+            Ok(Reference::Displacements(node_indices(deck).into_iter().map(|(number, i)| (number, u[i])).collect()))
         }
         Reference::Frequencies(theirs) => {
             let families = [&TheirMass::of(&brake) as &dyn squeal::assembly::Elements, &brake.joints];
             let system = brake.assemble_families(comm, &families).unwrap();
-            let ours = frequencies(&brake, &system, theirs)?;
-            let off = ours.iter().zip(theirs).map(|(ours, theirs)| (ours / theirs - 1.0).abs());
-            Ok(off.fold(0.0, f64::max))
+            Ok(Reference::Frequencies(frequencies(&brake, &system, theirs)?))
+        }
+    }
+}
+
+impl Reference {
+    /// The largest difference from a reference: of displacements relative to its largest one, or of a frequency. Our
+    /// modes may be more.
+    pub fn difference(&self, theirs: &Reference) -> f64 {
+        match (self, theirs) {
+            (Reference::Displacements(ours), Reference::Displacements(theirs)) => {
+                let (mut off, mut size) = (0.0_f64, 0.0_f64);
+                for (number, theirs) in theirs {
+                    // Nodes of no solid have no displacements of ours.
+                    let Some(ours) = ours.get(number) else { continue };
+                    (0..3).for_each(|i| {
+                        off = off.max((ours[i] - theirs[i]).abs());
+                        size = size.max(theirs[i].abs());
+                    });
+                }
+                off / size
+            }
+            (Reference::Frequencies(ours), Reference::Frequencies(theirs)) if ours.len() >= theirs.len() => {
+                ours.iter().zip(theirs).map(|(ours, theirs)| (ours / theirs - 1.0).abs()).fold(0.0, f64::max)
+            }
+            _ => f64::NAN,
         }
     }
 }
@@ -103,8 +118,5 @@ fn frequencies(brake: &FullModel, system: &System, theirs: &[f64]) -> Result<Vec
     let equilibrium = sweep.equilibrium(brake.own_friction(), &mut ()).map_err(|error| error.to_string())?;
     let highest = theirs.iter().copied().fold(0.0, f64::max) * ABOVE;
     let band = sweep.modes(&equilibrium, [0.0, highest], &mut ()).map_err(|error| error.to_string())?;
-    match band.modes.len() < theirs.len() {
-        true => Err(format!("{} modes of {}", band.modes.len(), theirs.len())),
-        false => Ok(band.modes.iter().map(Mode::frequency).collect()),
-    }
+    Ok(band.modes.iter().map(Mode::frequency).collect())
 }

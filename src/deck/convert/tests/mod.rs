@@ -7,6 +7,7 @@
 //! ```
 
 mod broken;
+mod broken_joints;
 mod joints;
 
 use super::*;
