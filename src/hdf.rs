@@ -195,7 +195,12 @@ fn chunk<T>(shape: &[usize]) -> Vec<usize> {
 /// # Errors
 /// HDF5's.
 pub fn values<T: H5Type>(group: &Group, name: &str) -> hdf5::Result<Vec<T>> {
-    group.dataset(name)?.read_raw()
+    let dataset = group.dataset(name)?;
+    // Nothing is compressed: what the file does not have is not allocated.
+    if dataset.size() as u64 * size_of::<T>() as u64 > dataset.storage_size() {
+        return Err(format!("{name} is not all there").into());
+    }
+    dataset.read_raw()
 }
 
 /// The rows of a table of three columns.

@@ -12,7 +12,7 @@ use crate::output::overwrite::may_write_file;
 use crate::output::vtu;
 use crate::structure::FullModel;
 
-use super::Shell;
+use super::{Shell, values};
 
 /// What `check` takes.
 #[derive(Args)]
@@ -21,7 +21,7 @@ pub struct Check {
     /// The model file, or a deck of Abaqus or CalculiX (.inp)
     model: PathBuf,
     /// Show how this number of reference pairs would be spread over the sliding contacts
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = values::count)]
     contacts: Option<usize>,
     /// A VTU file that shows the cells of the reference nodes (with --contacts)
     #[arg(short, long, value_name = "FILE", requires = "contacts")]

@@ -77,7 +77,7 @@ fn text(exported: &Exported, place: &Path) -> String {
     let file = |i: usize| &exported.files[i].0;
     format!(
         "{title}: M, C and K {about}, {n} dofs\n\nresults in {folder}:\n{lines}\nIts modes: squeal modes --mass {folder}/{} \
-         --damping {folder}/{} --stiffness {folder}/{} --band 0:6000\n",
+         --damping {folder}/{} --stiffness {folder}/{} --band FROM:TO\n",
         file(0),
         file(1),
         file(2)

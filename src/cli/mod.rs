@@ -156,7 +156,7 @@ struct Run {
     #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
     friction: Option<Values>,
     /// Number of reference pairs in place of the contact points of the sliding contacts, e.g. 104
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = values::count)]
     contacts: Option<usize>,
     /// Of a super-element: the normal law of its contacts, linear:K or cubic:K1,K3 in N/m and N/m3
     #[arg(long, value_name = "LAW", value_parser = values::law)]

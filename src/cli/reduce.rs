@@ -19,7 +19,7 @@ pub struct Reduce {
     /// The model file
     model: PathBuf,
     /// Number of reference pairs over the sliding contacts, e.g. 104 (default: the model file's)
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = values::count)]
     contacts: Option<usize>,
     /// Friction coefficient at which the other contacts are linearised (default: the swept contacts' own)
     #[arg(long, value_name = "MU", value_parser = values::single, allow_hyphen_values = true)]

@@ -23,10 +23,10 @@ pub struct Study {
     #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
     friction: Option<Values>,
     /// Contact layouts: numbers of reference pairs over the sliding contacts
-    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "12,44,104,212")]
+    #[arg(long, value_name = "N,N", value_parser = values::count, value_delimiter = ',', default_value = "12,44,104,212")]
     layouts: Vec<usize>,
     /// Reference pairs of the super-elements
-    #[arg(long, value_name = "N", default_value = "104")]
+    #[arg(long, value_name = "N", value_parser = values::count, default_value = "104")]
     super_element: usize,
     /// Friction coefficient at which the super-element for all values is made (default: the swept contacts' own)
     #[arg(long, value_name = "MU", value_parser = values::single, allow_hyphen_values = true)]

@@ -19,13 +19,24 @@ pub fn parse(text: &str) -> Result<Values, String> {
 pub fn values(text: &str) -> Result<Values, String> {
     let values = match text.split(':').collect::<Vec<_>>()[..] {
         [list] => list.split(',').map(number).collect::<Result<Vec<_>, _>>()?,
-        [from, to, step] => spaced(number(from)?, number(to)?, number(step)?)
-            .ok_or_else(|| format!("the range {text} has no value, or too many: give FROM:TO:STEP"))?,
+        [from, to, step] => range(text, number(from)?, number(to)?, number(step)?)?,
         _ => return Err("expected one value, a list 0.2,0.5 or a range FROM:TO:STEP".into()),
     };
     match values.iter().enumerate().find(|(i, value)| values[..*i].contains(value)) {
         Some((_, value)) => Err(format!("{value} is given twice")),
         None => Ok(Values(values)),
+    }
+}
+
+/// A range whose steps reach its end.
+fn range(text: &str, from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
+    let values = spaced(from, to, step)
+        .ok_or_else(|| format!("the range {text} has no value, or too many: give FROM:TO:STEP"))?;
+    match values.last() {
+        Some(last) if (last - to).abs() > 1e-6 * step.abs() => {
+            Err(format!("the steps of {text} do not reach {to}: the last value is {last}. Give another end or step"))
+        }
+        _ => Ok(values),
     }
 }
 
@@ -72,6 +83,11 @@ pub fn criterion(text: &str) -> Result<InstabilityCriterion, String> {
     criterion.mistake().map_or(Ok(criterion), |mistake| Err(mistake.into()))
 }
 
+/// A number of things, 1 or more.
+pub fn count(text: &str) -> Result<usize, String> {
+    text.trim().parse().ok().filter(|n| *n > 0).ok_or_else(|| format!("{text:?} is not a whole number above 0"))
+}
+
 /// A system of units, such as mm-t-s.
 pub fn units(text: &str) -> Result<UnitSystem, String> {
     UnitSystem::named(text)
@@ -114,7 +130,7 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused_with_a_reason() {
-        for text in ["", "a", "0.1:0.9", "0.1:0.9:-0.1", "0.1:0.9:0", "-0.1", "3", "nan", "0.4,0.4"] {
+        for text in ["", "a", "0.1:0.9", "0.1:0.5:0.3", "0.1:0.9:-0.1", "0.1:0.9:0", "-0.1", "3", "nan", "0.4,0.4"] {
             assert!(parse(text).is_err(), "{text}");
         }
         assert!(band("6000:0").is_err() && band("0:0").is_err() && band("5").is_err());
@@ -133,6 +149,14 @@ mod tests {
             ("damping_ratio:0.1", "from -1 to 0"),
         ] {
             assert!(criterion(text).unwrap_err().contains(reason), "{text}");
+        }
+    }
+
+    #[test]
+    fn counts_are_whole_numbers_above_zero() {
+        assert_eq!(count("104"), Ok(104));
+        for text in ["abc", "0", "-3", "1.5"] {
+            assert_eq!(count(text), Err(format!("{text:?} is not a whole number above 0")));
         }
     }
 

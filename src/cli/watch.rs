@@ -24,14 +24,18 @@ impl Watch {
         Watch { progress: Progress::new(shell.comm, 1, verbose), interrupt: None, json: shell.json }
     }
 
-    /// The same, for an analysis that stops after the value at hand when a signal asks for it.
+    /// The same, for an analysis that stops when a signal asks for it: after the value at hand, or within seconds.
     ///
     /// # Errors
     /// The system's.
     pub fn with_signals(shell: &Shell, verbose: bool) -> Result<Watch> {
         let watch = Watch::new(shell, verbose);
-        let notice = watch.progress.notice("stopping after this value; a second signal stops at once");
-        Ok(Watch { interrupt: Some(Interrupt::listen(notice)?), ..watch })
+        let notice =
+            watch.progress.notice("stopping after this value, or within five seconds; a second signal stops at once");
+        let farewell = watch.progress.notice(
+            "stopped within a value, which is lost; finished values are kept. The same command goes on from there",
+        );
+        Ok(Watch { interrupt: Some(Interrupt::listen(notice, farewell)?), ..watch })
     }
 
     /// Removes the progress line.

@@ -213,8 +213,8 @@ impl Element {
         let of = |(place, &node): (usize, &i64)| {
             last(place).into_iter().flatten().map(move |&axis| Dof { node, axis }).collect::<Vec<_>>()
         };
-        let dofs: Vec<Dof> = self.nodes.iter().enumerate().flat_map(of).collect();
-        let (n, found) = (dofs.len(), self.values.len());
+        let n: usize = (0..self.nodes.len()).map(|node| last(node).map_or(0, Vec::len)).sum();
+        let found = self.values.len();
         if found == 0 {
             return Err(lines.error(format!("the substructure has no matrix of {}", role.name())));
         }
@@ -226,6 +226,7 @@ impl Element {
                 return Err(lines.error(format!("{what}: {} or {} would be whole", n * (n + 1) / 2, n * n)));
             }
         };
+        let dofs: Vec<Dof> = self.nodes.iter().enumerate().flat_map(of).collect();
         let items = places.into_iter().zip(self.values).map(|((i, j), value)| (i, j, value)).collect();
         Ok(Entries { naming: Naming::Dofs(dofs), items, storage: Storage::Triangle })
     }

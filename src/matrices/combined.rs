@@ -58,6 +58,7 @@ impl CombinedTerms {
         let (n, dofs) = common_numbering(terms, &mut files)?;
         let may_be_constrained = files.iter().any(|file| file.storage == Storage::Triangle);
         files.iter_mut().for_each(add_other_triangle);
+        require_entries(terms, &files, n)?;
         let mut rows: Vec<usize> = (0..n).collect();
         if may_be_constrained {
             let constrained = constrained_rows(terms, &files);
@@ -119,6 +120,17 @@ fn union(files: &mut [Entries]) -> Vec<Dof> {
     all
 }
 
+/// Refuses more rows than entries: some are empty. It comes before anything of the size that the files claim.
+fn require_entries(terms: &[Term], files: &[Entries], n: usize) -> Result<()> {
+    let n_entries: usize = files.iter().map(|file| file.items.len()).sum();
+    if n <= n_entries {
+        return Ok(());
+    }
+    let first = terms.first().map_or_else(String::new, |term| term.file.display().to_string());
+    let what = format!("M, C and K have {n} rows, but only {n_entries} entries, so that rows are empty in all of them");
+    Err(Error::input(format!("{first}: {what}. Look at the size and the largest row number in the files")))
+}
+
 /// Adds the other triangle where a file that may have one only has one only.
 fn add_other_triangle(file: &mut Entries) {
     if file.storage == Storage::Full {
@@ -157,6 +169,11 @@ fn require_filled(terms: &[Term], files: &[Entries], names: &Names) -> Result<()
     for (i, j, _) in files.iter().flat_map(|file| &file.items).filter(|(.., value)| *value != 0.0) {
         filled[*i as usize][0] = true;
         filled[*j as usize][1] = true;
+    }
+    let masses = terms.iter().zip(files).filter(|(term, _)| term.role == Role::Mass);
+    if masses.flat_map(|(_, file)| &file.items).all(|(.., value)| *value == 0.0) {
+        let what = "the mass matrix is zero where nothing is constrained: without mass there are no vibrations";
+        return Err(Error::input(format!("{first}: {what}. Give another M")));
     }
     let Some(i) = filled.iter().position(|[row, column]| !row || !column) else { return Ok(()) };
     let (what, number) = (if filled[i][0] { "column" } else { "row" }, names.rows[i] + 1);

@@ -72,7 +72,9 @@ impl Coefficient {
                 "{parameter:?} is no name for a parameter: give one that means nothing else, such as \"p\""
             ));
         }
-        let expression = Expression::parse(text).map_err(|reason| format!("{text:?} is no expression: {reason}"))?;
+        let expression = Expression::parse(text).map_err(|reason| {
+            format!("{text:?} is no expression in {parameter} (such as \"1 - 2*{parameter}\"): {reason}")
+        })?;
         match expression.var_names().iter().find(|name| *name != parameter) {
             Some(name) => Err(format!("{text:?} has the unknown name {name:?}: the parameter is {parameter:?}")),
             None => Ok(Coefficient { expression, text: text.into() }),
@@ -87,7 +89,10 @@ impl Coefficient {
         let values = vec![parameter; self.expression.var_names().len()];
         match self.expression.eval(&values) {
             Ok(value) if value.is_finite() => Ok(value),
-            Ok(value) => Err(Error::input(format!("the factor {:?} is {value} at {parameter}", self.text))),
+            Ok(value) => Err(Error::input(format!(
+                "the factor {:?} is {value} at the value {parameter} of the parameter",
+                self.text
+            ))),
             Err(reason) => Err(Error::input(format!("the factor {:?} at {parameter}: {reason}", self.text))),
         }
     }
@@ -136,6 +141,10 @@ pub fn read(path: &Path) -> Result<MatrixFamily> {
     let place = path.display();
     let text =
         std::fs::read_to_string(path).map_err(|reason| Error::input(format!("{place}: cannot be read: {reason}")))?;
+    if text.contains("[mesh]") || text.trim_start().starts_with("mesh") {
+        let what = "this is a model file, not a family of matrices";
+        return Err(Error::input(format!("{place}: {what}. Give --part NAME for the modes of one of its parts")));
+    }
     let line = |offset: usize| 1 + text[..offset.min(text.len())].matches('\n').count();
     let keys: Keys = toml::from_str(&text).map_err(|error| {
         let at = line(error.span().map_or(0, |span| span.start));

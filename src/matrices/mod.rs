@@ -72,6 +72,9 @@ pub fn read(path: &Path, role: Role) -> Result<Entries> {
         if lines.text().to_lowercase().starts_with(market::BANNER) {
             return market::read(&mut lines);
         }
+        if lines.text().to_lowercase().starts_with(&market::BANNER[1..]) {
+            return Err(lines.error("the header of a Matrix Market file begins with two percent signs: %%MatrixMarket"));
+        }
         if !lines.text().is_empty() {
             return abaqus::read(&mut lines, role);
         }

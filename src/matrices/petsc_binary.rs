@@ -32,21 +32,25 @@ pub fn index_width(head: &[u8]) -> Option<usize> {
 /// [`Error::Input`] with the file, whatever is wrong.
 pub fn read(mut source: MatrixFile, width: usize) -> Result<Entries> {
     let (n, n_entries) = size(&mut source, width)?;
-    let (lengths, columns) = match n_entries {
-        Some(n_entries) => pattern(&mut source, width, n, n_entries)?,
-        None => (vec![n as i64; n], (0..n).flat_map(|_| 0..n as i64).collect()),
+    // A dense matrix has no indices: its places are counted, not listed, as its size is only claimed.
+    let places: Box<dyn Iterator<Item = (u32, u32)>> = match n_entries {
+        Some(n_entries) => {
+            let (lengths, columns) = pattern(&mut source, width, n, n_entries)?;
+            let rows = (0..).zip(lengths).flat_map(|(i, length)| std::iter::repeat_n(i, length as usize));
+            Box::new(rows.zip(columns.into_iter().map(|j| j as u32)))
+        }
+        None => Box::new((0..n as u32).flat_map(move |i| (0..n as u32).map(move |j| (i, j)))),
     };
-    let rows = lengths.iter().enumerate().flat_map(|(i, &length)| std::iter::repeat_n(i as u32, length as usize));
     let mut entries = Entries::new(Naming::Rows(n), Storage::Full);
     let mut bytes = [0; 8];
-    for (i, j) in rows.zip(columns) {
+    for (i, j) in places {
         source.fill(&mut bytes)?;
         let value = f64::from_be_bytes(bytes);
         if !value.is_finite() {
             return fail(&source, format!("row {}, column {}: {value} is no finite number", i + 1, j + 1));
         }
         if value != 0.0 || n_entries.is_some() {
-            entries.items.push((i, j as u32, value));
+            entries.items.push((i, j, value));
         }
     }
     if !source.is_at_end()? {

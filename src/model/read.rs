@@ -3,6 +3,7 @@
 use super::item::Item;
 use super::source::{ModelText, located};
 use super::{Model, Place, UnitSystem, analysis, bodies, contacts, joints, keys, loads, materials};
+use crate::hdf::is_hdf5;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -31,6 +32,11 @@ pub fn read(path: &Path) -> Result<Model> {
     })?;
     if bytes.starts_with(b"$MeshFormat") {
         return Err(Error::input(format!("{place} is a mesh. Name the model file that has it as [mesh] file")));
+    }
+    if is_hdf5(path) {
+        let what = "is a super-element or a results file, not a model file";
+        let advice = "Super-elements are for squeal static, stability and export, results for report and compare";
+        return Err(Error::input(format!("{place} {what}. {advice}")));
     }
     let text = std::str::from_utf8(&bytes).map_err(|reason| {
         let line = 1 + bytes[..reason.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();

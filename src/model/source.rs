@@ -67,7 +67,7 @@ impl ModelText<'_> {
             format!("{key:?} is given twice ({table}). Keep one of them")
         } else {
             let message = message.replace("f64", "a number").replace("usize", "a whole number");
-            format!("{} ({table}). Correct it; the documentation explains every key", message.trim_end())
+            format!("{} ({table}). Correct it; squeal example explains every key", message.trim_end())
         }
     }
 
@@ -111,6 +111,6 @@ fn sample(key: &str) -> &'static str {
         "stability" => "[stability] with band = [0, 6000] in Hz",
         "band" => "band = [lowest, highest] in Hz",
         "contacts" => "contacts = 104, the number of reference pairs",
-        _ => "it; the documentation explains every key",
+        _ => "it; squeal example explains every key",
     }
 }

@@ -145,6 +145,10 @@ pub fn read(path: &Path) -> Result<(SuperElement, OuterSurface)> {
     if surface.basis.len() != 3 * surface.nodes.len() * element.n_coordinates() {
         return Err(hdf::damaged(path, &FORMAT, "the basis of the surface has another size"));
     }
+    let is_outside = |i: &u32| *i as usize >= surface.nodes.len();
+    if surface.triangles.as_flattened().iter().any(is_outside) || surface.part.len() != surface.triangles.len() {
+        return Err(hdf::damaged(path, &FORMAT, "the triangles of the surface do not fit its nodes and parts"));
+    }
     Ok((element, surface))
 }
 
@@ -269,6 +273,14 @@ fn inconsistency(element: &SuperElement) -> Option<String> {
         if !values.iter().all(|x| x.is_finite()) {
             return Some(format!("{name} holds values that are not finite"));
         }
+    }
+    let numbers = element.contacts.iter().flat_map(|contact| {
+        let law = &contact.point.law;
+        let scalars = [law.weight, law.gap, contact.normal_force];
+        [law.normal, contact.point.position, contact.displacement, scalars].concat()
+    });
+    if !element.points.as_flattened().iter().copied().chain(numbers).all(f64::is_finite) {
+        return Some("points or contacts hold values that are not finite".into());
     }
     let n_contacts: usize = element.pairs.iter().map(|pair| pair.points.len()).sum();
     let differ = n_contacts != element.contacts.len() || 2 * n_contacts > element.points.len();

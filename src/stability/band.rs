@@ -246,7 +246,7 @@ impl BandSolver {
 
 fn not_converged(band: [f64; 2], expected: Expected) -> Error {
     Error::not_converged(format!(
-        "the eigensolver did not reach the end of the band {}-{} Hz, with {} modes expected. Try a narrower band ([stability] band)",
+        "the eigensolver did not reach the end of the band {}-{} Hz, with {} modes expected. Try a narrower band",
         band[0], band[1], expected.n
     ))
 }

@@ -56,8 +56,7 @@ pub(super) fn left_vectors(
         }
     }
     Err(Error::not_converged(format!(
-        "left vectors of the modes: after {max_rounds} rounds of corrections {} of {} are not accurate. A narrower band may help \
-         ([stability] band)",
+        "left vectors of the modes: after {max_rounds} rounds of corrections {} of {} are not accurate. A narrower band may help",
         open.len(),
         modes.len()
     )))

@@ -215,12 +215,21 @@ fn results_go_where_they_are_expected() {
 }
 
 #[test]
-fn a_stable_brake_is_called_stable() {
-    let place = Place::with_blocks(|text| swap(&text, "friction = 0.4", "friction = 0"), &PadOnDisc::default());
-    let Finished { code, out, .. } = place.run(&["stability", "brake.toml", "--band", "0:60000", "-o", "run"]);
-    assert_eq!(code, 0);
+fn a_stable_brake_is_called_stable_if_it_is_damped() {
+    let without_friction = |text: String| swap(&text, "friction = 0.4", "friction = 0");
+    let damped = |text: String| {
+        without_friction(text) + "\n[[connector]]\nbetween = [\"pad_top\", \"disc_bottom\"]\nstiffness = [1, 1, 1]\ndamping = [1, 1, 1]\n"
+    };
+    let run = |place: Place| {
+        let finished = place.run(&["stability", "brake.toml", "--band", "0:60000", "-o", "run"]);
+        assert_eq!(finished.code, 0, "{}", finished.err);
+        finished.out
+    };
+    let out = run(Place::with_blocks(damped, &PadOnDisc::default()));
     assert!(out.contains("\nstable: no mode of the band is unstable at these friction values"), "{out}");
     assert!(!out.contains("mode_*.vtu"), "{out}");
+    let out = run(Place::with_blocks(without_friction, &PadOnDisc::default()));
+    assert!(out.contains("\nunknown: the model has no damping"), "{out}");
 }
 
 /// Without contact force there is no friction: the verdict is unknown.

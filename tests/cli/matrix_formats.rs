@@ -117,6 +117,11 @@ fn bad_files_are_refused_with_their_line() {
         ("prose", b"hello there\n".to_vec()),
         ("million", million.into()),
         ("named", b"1,1, 1,1, 5.0\n".to_vec()),
+        ("one percent sign", good[1..].into()),
+        (
+            "a dense binary matrix of a billion rows",
+            [1_211_216, 1_000_000_000, 1_000_000_000, -1].map(i32::to_be_bytes).concat(),
+        ),
     ];
     let place = Place::empty();
     place.write("m", &good);
@@ -204,4 +209,25 @@ fn a_free_part_and_its_export() {
     assert!(elastic.iter().zip(&given).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{elastic:?} {given:?}");
     let finished = place.run(&["modes", "brake.toml", "--part", "dics"]);
     assert!(finished.code == 2 && finished.err.contains("Did you mean \"disc\"?"), "{}", finished.err);
+}
+
+/// Sizes that only a header or an index claims take no memory.
+#[test]
+fn a_billion_empty_rows_are_refused() {
+    let place = Place::empty();
+    let texts = ["1 1 1\n1000000000 1000000000 1\n".to_owned(), format!("{HEAD}1000000000 1000000000 1\n1 1 1\n")];
+    for text in texts {
+        place.write("bare", text);
+        let message = refusal(&modes(&place, "bare", "bare"));
+        assert!(message.contains("have 1000000000 rows, but only "), "{message}");
+    }
+}
+
+#[test]
+fn a_zero_mass_matrix_is_refused() {
+    let place = Place::empty();
+    place.write("m", format!("{HEAD}2 2 1\n1 1 0\n"));
+    place.write("k", format!("{HEAD}2 2 2\n1 1 1\n2 2 1\n"));
+    let message = refusal(&modes(&place, "m", "k"));
+    assert!(message.contains("the mass matrix is zero"), "{message}");
 }

@@ -219,7 +219,7 @@ fn ctrl_c_ends_after_the_friction_at_hand() {
         let Finished { code: found, out, err } = end(child);
         assert_eq!((found, out.as_str()), (code, ""), "{err}");
         for part in [
-            "stopping after this value; a second signal",
+            "stopping after this value, or within five seconds; a second signal",
             "stopped after friction coefficient 0.",
             "The same command goes on",
         ] {
@@ -292,4 +292,20 @@ fn a_full_disc_is_told() {
     assert_eq!(finished.code, 0, "{}", finished.err);
     assert_eq!(results(&place, "run").values.len(), 51);
     assert!(Path::new(&place.path("run/equilibrium_mu0.500.vtu")).exists());
+}
+
+/// The value at hand takes minutes, and the first one is not finished either.
+#[test]
+fn a_signal_within_a_long_value_ends_the_run_within_five_seconds() {
+    let place = Place::pads();
+    let arguments = ["stability", "brake.toml", "--friction=0.4", "--band=0:9000", "--no-branches", "-o", "run", "-v"];
+    let mut child = start(&place, 1, &arguments);
+    std::thread::sleep(std::time::Duration::from_secs(3));
+    assert!(child.try_wait().unwrap().is_none(), "the value is long enough");
+    let sent = std::time::Instant::now();
+    signal("TERM", child.id());
+    let Finished { code, err, .. } = end(child);
+    assert!(sent.elapsed().as_secs_f64() < 5.5, "{err}");
+    assert_eq!(code, 143, "{err}");
+    assert!(err.contains("stopped within a value") && !place.path("run").exists(), "{err}");
 }

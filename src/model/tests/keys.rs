@@ -10,19 +10,19 @@ fn wrong_syntax_and_types_are_located() {
         "density = 7100",
         "density = \"7100\"",
         0,
-        "invalid type: string \"7100\", expected a number ([material.iron]). Correct it; the documentation explains every key",
+        "invalid type: string \"7100\", expected a number ([material.iron]). Correct it; squeal example explains every key",
     );
     complains(
         "axis = [0, 0, 2]",
         "axis = [0, 2]",
         0,
-        "invalid length 2, expected an array of length 3 ([material.lining]). Correct it; the documentation explains every key",
+        "invalid length 2, expected an array of length 3 ([material.lining]). Correct it; squeal example explains every key",
     );
     complains(
         "young = 110e9",
         "young = \"stiff\"",
         0,
-        "expected a number, or three of them in brackets ([material.iron]). Correct it; the documentation explains every key",
+        "expected a number, or three of them in brackets ([material.iron]). Correct it; squeal example explains every key",
     );
 }
 

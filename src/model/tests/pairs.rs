@@ -49,7 +49,7 @@ fn contacts_are_checked() {
     }
     let said = "expected a number, { static = 0.6, kinetic = 0.4, decay = 0.5 }, the same with stribeck_speed = 0.1 in place of decay, or \
                 { by = [\"speed\"], table = [[0.6, 0], [0.4, 2]] } ([[contact]]). \
-                Correct it; the documentation explains every key";
+                Correct it; squeal example explains every key";
     complains("friction = 0.5", "friction = { static = 0.6, kinetic = 0.4 }", 0, said);
     complains("friction = 0.5", "friction = { static = 0.6, kinetic = 0.4, decay = 1, p = 1 }", 0, said);
     let said = "search must be above 0, not -2 (contact \"pair\"). Give a distance in the mesh's unit, or leave it out for no limit";
