@@ -4,12 +4,15 @@ use crate::Result;
 use crate::assembly::JointKind;
 use crate::assembly::joints::tie::TieSummary;
 use crate::contact::interface::ContactPair;
+use crate::contact::law::Tangential;
+use crate::element::facet;
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
-use crate::model::{Load, LoadKind, PointMass, RigidBody, Tie};
+use crate::model::{Load, LoadKind, PointMass, Rayleigh, RigidBody, Rotation, Tie};
 use crate::native::{Comm, Factor, FactorKind};
 use crate::output::model_summary::{
-    LayoutRow, LoadRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow, TieRow,
+    LayoutRow, LoadRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow, RotationRow,
+    TieRow,
 };
 use crate::structure::{FullModel, Ranked, plausibility};
 
@@ -17,9 +20,11 @@ use crate::structure::{FullModel, Ranked, plausibility};
 /// matrix is left open. Collective.
 pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> ModelSummary {
     let parts: Vec<PartRow> = (0..full.mesh.parts.len()).map(|i| part(comm, full, i)).collect();
+    let flat = parts.iter().filter_map(|row| plausibility::quality(&row.part, row.quality_min));
+    let warnings = plausibility::warnings(full, comm).into_iter().chain(flat).collect();
     let masses = &full.model.masses;
     let mass_kg = parts.iter().map(|row| row.mass_kg).chain(masses.iter().map(|own| own.mass)).sum();
-    let load = |load: &Load| LoadRow { load: load.name.clone(), on: load.on.clone(), what: amount(&load.kind) };
+    let load = |load: &Load| LoadRow { load: load.name.clone(), on: load.on.clone(), what: amount(full, load) };
     let sliding = || full.interface.pairs.iter().filter(|pair| pair.is_sliding());
     ModelSummary {
         title: full.model.title.clone(),
@@ -30,7 +35,8 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
             size_m: full.extents(comm),
         },
         parts,
-        pairs: full.interface.pairs.iter().map(pair).collect(),
+        rotations: full.model.rotations.iter().map(rotation).collect(),
+        pairs: full.interface.pairs.iter().map(|own| pair(full, own)).collect(),
         layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
         constrained_dofs: full.held.as_flattened().iter().filter(|&&h| h).count(),
         connectors: full.joints.count(JointKind::Connector),
@@ -41,7 +47,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
         mass_kg,
         loads: full.model.loads.iter().map(load).collect(),
         sum_of_loads_n: full.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i])),
-        warnings: plausibility::warnings(full, comm),
+        warnings,
         matrix: None,
     }
 }
@@ -55,6 +61,8 @@ fn part(comm: &Comm, full: &FullModel, i: usize) -> PartRow {
     let quality = Ranked::new(comm, own.map(quality_of).collect());
     let centre = properties.centre();
     let inertia = properties.inertia_about(centre);
+    let own = full.model.parts.iter().find(|own| own.name == mesh.parts[i]);
+    let rayleigh = own.map_or_else(Rayleigh::default, |own| own.rayleigh);
     PartRow {
         part: mesh.parts[i].clone(),
         elements: quality.n_numbers(),
@@ -63,18 +71,42 @@ fn part(comm: &Comm, full: &FullModel, i: usize) -> PartRow {
         inertia_kg_m2: [0, 1, 2].map(|k| inertia[k][k]),
         quality_min: quality.nth(0),
         quality_median: quality.nth(quality.n_numbers() / 2),
+        alpha_per_s: rayleigh.alpha,
+        beta_s: rayleigh.beta,
     }
 }
 
-fn pair(pair: &ContactPair) -> PairRow {
+fn rotation(own: &Rotation) -> RotationRow {
+    RotationRow { part: own.part.clone(), axis: own.axis, through_m: own.through, speed_rad_per_s: own.speed }
+}
+
+/// Mean sliding speed of a pair's points (m/s), weighted by their areas, and their mean distance from the axis
+/// (m).
+fn sliding(full: &FullModel, pair: &ContactPair) -> Option<[f64; 2]> {
+    let speeds = full.interface.points[pair.points.clone()].iter().map(|point| match point.law.tangential {
+        Tangential::Sliding { speed, .. } => point.law.weight * speed,
+        _ => 0.0,
+    });
+    let mean = speeds.sum::<f64>() / pair.statistics.weight;
+    let contact = full.model.contacts.iter().find(|contact| contact.name == pair.name)?;
+    let rotation = full.model.sliding(contact, &full.mesh)?;
+    Some([mean, mean / rotation.speed.abs()])
+}
+
+fn pair(full: &FullModel, pair: &ContactPair) -> PairRow {
     let statistics = &pair.statistics;
+    let sliding = sliding(full, pair);
     PairRow {
         pair: pair.name.clone(),
         kind: format!("{:?}", pair.kind).to_lowercase(),
         points: pair.points.len(),
         dropped: statistics.n_dropped,
         touching: statistics.touching,
-        area_m2: statistics.area,
+        area_m2: statistics.weight,
+        adjusted: statistics.n_adjusted,
+        adjusted_gap_max_m: statistics.largest_adjusted,
+        sliding_speed_m_per_s: sliding.map(|[speed, _]| speed),
+        radius_m: sliding.map(|[_, radius]| radius),
         gap_min_m: statistics.gap[0],
         gap_max_m: statistics.gap[1],
         friction: pair.friction,
@@ -117,13 +149,19 @@ fn layout(full: &FullModel, pair: &ContactPair) -> LayoutRow {
     }
 }
 
-fn amount(kind: &LoadKind) -> String {
+fn amount(full: &FullModel, load: &Load) -> String {
     let force = |f: &[f64; 3]| f.map(|f| f.to_string()).join(" ");
-    match kind {
+    match &load.kind {
         LoadKind::ForceByNode(f) => format!("{} N, the same on each node", force(f)),
         LoadKind::ForceByArea(f) => format!("{} N, spread over the area", force(f)),
         LoadKind::ForceAt { force: f, moment: m, .. } => format!("{} N and {} N m at a point", force(f), force(m)),
-        LoadKind::Pressure(p) => format!("a pressure of {p} Pa"),
+        LoadKind::Pressure(p) => {
+            let facets = full.mesh.surfaces.get(&load.on).into_iter().flat_map(|surface| &surface.facets);
+            let nodal = facets.flat_map(|own| facet::pressure_load(&own.positions(&full.mesh.nodes), *p));
+            let total = nodal.fold([0.0; 3], |sum, f| [0, 1, 2].map(|i| sum[i] + f[i]));
+            let rounded = total.map(|f| format!("{:.3}", (1e3 * f).round() / 1e3 + 0.0));
+            format!("a pressure of {p} Pa, in total {} N", rounded.join(" "))
+        }
     }
 }
 

@@ -74,8 +74,12 @@ pub struct Statistics {
     pub area: f64,
     /// Sum of the points' weights, m2: the area in contact when all points are closed.
     pub weight: f64,
-    /// Smallest and largest initial gap, m.
+    /// Smallest and largest initial gap, m, after adjustment.
     pub gap: [f64; 2],
+    /// Number of points whose gap was closed by adjustment.
+    pub n_adjusted: usize,
+    /// The largest gap that was closed so, m.
+    pub largest_adjusted: f64,
     /// Number of points that touch before any load.
     pub touching: usize,
 }

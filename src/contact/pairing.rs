@@ -24,7 +24,8 @@ pub(super) fn add_pair(
 ) -> Result<()> {
     let (slave, master) = (&mesh.surfaces[&contact.slave], &mesh.surfaces[&contact.master]);
     let surfaces = ContactSurfaces { model, mesh, contact, slave, master, team };
-    let found = surfaces.search()?;
+    let mut found = surfaces.search()?;
+    let adjusted = adjust(&mut found, contact.adjust);
     let rotation = model.sliding(contact, mesh);
     let first = interface.points.len();
     for point in &found.points {
@@ -44,17 +45,25 @@ pub(super) fn add_pair(
         law: contact.law,
         friction: contact.friction,
         friction_law: contact.friction_curve.clone().map_or(FrictionLaw::Constant, FrictionLaw::Curve),
-        kind: match (rotation, contact.stick) {
-            (Some(_), _) => TangentialKind::Sliding,
-            (None, Some(_)) => TangentialKind::StickSlip,
-            (None, None) => TangentialKind::Frictionless,
-        },
+        kind: kind(rotation, contact.stick),
         separation: contact.separation,
         swept,
         points: first..interface.points.len(),
-        statistics: statistics(found, &interface.points[first..]),
+        statistics: Statistics {
+            n_adjusted: adjusted.len(),
+            largest_adjusted: adjusted.into_iter().fold(0.0, f64::max),
+            ..statistics(found, &interface.points[first..])
+        },
     });
     Ok(())
+}
+
+fn kind(rotation: Option<&Rotation>, stick: Option<f64>) -> TangentialKind {
+    match (rotation, stick) {
+        (Some(_), _) => TangentialKind::Sliding,
+        (None, Some(_)) => TangentialKind::StickSlip,
+        (None, None) => TangentialKind::Frictionless,
+    }
 }
 
 /// A contact with the surfaces that its names stand for.
@@ -158,6 +167,13 @@ impl NothingFound<'_> {
     }
 }
 
+/// Closes the gaps up to `largest` (m), as if the slave lay on the master there: `gap0 = 0` where
+/// `0 < gap0 <= largest`. Gives the gaps that it closed.
+fn adjust(found: &mut Found, largest: f64) -> Vec<f64> {
+    let gaps = found.points.iter_mut().map(|point| &mut point.gap);
+    gaps.filter(|gap| (0.0..=largest).contains(*gap) && **gap > 0.0).map(std::mem::take).collect()
+}
+
 /// Sums up what the search found; there is at least one point.
 fn statistics(found: Found, points: &[ContactPoint]) -> Statistics {
     let gaps = found.points.iter().map(|p| p.gap);
@@ -167,5 +183,6 @@ fn statistics(found: Found, points: &[ContactPoint]) -> Statistics {
         gap: [gaps.clone().fold(f64::INFINITY, f64::min), gaps.fold(f64::NEG_INFINITY, f64::max)],
         touching: points.iter().filter(|point| point.law.touching).count(),
         n_dropped: found.n_dropped,
+        ..Statistics::default()
     }
 }

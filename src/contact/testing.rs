@@ -147,6 +147,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         stick: None,
         separation: true,
         search_distance: None,
+        adjust: 0.0,
         place: Place { file: 0, line: 12 },
     }
 }

@@ -29,6 +29,8 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         stick: item.positive_if_given(&raw.stick, "stick", "Give N/m3, such as 1e13")?,
         separation: raw.separation.unwrap_or(true),
         search_distance: search_distance(item, &raw.search, unit)?,
+        adjust: item.positive_if_given(&raw.adjust, "adjust", "Give a distance in the mesh's unit")?.unwrap_or(0.0)
+            * unit,
         place: item.place(),
     })
 }

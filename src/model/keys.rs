@@ -134,6 +134,7 @@ tables! {
         pub stick: Option<Number>,
         pub separation: Option<bool>,
         pub search: Option<Number>,
+        pub adjust: Option<Number>,
     }
 
     #[derive(Clone, Copy)]

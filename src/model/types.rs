@@ -196,6 +196,8 @@ pub struct Contact {
     pub separation: bool,
     /// Points farther than this from the master are dropped, m.
     pub search_distance: Option<f64>,
+    /// Initial gaps up to this are closed, m.
+    pub adjust: f64,
     /// Where it stands.
     pub place: Place,
 }

@@ -5,6 +5,7 @@ pub mod branches;
 pub mod columns;
 pub mod comparison;
 pub mod contact_cells_vtu;
+mod contact_rows;
 pub mod details;
 pub mod explain;
 pub mod external;

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+pub use super::contact_rows::{LayoutRow, PairRow, RotationRow};
+
 use super::text::{aligned, paragraph};
 use crate::deck::DeckSummary;
 
@@ -17,6 +19,8 @@ pub struct ModelSummary {
     pub mesh: MeshSummary,
     /// One row a part.
     pub parts: Vec<PartRow>,
+    /// One row a rotation.
+    pub rotations: Vec<RotationRow>,
     /// One row a contact pair.
     pub pairs: Vec<PairRow>,
     /// The reference nodes of the sliding pairs, where contacts are reduced.
@@ -75,48 +79,10 @@ pub struct PartRow {
     pub quality_min: f64,
     /// Median of them.
     pub quality_median: f64,
-}
-
-/// A contact pair.
-#[derive(Serialize)]
-pub struct PairRow {
-    /// Its name.
-    pub pair: String,
-    /// What acts in the tangent plane.
-    pub kind: String,
-    /// Contact points.
-    pub points: usize,
-    /// Slave nodes without a master facet opposite.
-    pub dropped: usize,
-    /// Points without a gap at the start.
-    pub touching: usize,
-    /// Area of the points.
-    pub area_m2: f64,
-    /// Smallest initial gap.
-    pub gap_min_m: f64,
-    /// Largest initial gap.
-    pub gap_max_m: f64,
-    /// Friction coefficient.
-    pub friction: f64,
-}
-
-/// The reference nodes of a sliding pair, and how even their cells are.
-#[derive(Serialize)]
-pub struct LayoutRow {
-    /// The pair's name.
-    pub pair: String,
-    /// Reference nodes.
-    pub reference_nodes: usize,
-    /// Smallest area of a cell.
-    pub cell_area_min_m2: f64,
-    /// Mean area of the cells.
-    pub cell_area_mean_m2: f64,
-    /// Largest area of a cell.
-    pub cell_area_max_m2: f64,
-    /// Fewest contact points in a cell.
-    pub cell_points_min: usize,
-    /// Most contact points in a cell.
-    pub cell_points_max: usize,
+    /// Mass-proportional damping.
+    pub alpha_per_s: f64,
+    /// Stiffness-proportional damping.
+    pub beta_s: f64,
 }
 
 /// A tie.
@@ -188,10 +154,11 @@ impl ModelSummary {
         let load = |load: &LoadRow| format!("load {:?} on {}: {}\n", load.load, load.on, load.what);
         let loads: String = self.loads.iter().map(load).collect();
         format!(
-            "{}\n\n{deck}mesh: {nodes} nodes, {elements} elements, {size} mm\n{}{}{}\n{} constrained dofs, {} connectors\n\
+            "{}\n\n{deck}mesh: {nodes} nodes, {elements} elements, {size} mm\n{}{}{}{}\n{} constrained dofs, {} connectors\n\
              {}{loads}sum of the loads: {} N\n\n",
             self.title,
             self.parts_text(),
+            paragraph(&self.rotations.iter().map(RotationRow::text).collect::<String>()),
             paragraph(&self.pairs_text()),
             paragraph(&layouts),
             self.constrained_dofs,
@@ -217,9 +184,16 @@ impl ModelSummary {
         let row = |row: &PartRow| {
             let PartRow { part, elements, mass_kg, quality_min, quality_median, .. } = row;
             let (centre, inertia) = (joined(row.centre_m, 1e3, 2, " "), joined(row.inertia_kg_m2, 1e6, 2, " "));
-            format!("{part}\t{elements}\t{mass_kg:.4}\t{centre}\t{inertia}\t{quality_min:.3} {quality_median:.3}")
+            let damping = match (row.alpha_per_s, row.beta_s) {
+                (0.0, 0.0) => "none".to_owned(),
+                (alpha, beta) => format!("{alpha} {beta:e}"),
+            };
+            format!(
+                "{part}\t{elements}\t{mass_kg:.4}\t{centre}\t{inertia}\t{quality_min:.3} {quality_median:.3}\t{damping}"
+            )
         };
-        let heading = "part\telements\tmass kg\tcentre mm\tinertia kg mm2 (xx yy zz)\tquality min / med";
+        let heading =
+            "part\telements\tmass kg\tcentre mm\tinertia kg mm2 (xx yy zz)\tscaled Jacobian min / med\tdamping 1/s, s";
         aligned(heading, self.parts.iter().map(row))
     }
 
@@ -229,8 +203,9 @@ impl ModelSummary {
             let (area, low, high) = (1e6 * row.area_m2, 1e3 * row.gap_min_m, 1e3 * row.gap_max_m);
             format!("{pair}\t{kind}\t{points}\t{dropped}\t{touching}\t{area:.2}\t{low:.2e} {high:.2e}\t{friction}")
         };
-        let heading = "pair\tkind\tpoints\tdropped\ttouching\tarea mm2\tgap mm (min max)\tfriction";
-        aligned(heading, self.pairs.iter().map(row))
+        let heading = "pair\tkind\tpoints\tdropped\ttouching\tarea mm2\tgap mm (min max; below 0: overlap)\tfriction";
+        let notes: String = self.pairs.iter().map(PairRow::notes).collect();
+        aligned(heading, self.pairs.iter().map(row)) + &notes
     }
 }
 
@@ -241,18 +216,6 @@ impl TieRow {
         format!(
             "tie {tie:?}: {nodes} nodes on {area:.2} mm2 tied, {dropped} not; up to {distance:.1e} mm apart; \
              {stiffness_n_per_m3:.2e} N/m3\n"
-        )
-    }
-}
-
-impl LayoutRow {
-    fn text(&self) -> String {
-        let LayoutRow { pair, reference_nodes, cell_points_min, cell_points_max, .. } = self;
-        let [min, max, mean] =
-            [self.cell_area_min_m2, self.cell_area_max_m2, self.cell_area_mean_m2].map(|area| 1e6 * area);
-        format!(
-            "{pair}: {reference_nodes} reference nodes, cells of {min:.1} to {max:.1} mm2 (mean {mean:.1}) with \
-             {cell_points_min} to {cell_points_max} contact points\n"
         )
     }
 }
@@ -269,7 +232,7 @@ impl MatrixSummary {
 }
 
 /// Three numbers in another unit with so many decimals, where rounding leaves no `-0.00`.
-fn joined(x: [f64; 3], unit: f64, decimals: usize, separator: &str) -> String {
+pub(super) fn joined(x: [f64; 3], unit: f64, decimals: usize, separator: &str) -> String {
     let scale = 10_f64.powi(decimals as i32);
     x.map(|x| format!("{:.decimals$}", ((unit * x * scale).round() + 0.0) / scale)).join(separator)
 }
@@ -287,6 +250,8 @@ pub(super) mod tests {
             inertia_kg_m2: [1e-6; 3],
             quality_min: 0.5,
             quality_median: 0.75,
+            alpha_per_s: 5.0,
+            beta_s: 1e-7,
         };
         let pair = PairRow {
             pair: "disc / pad".into(),
@@ -295,6 +260,10 @@ pub(super) mod tests {
             dropped: 0,
             touching: 16,
             area_m2: 4e-4,
+            adjusted: 3,
+            adjusted_gap_max_m: 2e-5,
+            sliding_speed_m_per_s: Some(0.5),
+            radius_m: Some(0.1),
             gap_min_m: 0.0,
             gap_max_m: 1e-6,
             friction: 0.4,
@@ -322,6 +291,12 @@ pub(super) mod tests {
             mesh: MeshSummary { nodes: 100, elements: 54, size_m: [0.03, 0.03, 0.01] },
             deck: None,
             parts: vec![part],
+            rotations: vec![RotationRow {
+                part: "disc".into(),
+                axis: [0.0, 0.0, 1.0],
+                through_m: [0.0; 3],
+                speed_rad_per_s: 5.0,
+            }],
             pairs: vec![pair],
             layouts: Some(vec![layout]),
             constrained_dofs: 12,

@@ -130,11 +130,14 @@ impl FullModel {
             return self.require_load(comm);
         }
         let open = self.interface.pairs.iter().filter(|pair| pair.separation && pair.statistics.touching == 0);
-        let open: Vec<&str> = open.map(|pair| pair.name.as_str()).collect();
+        let smallest = |pair: &ContactPair| pair.statistics.gap[0] / self.model.mesh_unit;
+        let open: Vec<String> =
+            open.map(|pair| format!("{} (at least {:.3e}, in the mesh's unit)", pair.name, smallest(pair))).collect();
         let gaps = match open[..] {
             [] => String::new(),
             _ => format!(
-                ", or close the gap of {}: a contact that may open constrains only where it touches",
+                ", or close the gap of {} by adjust = DISTANCE in its [[contact]]: a contact that may open constrains only where it \
+                 touches",
                 open.join(", ")
             ),
         };

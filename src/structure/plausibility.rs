@@ -4,8 +4,11 @@
 //! but a run with a warning never ends in "stable".
 
 use super::FullModel;
+use nalgebra::{Matrix3, Vector3};
+
 use crate::element::ElementKind;
-use crate::model::{Material, NormalLaw};
+use crate::element::solid::MassProperties;
+use crate::model::{Material, NormalLaw, Rotation};
 use crate::native::Comm;
 
 /// Young's moduli of solids, from rubber to above diamond, Pa.
@@ -21,6 +24,14 @@ const SIZE: [f64; 2] = [0.01, 10.0];
 const CONTACT_RATIO: [f64; 2] = [1e-3, 1e4];
 /// Facets of a tie's slave over those of its master: above, nodes of the master between those of the slave are free.
 const TIE_RATIO: f64 = 1.25;
+/// Overlap over the edge of a facet: more than a curved wall and its mesh of first order differ by.
+const OVERLAP_RATIO: f64 = 0.25;
+/// Moment of inertia about the axis of rotation over the largest one.
+const INERTIA_RATIO: f64 = 0.9;
+/// Distance of the axis from the centre of mass over the radius.
+const AXIS_RATIO: f64 = 0.1;
+/// Scaled Jacobian below which an element is flat.
+const QUALITY: f64 = 0.05;
 /// N/m3 in a N/mm3.
 const PER_CUBIC_MILLIMETRE: f64 = 1e9;
 
@@ -93,6 +104,45 @@ pub fn tie_sizes(tie: &str, [slave, master]: [f64; 2]) -> Option<String> {
     })
 }
 
+/// The overlap of a contact's surfaces (m) beside the edge of the slave's facets.
+pub fn overlap(contact: &str, overlap: f64, facet: f64) -> Option<String> {
+    (overlap > OVERLAP_RATIO * facet).then(|| {
+        let [overlap, facet] = [overlap, facet].map(|x| 1e3 * x);
+        format!(
+            "the surfaces of contact {contact:?} overlap by {overlap:.3e} mm at the start, where facets are {facet:.3e} mm long. Do the parts \
+             overlap in the mesh, or are slave and master the wrong surfaces?"
+        )
+    })
+}
+
+/// The axis of a rotation beside the mass properties of its part.
+pub fn axis(rotation: &Rotation, properties: &MassProperties) -> Option<String> {
+    let (part, centre) = (&rotation.part, properties.centre());
+    let inertia = Matrix3::from(properties.inertia_about(centre));
+    let a = Vector3::from(rotation.axis);
+    let (own, largest) = (a.dot(&(inertia * a)), inertia.symmetric_eigenvalues().max());
+    if own < INERTIA_RATIO * largest {
+        let what = "is not the one about which its moment of inertia is largest, as a disc's is";
+        return Some(format!("the axis of rotation of part {part:?} {what}. Look at axis in its [[rotation]]"));
+    }
+    // The radius of a solid disc with this moment of inertia; a sector of a disc has its axis outside.
+    let radius = (2.0 * own / properties.mass).sqrt();
+    let distance = (Vector3::from(centre) - Vector3::from(rotation.through)).cross(&a).norm();
+    (distance > AXIS_RATIO * radius && distance < radius).then(|| {
+        let distance = 1e3 * distance;
+        format!("the axis of rotation of part {part:?} passes {distance:.1} mm beside its centre of mass. Look at through in its [[rotation]]")
+    })
+}
+
+/// The worst scaled Jacobian of a part's elements. One flat element does not spoil modes: only `squeal check` warns.
+pub fn quality(part: &str, worst: f64) -> Option<String> {
+    (worst < QUALITY).then(|| {
+        format!(
+            "part {part:?} has an element of quality {worst:.3} (scaled Jacobian, 1 is best). Mesh again where it is"
+        )
+    })
+}
+
 /// Everything about a brake that can hardly be meant. Collective.
 pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     let model = &full.model;
@@ -116,7 +166,29 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     let ties = model.ties.iter().zip(&full.joints.ties).filter_map(|(tie, own)| tie_sizes(&tie.name, own.sizes));
     let extent = full.extents(comm).into_iter().fold(0.0, f64::max);
     let size = size(extent, model.mesh_unit);
-    stiffness.chain(mass).chain(contacts).chain(ties).chain(size).chain(stiff_elements(full, comm)).collect()
+    stiffness
+        .chain(mass)
+        .chain(contacts)
+        .chain(ties)
+        .chain(size)
+        .chain(stiff_elements(full, comm))
+        .chain(geometry(full, comm))
+        .collect()
+}
+
+/// What is wrong with overlaps and axes. Collective.
+fn geometry(full: &FullModel, comm: &Comm) -> Vec<String> {
+    let overlaps = full.interface.pairs.iter().filter(|pair| pair.separation).filter_map(|pair| {
+        let facet = full.mesh.surfaces[&pair.slave].facet_size(pair.statistics.area);
+        overlap(&pair.name, -pair.statistics.gap[0], facet)
+    });
+    let mut all: Vec<String> = overlaps.collect();
+    for rotation in &full.model.rotations {
+        if let Some(part) = full.mesh.parts.iter().position(|part| *part == rotation.part) {
+            all.extend(axis(rotation, &full.part_properties(comm, part)));
+        }
+    }
+    all
 }
 
 /// Parts that have elements too stiff for modes that bend. Collective.
@@ -163,6 +235,7 @@ impl FullModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Place;
 
     #[test]
     fn constant_strain_and_locking_elements_are_named_and_others_are_not() {
@@ -182,6 +255,42 @@ mod tests {
     fn warns(warning: Option<String>, says: &str) {
         let text = warning.expect("no warning");
         assert!(text.contains(says), "{says:?} is not in {text:?}");
+    }
+
+    #[test]
+    fn overlaps() {
+        assert_eq!([1e-3, -1e-3, 0.0].map(|depth| overlap("pad", depth, 8e-3)), [None, None, None]);
+        warns(overlap("pad", 5e-3, 8e-3), "overlap by 5.000e0 mm at the start, where facets are 8.000e0 mm long");
+    }
+
+    /// A disc of radius 0.1 m, 0.02 m thick, of 1 kg about the point c.
+    fn disc(c: [f64; 3]) -> MassProperties {
+        let own = [0.01 / 4.0, 0.01 / 4.0, 0.0004 / 12.0];
+        let moment = |i: usize, j: usize| c[i] * c[j] + if i == j { own[i] } else { 0.0 };
+        let second_moment = [0, 1, 2].map(|i| [0, 1, 2].map(|j| moment(i, j)));
+        MassProperties { mass: 1.0, first_moment: c, second_moment }
+    }
+
+    #[test]
+    fn axes_of_discs() {
+        let rotation = |axis: [f64; 3], through: [f64; 3]| Rotation {
+            part: "disc".into(),
+            axis,
+            through,
+            speed: 5.0,
+            place: Place::default(),
+        };
+        let about = |a: [f64; 3], through: [f64; 3]| axis(&rotation(a, through), &disc([0.3, 0.0, 0.5]));
+        assert_eq!(about([0.0, 0.0, 1.0], [0.3, 0.009, 0.0]), None);
+        assert_eq!(about([0.0, 0.0, -1.0], [0.0; 3]), None, "a sector of a disc");
+        warns(about([1.0, 0.0, 0.0], [0.3, 0.0, 0.5]), "is not the one about which its moment of inertia is largest");
+        warns(about([0.0, 0.0, 1.0], [0.3, 0.02, 0.0]), "passes 20.0 mm beside its centre of mass");
+    }
+
+    #[test]
+    fn flat_elements() {
+        assert_eq!(quality("disc", 0.06), None);
+        warns(quality("disc", 0.002), "has an element of quality 0.002");
     }
 
     #[test]

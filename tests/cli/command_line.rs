@@ -218,7 +218,8 @@ fn results_go_where_they_are_expected() {
 fn a_stable_brake_is_called_stable_if_it_is_damped() {
     let without_friction = |text: String| swap(&text, "friction = 0.4", "friction = 0");
     let damped = |text: String| {
-        without_friction(text) + "\n[[connector]]\nbetween = [\"pad_top\", \"disc_bottom\"]\nstiffness = [1, 1, 1]\ndamping = [1, 1, 1]\n"
+        without_friction(text)
+            + "\n[[connector]]\nbetween = [\"pad_top\", \"disc_bottom\"]\nstiffness = [1, 1, 1]\ndamping = [1, 1, 1]\n"
     };
     let run = |place: Place| {
         let finished = place.run(&["stability", "brake.toml", "--band", "0:60000", "-o", "run"]);
@@ -302,4 +303,17 @@ fn options_reach_petsc() {
         place.command().args(["static", "brake.toml", "-o", "view", "--petsc", "-equilibrium_snes_view"]).output();
     let lines: Vec<String> = BufReader::new(&view.unwrap().stdout[..]).lines().map_while(Result::ok).collect();
     assert!(lines.iter().any(|line| line.contains("SNES Object: (equilibrium_)")), "{lines:?}");
+}
+
+/// A pad 0.05 mm above its disc, as CAD leaves it.
+#[test]
+fn a_clearance_is_closed_by_adjust() {
+    let mesh = || PadOnDisc { gap: 0.05, ..PadOnDisc::default() };
+    let open = Place::with_blocks(|text| text, &mesh()).run(&["check", "brake.toml"]);
+    assert_eq!(open.code, 2);
+    assert!(open.err.contains("(at least 5.000e-2, in the mesh's unit) by adjust = DISTANCE"), "{}", open.err);
+    let adjusted = |text: String| swap(&text, "friction = 0.4", "friction = 0.4\nadjust = 0.06");
+    let check = Place::with_blocks(adjusted, &mesh()).run(&["check", "brake.toml"]);
+    assert_eq!(check.code, 0, "{}", check.err);
+    assert!(check.out.contains("points are closed, the largest 5.00e-2 mm"), "{}", check.out);
 }

@@ -40,6 +40,7 @@ impl<'d> Conversion<'d> {
                 stick: None,
                 separation: !interaction.no_separation,
                 search_distance: None,
+                adjust: 0.0,
                 place: pair.place,
             });
         }
