@@ -159,6 +159,20 @@ fn stress_beside_a_tie_of_meshes_that_do_not_match_is_nearly_uniform() {
     }
 }
 
+/// The triangles of tetrahedra on the quadrilaterals of hexahedra: nodes meet nodes or centres, and stress is uniform
+/// [1e-11].
+#[test]
+fn elements_of_different_kinds_are_tied() {
+    let comm = Session::start(&[]).unwrap();
+    let mut mesh = Mesh::default();
+    block(&mut mesh, "lower", ElementKind::C3D20, [2, 2, 1], [0.0, 0.01]);
+    block(&mut mesh, "upper", ElementKind::C3D10, [2, 2, 1], [0.01, 0.02]);
+    let brake = brake(&pulled(), mesh);
+    let stress_error = stress_error(&brake, &displacements(&comm, &brake));
+    println!("stress {stress_error:.1e}");
+    assert!(stress_error < 1e-9);
+}
+
 /// Two tied blocks beside one block of the same mesh: a side force [softer by 3.3e-5 to 3.8e-5] and the first ten
 /// frequencies [lower by 3e-6 to 3e-5].
 #[test]
