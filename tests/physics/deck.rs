@@ -157,3 +157,51 @@ fn the_demo_brake_as_a_deck_has_its_matrices() {
     assert_same_products(&comm, &model, &deck);
     assert_eq!(model.joints.elements.len(), deck.joints.elements.len());
 }
+
+/// What joins the pads of `with_joints`: a tie, a rigid back, a mass, a spring to the ground, a force and a moment.
+const JOINTS: &str = r#"
+[[tie]]
+slave = "lining_outer_face"
+master = "disc_outer_face"
+search = 1.0
+[[rigid]]
+nodes = "backplate_inner_back"
+[[mass]]
+nodes = "backplate_outer_back"
+at = [0, 10, 60]
+mass = 0.1
+inertia = [1e-4, 2e-4, 3e-4, 1e-5, -2e-5, 3e-5]
+[[connector]]
+between = ["backplate_outer_back", "ground"]
+at = [5, 0, 50]
+stiffness = [1e6, 2e6, 0]
+rotational_stiffness = [10, 0, 30]
+damping = [0, 2, 3]
+[[load]]
+name = "side"
+on = "backplate_outer_back"
+at = [1, 2, 50]
+force = [10, 0, -5]
+moment = [1, 2, 0]
+"#;
+
+/// Pads of which one is tied to the disc, with all other joints that need no point.
+fn with_joints(folder: &Path) -> std::path::PathBuf {
+    let text = std::fs::read_to_string(data("pads_on_disc.toml")).unwrap();
+    let outer = text.find("[[contact]]\nname = \"disc / outer pad\"").unwrap()..text.find("[[load]]").unwrap();
+    let mesh = data("pads_on_disc.msh");
+    let text = text.replace(&text[outer], "").replace("pads_on_disc.msh", mesh.to_str().unwrap());
+    let file = folder.join("joints.toml");
+    std::fs::write(&file, text.replace("[stability]", &format!("{JOINTS}\n[stability]"))).unwrap();
+    file
+}
+
+#[test]
+fn joints_of_a_deck_have_the_matrices_of_their_model() {
+    let comm = Session::start(&[]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = with_joints(folder.path());
+    let (model, deck) = (brake(&file), brake_of(&deck_of(&file, UnitSystem::ALL[0])));
+    assert_eq!(model.joints.elements.len(), deck.joints.elements.len());
+    assert_same_products(&comm, &model, &deck);
+}
