@@ -101,13 +101,21 @@ fn two_ranks_find_what_one_finds() {
     let alone = stability(&place, "0:20000", 1);
     assert!(alone.0.len() > 4, "{:?}", alone.0);
     let explained = place.read("run/explained.csv");
-    println!("{:?}\n{explained}", alone.0);
     for source in ["tie,bond", "rigid,stiff", "mass,caliper", "connector,bush", "equation,opposite"] {
         assert!(explained.contains(source), "{source} is not in {explained}");
     }
     let two = stability(&place, "0:20000", 2);
     assert_same_modes(&alone.0, &two.0);
     assert_same_contact(&alone.1, &two.1, 1e-8);
+    let shares = |table: &str| -> Vec<f64> {
+        let of_row =
+            |row: &str| row.split(',').skip(5).take(2).map(|share| share.parse().unwrap()).collect::<Vec<f64>>();
+        table.lines().skip(1).flat_map(of_row).collect()
+    };
+    let (one, two) = (shares(&explained), shares(&place.read("run/explained.csv")));
+    assert!(one.len() == 18 && one.len() == two.len());
+    assert!((one.iter().sum::<f64>() - 2.0).abs() < 1e-9, "kinetic and strain energies add up to 1 each");
+    one.iter().zip(two).for_each(|(one, two)| assert!((one - two).abs() < 1e-7, "{one} on one rank, {two} on two"));
 }
 
 #[test]
