@@ -27,7 +27,7 @@ fn residuals(a: &Matrix, factor: &Factor) -> [f64; 2] {
 }
 
 /// A brake's unsymmetric tangent under friction, factorised and solved with.
-fn solve(comm: &Comm) {
+fn solve(comm: &Comm, ordering: &str) {
     let place = Place::pads();
     let brake = FullModel::read(comm, &place.path("brake.toml")).unwrap();
     let families = brake.families().unwrap();
@@ -47,7 +47,7 @@ fn solve(comm: &Comm) {
         assert!(direct > 1e-9, "it is in single precision: {direct:e}");
         let single = factor.stats();
         assert!(single.used_mb < 0.75 * double.used_mb, "{} MB for {} MB", single.used_mb, double.used_mb);
-        assert_eq!((double.ordering_name(), single.ordering_name()), ("METIS", "METIS"));
+        assert_eq!((double.ordering_name(), single.ordering_name()), (ordering, ordering));
         Ok(())
     };
     sweep.linearise(&equilibrium, look).unwrap();
@@ -55,7 +55,7 @@ fn solve(comm: &Comm) {
 
 #[test]
 fn on_one_rank() {
-    solve(&Session::start(&[]).unwrap());
+    solve(&Session::start(&[]).unwrap(), "METIS");
 }
 
 #[test]
@@ -68,5 +68,20 @@ fn on_two_ranks() {
 #[test]
 #[ignore = "one of the ranks of on_two_ranks"]
 fn a_rank() {
-    solve(&Session::start(&[]).unwrap());
+    solve(&Session::start(&[]).unwrap(), "METIS");
+}
+
+/// No rank has the whole graph.
+#[test]
+fn ordered_by_two_ranks() {
+    let said = run_test_on_two_ranks("factors::a_rank_that_orders");
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.out.matches("1 passed").count(), 2, "{}", said.out);
+}
+
+#[test]
+#[ignore = "one of the ranks of ordered_by_two_ranks"]
+fn a_rank_that_orders() {
+    let option = |number: u32, value: &str| (format!("-mat_mumps_icntl_{number}"), value.to_owned());
+    solve(&Session::start(&[option(28, "2"), option(29, "1")]).unwrap(), "PT-SCOTCH");
 }

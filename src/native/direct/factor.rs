@@ -21,9 +21,8 @@ pub enum FactorKind {
 /// What a factor costs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FactorStats {
-    /// Ordering used, MUMPS's number (1 is METIS's, which is given, 3 SCOTCH, 4 PORD); none where the matrix is dense
-    /// and LAPACK factorises it.
-    pub ordering: Option<i32>,
+    /// Name of the ordering; none where the matrix is dense and LAPACK factorises it.
+    pub ordering: Option<&'static str>,
     /// Whether it is in single precision.
     pub single: bool,
     /// Entries in the factors.
@@ -52,13 +51,10 @@ pub struct FactorStats {
     pub solve_seconds: f64,
 }
 
-/// Names of MUMPS's orderings.
-const ORDERINGS: [&str; 8] = ["AMD", "METIS", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
-
 impl FactorStats {
     /// Name of the ordering.
     pub fn ordering_name(&self) -> &'static str {
-        self.ordering.map_or("none (dense)", |number| ORDERINGS.get(number as usize).unwrap_or(&"?"))
+        self.ordering.unwrap_or("none (dense)")
     }
 }
 
@@ -129,7 +125,7 @@ impl Factor {
         }
         mumps.analyse(a)?;
         mumps.verdict("analysis")?;
-        self.stats.ordering = Some(mumps.infog(7) as i32);
+        self.stats.ordering = Some(mumps.ordering());
         self.stats.single = self.precision == Precision::Single;
         self.stats.estimated_mb = mumps.infog(17);
         self.stats.n_analyses += 1;

@@ -37,6 +37,13 @@ const SOLVE: i32 = 3;
 /// Orderings by MUMPS's numbers: one that is given, and METIS's, which this MUMPS does not have.
 const GIVEN: i32 = 1;
 const METIS: i32 = 5;
+/// Analysis by all ranks: MUMPS gathers no graph, and orders by PT-SCOTCH or ParMETIS.
+const PARALLEL: i32 = 2;
+
+/// Names of MUMPS's orderings by their numbers: those by the first rank, of which the one that is given is METIS's, and
+/// those by all ranks.
+const ORDERINGS: [&str; 8] = ["AMD", "METIS", "AMF", "SCOTCH", "PORD", "METIS", "QAMD", "automatic"];
+const PARALLEL_ORDERINGS: [&str; 3] = ["automatic", "PT-SCOTCH", "ParMETIS"];
 
 /// MUMPS's own name for the folder of factors that do not fit into memory.
 const OUT_OF_CORE: &str = "MUMPS_OOC_TMPDIR";
@@ -156,6 +163,12 @@ impl Mumps {
         if counts && value < 0 { -1e6 * f64::from(value) } else { f64::from(value) }
     }
 
+    /// Name of the ordering used.
+    pub fn ordering(&self) -> &'static str {
+        let names = if self.infog(32) == f64::from(PARALLEL) { &PARALLEL_ORDERINGS[..] } else { &ORDERINGS };
+        names.get(self.infog(7) as usize).unwrap_or(&"?")
+    }
+
     /// A global real information number, numbered from 1.
     #[allow(clippy::useless_conversion)] // single or double precision
     pub fn rinfog(&self, number: i32) -> f64 {
@@ -179,7 +192,7 @@ impl Mumps {
         let first = a.first_row()?;
         self.equations = (0..a.n_local()).map(|i| (first + i) as i32 + 1).collect();
         let n = int("a matrix's rows", self.comm.sum(a.n_local()))?;
-        let by_metis = both!(&self.data, id => id.icntl[6] == METIS);
+        let by_metis = both!(&self.data, id => id.icntl[6] == METIS && id.icntl[27] != PARALLEL);
         let mut places = if by_metis { ordering::nested_dissection(a)? } else { Vec::new() };
         both!(&mut self.data, id => {
             id.n = n;
