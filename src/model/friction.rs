@@ -105,8 +105,7 @@ fn stribeck(
     Ok((at_rest, Some(FrictionCurve::Stribeck(curve))))
 }
 
-/// A table of coefficients over speed, pressure and temperature, at the contact's temperature. Its first row is the
-/// friction value.
+/// A table of coefficients over speed, pressure and temperature, at the contact's temperature.
 fn tabular(
     item: &Item,
     raw: &Spanned<keys::Friction>,
@@ -128,9 +127,9 @@ pub struct Refusal {
 }
 
 impl FrictionTable {
-    /// The table of rows `[mu, value, ...]` at a temperature, and the friction value, which is the mu of the first
-    /// combination: of the lowest speed, pressure and temperature. `by` says what the values are: `"speed"` (m/s),
-    /// `"pressure"` (Pa), `"temperature"` (in the unit of the temperature given).
+    /// The table of rows `[mu, value, ...]` at a temperature, and the friction value: mu at the table's lowest speed
+    /// and pressure. `by` says what the values are: `"speed"` (m/s), `"pressure"` (Pa), `"temperature"` (in the unit of the
+    /// temperature given).
     ///
     /// # Errors
     /// [`Refusal`] where a row is wrong, or where the rows are not a full grid.
@@ -150,15 +149,16 @@ impl FrictionTable {
         }
         let grid = Grid::new(rows, by.len(), columns).map_err(|what| {
             let advice = "A row is [mu, value, ...] in the order of `by`, all finite, mu from 0 to 2; \
-                          every value with every other";
+                          every combination of the values once";
             refuse(what, advice)
         })?;
-        let first = grid.mu[0];
-        if first <= 0.0 {
+        let table = grid.at_temperature(temperature);
+        let value = table.values[0];
+        if value <= 0.0 {
             let advice = "It is the friction value, and must be above 0";
-            return Err(refuse("the first row's coefficient is 0".into(), advice));
+            return Err(refuse("the coefficient at the lowest speed and pressure is 0".into(), advice));
         }
-        Ok((first, grid.at_temperature(temperature, first)))
+        Ok((value, FrictionTable { values: table.values.iter().map(|mu| mu / value).collect(), ..table }))
     }
 }
 
@@ -201,41 +201,59 @@ impl Grid {
             values.dedup();
             values
         });
-        let [speeds, pressures, temperatures] = [0, 1, 2].map(|variable: usize| axes[variable].iter());
-        let mut mu = Vec::new();
-        for &v in speeds {
-            for &q in pressures.clone() {
-                for &t in temperatures.clone() {
-                    let place = [v, q, t];
-                    let row = rows.iter().filter(|row| (0..3).all(|i| at(row, i) == place[i]));
-                    let [row] = row.collect::<Vec<_>>()[..] else {
-                        return Err("the friction table has a combination of values not at all or twice".into());
-                    };
-                    mu.push(row[0]);
-                }
-            }
+        // A full grid has as many rows as combinations, and no combination twice.
+        let place = |row: &[f64]| [0, 1, 2].map(|variable| at(row, variable));
+        let mut sorted: Vec<&Vec<f64>> = rows.iter().collect();
+        sorted.sort_by(|a, b| place(a).partial_cmp(&place(b)).expect("all are finite"));
+        let is_twice = sorted.windows(2).any(|pair| place(pair[0]) == place(pair[1]));
+        if is_twice || rows.len() != axes.iter().map(Vec::len).product::<usize>() {
+            return Err("the friction table has a combination of values not at all or twice".into());
         }
-        Ok(Grid { axes, mu })
+        Ok(Grid { axes, mu: sorted.into_iter().map(|row| row[0]).collect() })
     }
 
-    /// The factor on the friction value at a temperature, linear between the table's.
-    fn at_temperature(self, temperature: Option<f64>, value: f64) -> FrictionTable {
+    /// mu at a temperature, linear between the table's.
+    fn at_temperature(self, temperature: Option<f64>) -> FrictionTable {
         let [speeds, pressures, temperatures] = self.axes;
-        let (lower, fraction) = bracket(&temperatures, temperature.unwrap_or(0.0));
-        let upper = (lower + 1).min(temperatures.len() - 1);
-        let between = |mu: &[f64]| ((1.0 - fraction) * mu[lower] + fraction * mu[upper]) / value;
+        let interval = GridInterval::around(&temperatures, temperature.unwrap_or(0.0));
+        let between = |mu: &[f64]| interval.between(mu[interval.lower], mu[interval.upper]);
         FrictionTable { speeds, pressures, values: self.mu.chunks(temperatures.len()).map(between).collect() }
     }
 }
 
-/// The last of some rising values that is not above x, and how far x is on the way to the next: 0 at the ends and
-/// beyond them.
-pub fn bracket(values: &[f64], x: f64) -> (usize, f64) {
-    let above = values.partition_point(|&value| value <= x);
-    match above {
-        0 => (0, 0.0),
-        n if n == values.len() => (n - 1, 0.0),
-        n => (n - 1, (x - values[n - 1]) / (values[n] - values[n - 1])),
+/// Where an argument lies among rising values.
+pub struct GridInterval {
+    /// Place of the last value that is not above the argument; the first beyond that end.
+    pub lower: usize,
+    /// Place of the next value; `lower` beyond the ends.
+    pub upper: usize,
+    /// How far the argument is on the way; 0 beyond the ends.
+    fraction: f64,
+    /// 1 over the distance of the two values; 0 beyond the ends.
+    per_unit: f64,
+}
+
+impl GridInterval {
+    /// The interval that x is in; at a value that is the one above it.
+    pub fn around(values: &[f64], x: f64) -> GridInterval {
+        let above = values.partition_point(|&value| value <= x);
+        if above == 0 || above == values.len() {
+            let lower = above.saturating_sub(1);
+            return GridInterval { lower, upper: lower, fraction: 0.0, per_unit: 0.0 };
+        }
+        let (lower, upper) = (above - 1, above);
+        let per_unit = 1.0 / (values[upper] - values[lower]);
+        GridInterval { lower, upper, fraction: per_unit * (x - values[lower]), per_unit }
+    }
+
+    /// A function linear between its values at the two ends.
+    pub fn between(&self, lower: f64, upper: f64) -> f64 {
+        lower + self.fraction * (upper - lower)
+    }
+
+    /// Its slope.
+    pub fn slope(&self, lower: f64, upper: f64) -> f64 {
+        self.per_unit * (upper - lower)
     }
 }
 
@@ -244,19 +262,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_between_their_neighbours_and_at_the_ends_beyond() {
+    fn arguments_are_between_their_neighbours_and_at_the_ends_beyond() {
         let values = [1.0, 2.0, 4.0];
         for (x, expected) in [
-            (0.5, (0, 0.0)),
-            (1.0, (0, 0.0)),
-            (1.5, (0, 0.5)),
-            (2.0, (1, 0.0)),
-            (3.5, (1, 0.75)),
-            (4.0, (2, 0.0)),
-            (9.0, (2, 0.0)),
+            (0.5, (0, 0, 0.0)),
+            (1.0, (0, 1, 0.0)),
+            (1.5, (0, 1, 0.5)),
+            (2.0, (1, 2, 0.0)),
+            (3.5, (1, 2, 0.75)),
+            (4.0, (2, 2, 0.0)),
+            (9.0, (2, 2, 0.0)),
         ] {
-            assert_eq!(bracket(&values, x), expected, "{x}");
+            let GridInterval { lower, upper, fraction, .. } = GridInterval::around(&values, x);
+            assert_eq!((lower, upper, fraction), expected, "{x}");
         }
-        assert_eq!(bracket(&[3.0], 7.0), (0, 0.0));
+        assert_eq!(GridInterval::around(&[3.0], 7.0).upper, 0);
     }
 }

@@ -3,7 +3,8 @@
 //! A reader fails where it panics, aborts, takes longer than [`LONGEST`], or has more memory at once than
 //! [`largest_memory`]. The input at hand is in target/fuzz/<format>/, so that one that ends the process is kept.
 //!
-//! `SQUEAL_FUZZ_SECONDS` is the time for each format; `make fuzz` sets it. `SQUEAL_FUZZ_SEED` continues elsewhere.
+//! `SQUEAL_FUZZ_SECONDS` is the time for each format; `make fuzz` sets it. `SQUEAL_FUZZ_SEED`
+//! chooses the sequence of mutations. A reader without end does not end its test: nextest does, after ten minutes.
 
 mod mutate;
 mod seeds;

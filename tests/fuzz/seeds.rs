@@ -33,8 +33,33 @@ pub fn decks() -> Vec<Vec<u8>> {
     let place = Place::blocks();
     let written = place.run(&["convert", "brake.toml", "-o", "brake.inp"]);
     assert_eq!(written.code, 0, "{}", written.err);
-    vec![place.read("brake.inp").into_bytes(), INSTANCES.as_bytes().to_vec()]
+    let joined = INSTANCES.replace("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\n", JOINTS);
+    vec![place.read("brake.inp").into_bytes(), INSTANCES.as_bytes().to_vec(), joined.into_bytes()]
 }
+
+/// A tie takes the place of the contact pair.
+const JOINTS: &str = "*NODE, NSET=REFERENCE
+101, 0.5, 0.5, 3.
+*COUPLING, REF NODE=101, SURFACE=TWO.TOP, CONSTRAINT NAME=C
+*DISTRIBUTING
+1, 6
+*ELEMENT, TYPE=MASS, ELSET=M
+201, 101
+*MASS, ELSET=M
+1e-3
+*ELEMENT, TYPE=SPRING1, ELSET=S
+202, 101
+*SPRING, ELSET=S
+3, 3
+100.
+*EQUATION
+2
+ONE.5, 1, 1., ONE.6, 1, -1.
+*FRICTION
+0.4, 0., 1.
+0.3, 10., 1.
+*TIE, NAME=T, POSITION TOLERANCE=0.1
+";
 
 const INSTANCES: &str = "*HEADING
 two cubes

@@ -1,7 +1,7 @@
 //! The friction laws of model files as functions of sliding speed and pressure, with their derivatives.
 
 use super::friction::{FrictionFactor, FrictionFunction};
-use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck, bracket};
+use crate::model::friction::{FrictionCurve, FrictionTable, GridInterval, SpeedDecay, Stribeck};
 
 impl FrictionFunction for FrictionCurve {
     fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {
@@ -41,7 +41,8 @@ impl FrictionFunction for FrictionTable {
     /// `phi = (1 - a) ((1 - b) phi_00 + b phi_01) + a ((1 - b) phi_10 + b phi_11)`. Where a slope jumps it is that of
     /// the greater argument; beyond the grid it is 0.
     fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {
-        let (at_speed, at_pressure) = (Place::new(&self.speeds, speed), Place::new(&self.pressures, pressure));
+        let (at_speed, at_pressure) =
+            (GridInterval::around(&self.speeds, speed), GridInterval::around(&self.pressures, pressure));
         let phi = |i: usize, j: usize| self.values[i * self.pressures.len() + j];
         let along = |i: usize| at_pressure.between(phi(i, at_pressure.lower), phi(i, at_pressure.upper));
         let across = |j: usize| at_speed.between(phi(at_speed.lower, j), phi(at_speed.upper, j));
@@ -50,34 +51,6 @@ impl FrictionFunction for FrictionTable {
             by_speed: at_speed.slope(along(at_speed.lower), along(at_speed.upper)),
             by_pressure: at_pressure.slope(across(at_pressure.lower), across(at_pressure.upper)),
         }
-    }
-}
-
-/// Where an argument lies among rising values.
-struct Place {
-    lower: usize,
-    upper: usize,
-    /// How far it is on the way.
-    fraction: f64,
-    /// 1 over the distance of the two; 0 beyond the ends.
-    per_unit: f64,
-}
-
-impl Place {
-    fn new(values: &[f64], x: f64) -> Place {
-        let (lower, fraction) = bracket(values, x);
-        let is_inside = x >= values[0] && lower + 1 < values.len();
-        let upper = if is_inside { lower + 1 } else { lower };
-        let per_unit = if is_inside { 1.0 / (values[upper] - values[lower]) } else { 0.0 };
-        Place { lower, upper, fraction, per_unit }
-    }
-
-    fn between(&self, lower: f64, upper: f64) -> f64 {
-        lower + self.fraction * (upper - lower)
-    }
-
-    fn slope(&self, lower: f64, upper: f64) -> f64 {
-        self.per_unit * (upper - lower)
     }
 }
 

@@ -98,7 +98,7 @@ fn a_friction_table_is_a_full_grid_in_any_order_at_one_temperature() {
     let both = table("[\"pressure\", \"speed\"]", rows, "").unwrap();
     assert_eq!(both, (0.5, curve(&[0.0, 2.0], &[1e6, 5e6], &[1.0, 0.75, 0.8, 0.6])));
     let warm = table("[\"temperature\"]", "[0.5, 100], [0.3, 300]", ", temperature = 150").unwrap();
-    assert_eq!(warm, (0.5, curve(&[0.0], &[0.0], &[0.9])));
+    assert_eq!(warm, (0.45, curve(&[0.0], &[0.0], &[1.0])));
     for (by, rows, rest, said) in [
         ("[\"colour\"]", "[0.5, 0]", "", "the friction table is by [\"colour\"]"),
         ("[\"speed\", \"speed\"]", "[0.5, 0, 0]", "", "the friction table is by [\"speed\", \"speed\"]"),
@@ -107,7 +107,7 @@ fn a_friction_table_is_a_full_grid_in_any_order_at_one_temperature() {
         ("[\"speed\"]", "[3.0, 0]", "", "the friction table has the row [3.0, 0.0]"),
         ("[\"speed\"]", "[0.5, 0], [0.4, 0]", "", "a combination of values not at all or twice"),
         ("[\"speed\", \"pressure\"]", "[0.5, 0, 0], [0.4, 1, 1]", "", "a combination of values not at all or twice"),
-        ("[\"speed\"]", "[0.0, 0], [0.4, 1]", "", "the first row's coefficient is 0"),
+        ("[\"speed\"]", "[0.0, 0], [0.4, 1]", "", "the coefficient at the lowest speed and pressure is 0"),
         ("[\"speed\"]", "[0.5, 0]", ", temperature = 20", "the table and the temperature do not go together"),
         ("[\"temperature\"]", "[0.5, 0]", "", "the table and the temperature do not go together"),
     ] {
