@@ -183,7 +183,9 @@ impl ModelSummary {
     fn parts_text(&self) -> String {
         let row = |row: &PartRow| {
             let PartRow { part, elements, mass_kg, quality_min, quality_median, .. } = row;
-            let (centre, inertia) = (joined(row.centre_m, 1e3, 2, " "), joined(row.inertia_kg_m2, 1e6, 2, " "));
+            let of_mass = |text: String| if *mass_kg > 0.0 { text } else { "none".to_owned() };
+            let centre = of_mass(joined(row.centre_m, 1e3, 2, " "));
+            let inertia = of_mass(joined(row.inertia_kg_m2, 1e6, 2, " "));
             let damping = match (row.alpha_per_s, row.beta_s) {
                 (0.0, 0.0) => "none".to_owned(),
                 (alpha, beta) => format!("{alpha} {beta:e}"),
@@ -316,5 +318,12 @@ pub(super) mod tests {
     #[test]
     fn units_are_those_of_the_headings_and_no_zero_is_negative() {
         insta::assert_snapshot!(summary().text());
+    }
+
+    #[test]
+    fn a_part_without_mass_has_no_centre() {
+        let mut summary = summary();
+        (summary.parts[0].mass_kg, summary.parts[0].centre_m) = (0.0, [f64::NAN; 3]);
+        assert!(summary.text().contains("0.0000  none") && !summary.text().contains("NaN"), "{}", summary.text());
     }
 }
