@@ -27,9 +27,6 @@ impl<'d> Conversion<'d> {
                 return Err(self.assembly.error(pair.place, format_args!("the contact pair {name} is there already")));
             }
             let stiffness = self.stiffness(interaction, &slave, &master)?;
-            if pair.adjust {
-                self.notes.push(format!("ADJUST of {name} is not applied: the gaps are those of the mesh"));
-            }
             contacts.push(Contact {
                 name,
                 slave,
@@ -40,7 +37,7 @@ impl<'d> Conversion<'d> {
                 stick: None,
                 separation: !interaction.no_separation,
                 search_distance: None,
-                adjust: 0.0,
+                adjust: pair.adjust.map_or(0.0, |gap| gap * self.units.length),
                 place: pair.place,
             });
         }

@@ -111,7 +111,7 @@ impl Parser {
     fn pair(&mut self, card: &Card) -> Result<()> {
         let tied = card.has("TIED");
         let interaction = self.name_of(card, "INTERACTION")?;
-        let adjust = card.has("ADJUST");
+        let adjust = self.adjust(card)?;
         let mut n = 0;
         while let Some(row) = self.lines.row()? {
             let [slave, master] = [row.name(0, "the slave surface")?, row.name(1, "the master surface")?];
@@ -121,6 +121,19 @@ impl Parser {
             self.deck.contact_pairs.push(ContactPair { slave, master, interaction, adjust, tied, place: row.place });
         }
         if n == 0 { Err(card.error("the two surfaces are missing")) } else { Ok(()) }
+    }
+
+    /// The gap up to which a pair is closed; a set of nodes is noted.
+    fn adjust(&mut self, card: &Card) -> Result<Option<f64>> {
+        let Some(text) = card.value("ADJUST") else { return Ok(None) };
+        match crate::deck::row::real(text) {
+            Some(gap) if gap >= 0.0 => Ok(Some(gap)),
+            Some(gap) => Err(card.error(format_args!("ADJUST must be 0 or above, not {gap} (*CONTACT PAIR)"))),
+            None => {
+                self.note("ADJUST with a set of nodes is not applied: the gaps are those of the mesh");
+                Ok(None)
+            }
+        }
     }
 
     /// `*COUPLING`, and below it what kind it is.

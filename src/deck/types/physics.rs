@@ -123,7 +123,7 @@ pub struct ContactPair {
     /// Name of the interaction.
     pub interaction: String,
     /// Whether nodes of the slave are moved onto the master, and from which distance.
-    pub adjust: bool,
+    pub adjust: Option<f64>,
     /// Whether the surfaces move as one.
     pub tied: bool,
     /// Where it stands.

@@ -76,6 +76,11 @@ impl DeckWriter<'_> {
             out += &format!("*FRICTION\n{}{stick}\n", number(contact.friction));
         }
         let (slave, master) = (self.names.region(&contact.slave), self.names.region(&contact.master));
-        out + &format!("*CONTACT PAIR,INTERACTION=LAW{},TYPE=SURFACE TO SURFACE\n{slave},{master}\n", i + 1)
+        let adjust = if contact.adjust > 0.0 {
+            format!(",ADJUST={}", number(contact.adjust / self.units.length))
+        } else {
+            String::new()
+        };
+        out + &format!("*CONTACT PAIR,INTERACTION=LAW{},TYPE=SURFACE TO SURFACE{adjust}\n{slave},{master}\n", i + 1)
     }
 }

@@ -356,3 +356,13 @@ fn a_deck_of_statics_needs_no_density_and_one_of_modes_does() {
     assert_eq!(model.parts[0].material.density, 0.0);
     assert!(summary.notes.iter().any(|note| note.starts_with("the material Steel has no *DENSITY")));
 }
+
+#[test]
+fn gaps_up_to_a_distance_are_closed() {
+    let adjusted = |value: &str| with("INTERACTION=I\n", &format!("INTERACTION=I, ADJUST={value}\n"));
+    assert!(close(adjusted("0.02").unwrap().model.contacts[0].adjust, 2e-5));
+    let Converted { model, summary, .. } = adjusted("HUB").unwrap();
+    assert_eq!(model.contacts[0].adjust, 0.0);
+    assert!(summary.notes.iter().any(|note| note.starts_with("ADJUST with a set of nodes")), "{:?}", summary.notes);
+    assert!(adjusted("-1.").unwrap_err().starts_with("a.inp:51: ADJUST must be 0 or above, not -1"));
+}
