@@ -33,8 +33,8 @@ const DIFFERENT: &[(&str, &str)] = &[
     ("cubespring.inp", "CalculiX's springs at nodes, in place of points of a facet"),
     ("hueeber2.inp", "contact points: CalculiX's faces are cut by the master's edges"),
     ("hueeber4.inp", "contact points: CalculiX's faces are cut by the master's edges"),
-    ("punch1.inp", "ADJUST is not applied: the punch is off the block, and nothing holds it"),
-    ("punch2.inp", "ADJUST is not applied: the punch is off the block, and nothing holds it"),
+    ("punch1.inp", "contact points of second-order faces, and their gaps under a round punch"),
+    ("punch2.inp", "ADJUST with a set of nodes is not applied: the punch is off the block, and nothing holds it"),
 ];
 
 /// Unpacks all decks and results into a folder; gives the decks in the order of their names.
