@@ -82,7 +82,8 @@ fn write_draft(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::R
 
 /// HDF5's error for a file that it could not write.
 fn failure(path: &Path, reason: &hdf5::Error) -> Error {
-    Error::library("HDF5")(format!("{}: {reason}", path.display()))
+    let what = "cannot be written. Look at the free space and the permissions there";
+    Error::library("HDF5")(format!("{}: {what} ({reason})", path.display()))
 }
 
 /// Opens a file of ours. Not collective.

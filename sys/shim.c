@@ -1,5 +1,7 @@
 #include "wrapper.h"
 #include <malloc.h>
+#include <stdio.h>
+#include <string.h>
 
 MPI_Comm squeal_comm_world(void) { return MPI_COMM_WORLD; }
 MPI_Comm squeal_comm_self(void) { return MPI_COMM_SELF; }
@@ -17,6 +19,19 @@ MPI_Datatype squeal_type_uint32(void) { return MPI_UINT32_T; }
 MPI_Datatype squeal_type_uint64(void) { return MPI_UINT64_T; }
 MPI_Datatype squeal_type_byte(void) { return MPI_BYTE; }
 MPI_Datatype squeal_type_double_int(void) { return MPI_DOUBLE_INT; }
+
+/* OpenBLAS has it, the reference BLAS has not. */
+char *openblas_get_config(void) __attribute__((weak));
+
+void squeal_libraries(char *text, size_t size)
+{
+  char mpi[MPI_MAX_LIBRARY_VERSION_STRING] = "";
+  int length = 0;
+  MPI_Get_library_version(mpi, &length);
+  mpi[strcspn(mpi, ",\n")] = 0;
+  snprintf(text, size, "MUMPS %s\nMETIS %d.%d.%d\nBLAS: %s\n%s", MUMPS_VERSION, METIS_VER_MAJOR, METIS_VER_MINOR,
+           METIS_VER_SUBMINOR, openblas_get_config ? openblas_get_config() : "of unknown kind", mpi);
+}
 
 void squeal_give_memory_back(void)
 {

@@ -21,6 +21,8 @@ PetscErrorCode squeal_raise(const char *function, const char *message);
 PetscErrorCode PetscObjectStateGet(PetscObject object, PetscObjectState *state);
 /* Has the C library give freed memory back to the system. */
 void squeal_give_memory_back(void);
+/* Writes the names and versions of MUMPS, METIS, BLAS and MPI, a line each. */
+void squeal_libraries(char *text, size_t size);
 /* BLAS and LAPACK that PETSc's headers leave out. */
 void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
             double *x, const int *incx);

@@ -240,7 +240,9 @@ fn prepare(folder: &Folder, place: &Path, target: &Path, identity: &[(&str, Stri
 /// Refuses what another study has left, and what cannot be read.
 fn usable(place: &Path, target: &Path, identity: &[(&str, String)], n: usize) -> Result<()> {
     let file = place.join(STUDY);
-    let begun = std::fs::read_to_string(&file).map_err(Error::io(&file))?;
+    let begun = std::fs::read_to_string(&file).map_err(|reason| {
+        Error::input(format!("{} is missing or damaged: {reason}. Use --force to begin again", file.display()))
+    })?;
     for (name, value) in identity {
         let before = begun.lines().find_map(|line| line.strip_prefix(&format!("{name}: "))).unwrap_or("unknown");
         if before != value {

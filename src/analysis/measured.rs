@@ -21,7 +21,7 @@ pub struct Measured {
 /// [`Error::Input`] with file and line.
 pub fn read(path: &Path) -> Result<Measured> {
     let place = path.display().to_string();
-    let fail = |reason: csv::Error| Error::input(format!("{place}: {reason}"));
+    let fail = |reason: csv::Error| Error::input(format!("{place}: the measured modes cannot be read: {reason}"));
     let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(fail)?;
     let header = table.headers().map_err(fail)?.clone();
     let columns: Vec<&str> = header.iter().collect();
@@ -34,6 +34,9 @@ pub fn read(path: &Path) -> Result<Measured> {
         _ => Err(Error::input(format!("{place}:{line}: {text:?} is no finite number"))),
     };
     let frequencies = columns[4..].iter().map(|text| number(1, text)).collect::<Result<Vec<f64>>>()?;
+    if let Some(f) = frequencies.iter().find(|f| **f <= 0.0) {
+        return Err(Error::input(format!("{place}:1: a mode has the frequency {f} Hz. Give Hz above 0")));
+    }
     let mut modes: Vec<(f64, Vec<f64>)> = frequencies.into_iter().map(|f| (f, Vec::new())).collect();
     let (mut points, mut directions) = (Vec::new(), Vec::new());
     for record in table.records() {

@@ -52,13 +52,20 @@ fn compare(shell: &Shell, Compare { a, b, output, force }: &Compare) -> Result<(
 }
 
 /// The results in a folder, or of the file itself.
-fn read(place: &Path) -> Result<Results> {
+///
+/// # Errors
+/// [`Error::Input`] where there are none, or none with modes.
+pub(super) fn read(place: &Path) -> Result<Results> {
     let file = if place.is_dir() { place.join(RESULTS) } else { PathBuf::from(place) };
+    let advice = "Give the folder of a run of squeal stability";
     if !file.exists() {
-        let what = format!("{} contains no {RESULTS}", place.display());
-        return Err(Error::input(format!("{what}. Give the folders of two runs of squeal stability")));
+        return Err(Error::input(format!("{} contains no {RESULTS}. {advice}", place.display())));
     }
-    file::read(&file)
+    let results = file::read(&file)?;
+    match results.about.band[1] > 0.0 {
+        true => Ok(results),
+        false => Err(Error::input(format!("{} has no modes. {advice}", file.display()))),
+    }
 }
 
 /// What the results are of, in one line.

@@ -19,9 +19,11 @@ mod values;
 mod watch;
 
 use std::env;
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use clap::error::ErrorKind;
@@ -30,7 +32,7 @@ use serde::Serialize;
 
 use crate::analysis::Output;
 use crate::model::NormalLaw;
-use crate::native::{Comm, Session};
+use crate::native::{Comm, Session, all_libraries};
 use crate::output::json::{self, Failed, Warned};
 use crate::results::Results;
 use crate::structure::StructureOptions;
@@ -45,7 +47,7 @@ use values::Values;
 ///
 /// Exit codes: 0 done, 2 the input cannot be analysed, 3 no convergence, 130 stopped by Ctrl-C, 1 anything else.
 #[derive(Parser)]
-#[command(name = "squeal", version, max_term_width = 110)]
+#[command(name = "squeal", version, long_version = LONG_VERSION.as_str(), max_term_width = 110)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -56,6 +58,9 @@ struct Arguments {
     #[arg(long, global = true)]
     json: bool,
 }
+
+/// The program's version and those of its libraries.
+static LONG_VERSION: LazyLock<String> = LazyLock::new(|| format!("{}\n{}", env!("CARGO_PKG_VERSION"), all_libraries()));
 
 /// What every command runs with.
 struct Shell<'a> {
@@ -112,7 +117,7 @@ fn warning_line(warning: &str, as_json: bool) -> String {
 enum Command {
     /// Write a model file for a mesh: parts, touching surfaces and axis are filled in, the rest is to be chosen
     New(new::New),
-    /// Print a model file that has every key, each explained
+    /// Print a model file that has every key, each explained (also: squeal help model)
     Example,
     /// Print what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
     Check(check::Check),
@@ -231,7 +236,11 @@ pub fn main() -> i32 {
 type PetscOptions = Vec<(String, String)>;
 
 fn arguments() -> std::result::Result<(Arguments, PetscOptions), clap::Error> {
-    let arguments = Arguments::try_parse()?;
+    let mut words: Vec<OsString> = env::args_os().collect();
+    if words.iter().skip(1).eq(["help", "model"]) {
+        words = vec!["squeal".into(), "example".into()];
+    }
+    let arguments = Arguments::try_parse_from(words)?;
     match petsc_options(&arguments.petsc) {
         Ok(options) => Ok((arguments, options)),
         Err(message) => Err(Arguments::command().error(ErrorKind::InvalidValue, message)),
@@ -247,7 +256,13 @@ fn print_usage(usage: &clap::Error) -> i32 {
     let comm = if launched { Session::start(&[]).ok() } else { None };
     if comm.as_ref().is_none_or(Comm::is_root) {
         // An error here has no place where it could be printed.
-        let _ = usage.print();
+        let _ = match (usage.use_stderr(), env::args_os().any(|word| word == "--json")) {
+            (true, true) => {
+                let failed = Failed { error: usage.to_string().trim().to_owned(), exit_code: usage.exit_code() };
+                writeln!(io::stderr(), "{}", json::line(&failed))
+            }
+            _ => usage.print(),
+        };
     }
     usage.exit_code()
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Shell, values};
+use super::{Shell, compare, values};
 use crate::model::InstabilityCriterion;
 use crate::output::files::write_whole;
 use crate::output::folder::add_to_listed;
@@ -16,7 +16,6 @@ use crate::output::vtu;
 use crate::report::findings::Findings;
 use crate::report::raster::{self, Painter};
 use crate::report::{page, paraview, plots, words};
-use crate::results::file;
 use crate::{Error, Result};
 
 /// What `report` takes.
@@ -60,15 +59,9 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     let html = report.output.clone().unwrap_or_else(|| home.join("report.html"));
     may_write_file(&html, &page::KIND, report.force)?;
     [&report.plots, &report.paraview].into_iter().flatten().try_for_each(|folder| may_fill(folder, report.force))?;
-    let results = file::read(&source)?;
+    let results = compare::read(&report.results)?;
     let criterion = report.unstable.unwrap_or(results.about.criterion);
     let results = results.by(criterion);
-    if results.about.band[1] <= 0.0 {
-        return Err(Error::input(format!(
-            "{} has no modes: squeal report shows results of squeal stability",
-            source.display()
-        )));
-    }
     let findings = Findings::new(&results);
     let page = page::page(&results)?;
     let mut writer = Writer { force: report.force, written: Vec::new() };

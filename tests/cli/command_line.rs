@@ -25,7 +25,14 @@ fn help_on_two_ranks() {
     let texts = commands.split(' ').map(|command| help(&[command, "--help"]));
     let program = help(&["--help"]);
     assert_snapshot!(program + &texts.collect::<String>());
-    assert_eq!(place.run_on(2, &["--version"]).out, format!("squeal {}\n", env!("CARGO_PKG_VERSION")));
+    let version = format!("squeal {}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(place.run_on(2, &["-V"]).out, version);
+    let libraries = place.run_on(2, &["--version"]).out;
+    assert!(libraries.starts_with(&version), "{libraries}");
+    for library in ["Petsc ", "SLEPc ", "MUMPS ", "METIS ", "BLAS: ", "MPI "] {
+        assert!(libraries.contains(library), "{library}: {libraries}");
+    }
+    assert_eq!(place.run(&["help", "model"]).out, place.run(&["example"]).out);
     assert_eq!(place.run(&[]).code, 2);
 }
 

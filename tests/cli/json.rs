@@ -101,6 +101,10 @@ fn statics_and_reduction_have_documents_too() {
 #[test]
 fn errors_are_documents_on_two_ranks() {
     let place = Place::empty();
+    let usage = place.run(&["stability", "none.toml", "--json", "--contacts", "abc"]);
+    let error: Value = serde_json::from_str(&usage.err).unwrap();
+    assert_eq!((usage.code, &error["exit_code"]), (2, &Value::from(2)));
+    assert!(error["error"].as_str().unwrap().contains("\"abc\" is not a whole number above 0"), "{error}");
     for finished in [place.run(&["check", "none.toml", "--json"]), place.run_on(2, &["check", "none.toml", "--json"])] {
         assert_eq!((finished.code, finished.out.as_str()), (2, ""), "{}", finished.err);
         let error: Value = serde_json::from_str(finished.err.lines().next().unwrap()).unwrap();

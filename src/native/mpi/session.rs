@@ -108,6 +108,17 @@ pub fn libraries() -> String {
     [version(sys::PetscGetVersion), version(sys::SlepcGetVersion)].join("; ")
 }
 
+/// All libraries that compute, with their versions, a line each. Needs no session.
+pub fn all_libraries() -> String {
+    let mut text = [0 as c_char; 4096];
+    // SAFETY: the shim writes at most so many bytes, with a zero at the end; MPI's version is known before it starts.
+    let others = unsafe {
+        sys::squeal_libraries(text.as_mut_ptr(), text.len());
+        CStr::from_ptr(text.as_ptr()).to_string_lossy().into_owned()
+    };
+    format!("{}\n{others}", libraries().replace("; ", "\n"))
+}
+
 fn set_option(name: &str, value: &str) -> Result<()> {
     let text = |s: &str| CString::new(s).map_err(|_| Error::input(format!("option {s:?} holds a NUL byte")));
     let (name, value) = (text(name)?, text(value)?);
