@@ -221,7 +221,7 @@ impl<'d> Conversion<'d> {
         let (mut free, mut rigid) = ([false; N_COMPONENTS], [false; N_COMPONENTS]);
         for name in &section.types {
             let Some((_, own_free, own_rigid)) = CONNECTOR_TYPES.iter().find(|(known, ..)| known == name) else {
-                let advice = names::advice(name, CONNECTOR_TYPES.map(|(known, ..)| known).into_iter());
+                let advice = names::advice(name, CONNECTOR_TYPES.map(|(known, ..)| known));
                 let what = format_args!("connectors of the type {name} are not supported. {advice}");
                 return Err(self.assembly.error(section.place, what));
             };
