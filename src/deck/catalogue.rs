@@ -40,7 +40,7 @@ const READ: &[(&str, Treatment)] = &[
     ("*NODE", Read(&["NSET", "SYSTEM"], &[])),
     ("*SYSTEM", Read(&[], &[])),
     ("*ELEMENT", Read(&["TYPE", "ELSET"], &[])),
-    ("*NSET", Read(&["NSET", "GENERATE", "INSTANCE", "ELSET"], &["INTERNAL", "UNSORTED", "FREQUENCY"])),
+    ("*NSET", Read(&["NSET", "GENERATE", "INSTANCE", "ELSET"], &["INTERNAL", "FREQUENCY"])),
     ("*ELSET", Read(&["ELSET", "GENERATE", "INSTANCE"], &["INTERNAL", "UNSORTED"])),
     ("*SURFACE", Read(&["NAME", "TYPE", "INSTANCE"], &["INTERNAL", "DEFINITION"])),
     ("*MATERIAL", Read(&["NAME"], &[])),

@@ -21,6 +21,9 @@ const SAME: f64 = 1e-6;
 /// Place in our order xx yy zz xy yz zx of each of the deck's 11 22 33 12 13 23.
 const OURS: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
+/// What gives elements their constants.
+const OWN_KEYWORDS: &str = "*SPRING, *DASHPOT, *MASS, *ROTARY INERTIA or *CONNECTOR SECTION";
+
 /// Types of connector, with the components that are free to have elasticity and those that do not give way.
 const CONNECTOR_TYPES: [(&str, [bool; N_COMPONENTS], [bool; N_COMPONENTS]); 8] = {
     const NO: [bool; 3] = [false; 3];
@@ -81,7 +84,10 @@ impl<'d> Conversion<'d> {
         {
             None => Ok(()),
             Some((Element { number, kind, place, .. }, _)) => {
-                let what = format_args!("element {number} is a {} without its constants", kind.name);
+                let what = format_args!(
+                    "element {number} is a {} without its constants. Give its set {}",
+                    kind.name, OWN_KEYWORDS
+                );
                 Err(self.assembly.error(*place, what))
             }
         }
@@ -108,7 +114,8 @@ impl<'d> Conversion<'d> {
                 usize::from(first) - 1
             }
             _ => {
-                let what = "a spring or dashpot acts between the same displacement (1 to 6) of both ends";
+                let what = "a spring or dashpot acts between the same displacement (1 to 6) of both ends. \
+                            Give the same twice, or take two springs";
                 return Err(self.assembly.error(property.place, what));
             }
         };
@@ -131,7 +138,8 @@ impl<'d> Conversion<'d> {
         let axis = (0..3).find(|&i| length > 0.0 && length - line[i].abs() <= SAME * length);
         axis.ok_or_else(|| {
             let Element { kind, place, .. } = &self.assembly.elements[element as usize];
-            let what = "is supported where its ends lie one behind the other along a global axis";
+            let what = "is supported where its ends lie one behind the other along a global axis. \
+                        Move an end, or take SPRING2";
             self.assembly.error(*place, format_args!("a {} {what}", kind.name))
         })
     }
@@ -154,11 +162,15 @@ impl<'d> Conversion<'d> {
         };
         if first.region == second.region {
             let is_ground = first.region == GROUND;
-            return if is_ground { Ok(()) } else { Err(self.assembly.error(place, "both ends are on one set")) };
+            return if is_ground {
+                Ok(())
+            } else {
+                Err(self.assembly.error(place, "both ends are on one set. Remove the element, or name two sets"))
+            };
         }
         self.require_one_point(&first, &second, acts, place)?;
         if constants.damping[3..] != [0.0; 3] {
-            return Err(self.assembly.error(place, "damping of rotations is not supported"));
+            return Err(self.assembly.error(place, "damping of rotations is not supported. Give components 1 to 3"));
         }
         let [first, second] = if first.region == GROUND { [second, first] } else { [first, second] };
         let at = first.at;
@@ -179,9 +191,10 @@ impl<'d> Conversion<'d> {
         }
         if self.is_used(node) {
             if acts[3..].contains(&true) {
-                return Err(self
-                    .assembly
-                    .error(place, "a spring against the rotation of a node of solids, which do not rotate"));
+                return Err(self.assembly.error(
+                    place,
+                    "a spring against the rotation of a node of solids, which do not rotate. Take a reference node",
+                ));
             }
             return Ok(End { region: self.node_name(node), at });
         }
@@ -190,7 +203,10 @@ impl<'d> Conversion<'d> {
             true => Ok(End { region: GROUND.to_owned(), at }),
             false => {
                 let number = self.assembly.numbers[node as usize];
-                let what = format_args!("node {number} belongs to no solid and no coupling, and is not held");
+                let what = format_args!(
+                    "node {number} belongs to no solid and no coupling, and is unconstrained. \
+                     Couple it to a surface, or take *BOUNDARY"
+                );
                 Err(self.assembly.error(place, what))
             }
         }
@@ -235,15 +251,26 @@ impl<'d> Conversion<'d> {
         let [along, about] = self.rigid_stiffness(&region);
         let mut constants = Constants { stiffness: [0.0; 6], damping: [0.0; 6] };
         for i in 0..N_COMPONENTS {
+            let has_constant = behaviour.is_some_and(|own| own.elasticity[i] != 0.0 || own.damping[i] != 0.0);
+            if has_constant && !free[i] {
+                let (component, types) = (i + 1, section.types.join(", "));
+                let advice = "Remove the constant, or change the type";
+                let what =
+                    format_args!("component {component} has a constant, but {types} does not have it free. {advice}");
+                return Err(self.assembly.error(section.place, what));
+            }
             if rigid[i] {
                 constants.stiffness[i] = if i < 3 { along } else { about };
-            } else if let Some(own) = behaviour.filter(|_| free[i]) {
+            } else if let Some(own) = behaviour {
                 constants.stiffness[i] = own.elasticity[i] * self.unit_of_stiffness(i);
                 constants.damping[i] = own.damping[i] * self.units.damping();
             }
         }
         if constants.stiffness == [0.0; 6] && constants.damping == [0.0; 6] {
-            return Err(self.assembly.error(section.place, "the connector has neither elasticity nor damping"));
+            return Err(self.assembly.error(
+                section.place,
+                "the connector has neither elasticity nor damping. Give BEHAVIOR= with *CONNECTOR ELASTICITY",
+            ));
         }
         self.join(element, &nodes, &constants, references, model)
     }
@@ -263,7 +290,9 @@ impl<'d> Conversion<'d> {
         let acts = [true, true, true, false, false, false];
         let is_inertia = property.kind == PropertyKind::RotaryInertia;
         if is_inertia && references.at(node).is_none() {
-            return Err(self.assembly.error(place, "a rotary inertia is supported on a reference node"));
+            return Err(self
+                .assembly
+                .error(place, "a rotary inertia is supported on a reference node. Couple the node to a surface"));
         }
         let End { region, at } = self.end(node, acts, references, place)?;
         if region == GROUND {

@@ -39,14 +39,18 @@ impl Conversion<'_> {
         let mut members = Vec::new();
         for term in &definition.terms {
             if term.axis > 3 {
-                let what = "a rotation in an equation is not supported: nodes of solids do not rotate";
+                let what = "a rotation in an equation is not supported: nodes of solids do not rotate. \
+                            Take displacements 1 to 3";
                 return Err(self.assembly.error(place, what));
             }
             members.push(self.by_number(&term.of, place)?);
         }
         let n = members.iter().map(Vec::len).max().unwrap_or(0);
         if members.iter().any(|own| own.len() != n && own.len() != 1) {
-            return Err(self.assembly.error(place, "the sets of the equation have different numbers of nodes"));
+            return Err(self.assembly.error(
+                place,
+                "the sets of the equation have different numbers of nodes. Give sets of one length, or one node",
+            ));
         }
         for k in 0..n {
             let mut sum = BTreeMap::new();
@@ -67,7 +71,9 @@ impl Conversion<'_> {
             None => Ok(nodes),
             Some(&node) => {
                 let number = self.assembly.numbers[node as usize];
-                let what = format_args!("node {number} belongs to no solid: equations are between nodes of solids");
+                let what = format_args!(
+                    "node {number} belongs to no solid: equations are between nodes of solids. Couple a reference node"
+                );
                 Err(self.assembly.error(place, what))
             }
         }
@@ -118,7 +124,10 @@ impl Conversion<'_> {
         let [first, second] =
             [self.by_number(&constraint.nodes[0], place)?, self.by_number(&constraint.nodes[1], place)?];
         if second.len() != first.len() && second.len() != 1 {
-            return Err(self.assembly.error(place, "the two sets have different numbers of nodes (*MPC)"));
+            return Err(self.assembly.error(
+                place,
+                "the two sets have different numbers of nodes (*MPC). Give sets of one length, or one node",
+            ));
         }
         for (k, &node) in first.iter().enumerate() {
             let other = second[k.min(second.len() - 1)];

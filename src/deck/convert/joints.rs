@@ -7,19 +7,17 @@
 //! k = 1e4 E L    along,    k L^2 about the held axes
 //! ```
 //!
-//! E is the largest Young's modulus of the model, L the size of the set: an error of about 1e-4 of the deformation of
-//! a body of this size.
+//! E is the largest Young's modulus of the model, L the size of the set, or of a mean element where the set is one
+//! node: an error of about 1e-4 of the deformation of a body of this size.
 
 use super::Conversion;
 use super::references::{Reference, References};
 use super::regions::unlike;
 use crate::Result;
 use crate::algebra::{cross, norm, sub};
+use crate::assembly::PENALTY;
 use crate::deck::geometry::surface_centroid;
 use crate::model::{Connector, Fix, GROUND, Load, LoadKind, Model, Part, Place, RigidBody};
-
-/// Stiffness of what does not give way, in units of E L.
-const RIGID: f64 = 1e4;
 
 /// A connector without constants.
 pub(super) fn connector(name: String, between: [String; 2], at: [f64; 3], place: Place) -> Connector {
@@ -82,14 +80,12 @@ impl Conversion<'_> {
     /// Stiffness along (N/m) and about (N m/rad) an axis of what does not give way beside a region.
     pub(super) fn rigid_stiffness(&self, region: &str) -> [f64; 2] {
         let mesh = &self.regions.mesh;
-        let nodes = mesh.node_set(region).unwrap_or_default();
-        let end =
-            |sign: f64, i: usize| nodes.iter().map(|&n| sign * mesh.nodes[n as usize][i]).fold(f64::MIN, f64::max);
-        let own = norm([0, 1, 2].map(|i| end(1.0, i) + end(-1.0, i)));
+        let own = extent(mesh.node_set(region).unwrap_or_default().iter().map(|&n| mesh.nodes[n as usize]));
+        let of_element = extent(mesh.nodes.iter().copied()) / (mesh.elements.len() as f64).cbrt();
         let young = |part: &Part| part.material.youngs()[1];
         let largest = self.bodies.parts.iter().map(young).fold(0.0, f64::max);
-        let size = if own > 0.0 { own } else { self.units.length };
-        let along = RIGID * largest * size;
+        let size = if own > 0.0 { own } else { of_element };
+        let along = PENALTY * largest * size;
         [along, along * size * size]
     }
 
@@ -122,4 +118,13 @@ impl Conversion<'_> {
         let (area, centroid) = surface_centroid(mesh, mesh.surfaces.get(surface)?);
         Some((centroid, area.sqrt()))
     }
+}
+
+/// The diagonal of the box around some points; 0 of none.
+fn extent(points: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for x in points {
+        (0..3).for_each(|i| (low[i], high[i]) = (low[i].min(x[i]), high[i].max(x[i])));
+    }
+    if low[0] <= high[0] { norm(sub(high, low)) } else { 0.0 }
 }

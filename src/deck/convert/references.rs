@@ -65,8 +65,57 @@ impl Conversion<'_> {
             references.all.push(self.rigid_body(body)?);
         }
         self.beams(&mut references)?;
+        references.all = self.joined(references.all)?;
+        self.refuse_shared_nodes(&references)?;
         self.act_on(state, &mut references)?;
         Ok(references)
+    }
+
+    /// Rigid regions with one reference node are one region; other couplings at one node are refused.
+    fn joined(&mut self, all: Vec<Reference>) -> Result<Vec<Reference>> {
+        let mut joined: Vec<Reference> = Vec::new();
+        for one in all {
+            let Some(known) = joined.iter_mut().find(|known| known.node == one.node) else {
+                joined.push(one);
+                continue;
+            };
+            let is_rigid = |reference: &Reference| reference.is_rigid && reference.coupled == [true; 3];
+            if !is_rigid(known) || !is_rigid(&one) {
+                let number = self.assembly.numbers[one.node as usize];
+                let advice = "Give each its own, and join the two by a connector BEAM";
+                let what = format_args!("node {number} is the reference node of two couplings. {advice}");
+                return Err(self.assembly.error(one.place, what));
+            }
+            let mut nodes: Vec<u32> = [&known.region, &one.region]
+                .into_iter()
+                .flat_map(|region| self.regions.mesh.node_set(region).unwrap_or_default())
+                .collect();
+            nodes.sort_unstable();
+            nodes.dedup();
+            known.region = self.regions.add_node_set(&format!("{} and {}", known.region, one.region), nodes);
+            known.rotation_node = known.rotation_node.or(one.rotation_node);
+        }
+        Ok(joined)
+    }
+
+    /// Refuses reference nodes that belong to a solid, or have local axes.
+    fn refuse_shared_nodes(&self, references: &References) -> Result<()> {
+        if let Some(one) = references.all.iter().find(|one| self.is_used(one.node)) {
+            let number = self.assembly.numbers[one.node as usize];
+            let advice = "Give the coupling a node of its own at the same point, and join that to the solid";
+            let what = format_args!("the reference node {number} belongs to a solid, which is not supported. {advice}");
+            return Err(self.assembly.error(one.place, what));
+        }
+        for transform in &self.deck.transforms {
+            let entry = crate::deck::parse::entry(&transform.set);
+            let nodes = self.assembly.set(Kind::Node, 0, &entry, transform.place)?;
+            if nodes.iter().any(|&node| references.at(node).is_some()) {
+                let what = "local axes of a reference node are not supported (*TRANSFORM). Give its supports and forces \
+                            along the global axes";
+                return Err(self.assembly.error(transform.place, what));
+            }
+        }
+        Ok(())
     }
 
     fn coupling(&mut self, coupling: &Coupling) -> Result<Reference> {
@@ -99,7 +148,7 @@ impl Conversion<'_> {
         };
         let nodes = self.bodies.used(&nodes);
         if nodes.is_empty() {
-            return Err(self.assembly.error(body.place, "the rigid body has no node of a solid"));
+            return Err(self.assembly.error(body.place, "the rigid body has no node of a solid. Name nodes of solids"));
         }
         let region = self.regions.add_node_set(&self.deck.spelled(&body.set), nodes);
         Ok(Reference { rotation_node: rotation_node.transpose()?, ..Reference::new(node, region, true, body.place) })
@@ -152,7 +201,8 @@ impl Conversion<'_> {
                 }
                 let Some((reference, shift)) = references.acted_on(node) else {
                     if is_force && value != 0.0 {
-                        let what = "a force on a node that belongs to no solid and no coupling";
+                        let what = "a force on a node that belongs to no solid and no coupling. \
+                                    Couple it, or remove the force";
                         return Err(self.assembly.error(action.place, what));
                     }
                     let held = references.held.entry(node).or_default();

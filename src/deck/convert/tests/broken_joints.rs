@@ -272,7 +272,7 @@ pub const BROKEN_JOINTS: &[[&str; 3]] = &[
     [
         "*MATERIAL, NAME=Steel\n",
         "*NODE\n101, 0, 0, 9\n*ELEMENT, TYPE=SPRING1, ELSET=S\n901, 101\n*SPRING, ELSET=S\n1, 1\n5.\n*MATERIAL, NAME=Steel\n",
-        "a.inp:41: node 101 belongs to no solid and no coupling, and is not held",
+        "a.inp:41: node 101 belongs to no solid and no coupling, and is unconstrained",
     ],
     [
         "*MATERIAL, NAME=Steel\n",
@@ -381,4 +381,26 @@ pub const BROKEN_JOINTS: &[[&str; 3]] = &[
     ],
     ["BACK, 3, -25.", "BACK, 3, -25.\n1000, 3, 1.", "a.inp:59: there is no node 1000"],
     ["=LINEAR\n20000.", "=TIED\n0.", "a.inp:48: the stiffness of the contact must be above 0"],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*COUPLING, REF NODE=14, SURFACE=DISC_FACE\n*KINEMATIC\n*MATERIAL, NAME=Steel\n",
+        "a.inp:38: the reference node 14 belongs to a solid",
+    ],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*NODE\n103, 3., 3., 5.\n*NSET, NSET=R\n103\n*TRANSFORM, NSET=R\n0., 1., 0., -1., 0., 0.\n\
+         *COUPLING, REF NODE=103, SURFACE=DISC_FACE\n*KINEMATIC\n*MATERIAL, NAME=Steel\n",
+        "a.inp:43: local axes of a reference node are not supported (*TRANSFORM)",
+    ],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*ELEMENT, TYPE=CONN3D2, ELSET=C\n901, 4, 14\n*CONNECTOR SECTION, ELSET=C, BEHAVIOR=B\nCARTESIAN\n\
+         *CONNECTOR BEHAVIOR, NAME=B\n*CONNECTOR ELASTICITY, COMPONENT=4\n5.\n*MATERIAL, NAME=Steel\n",
+        "a.inp:40: component 4 has a constant, but CARTESIAN does not have it free",
+    ],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*NSET, NSET=U, UNSORTED\n3, 1\n*MATERIAL, NAME=Steel\n",
+        "a.inp:38: the parameter UNSORTED is not supported (*NSET)",
+    ],
 ];

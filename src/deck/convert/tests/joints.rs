@@ -171,12 +171,31 @@ fn connector_elements_have_components() {
     assert_eq!(bushing.between, ["Side".to_owned(), "Hub_nodes".to_owned()]);
     assert!(all_close(bushing.stiffness, [1e4, 0.0, 0.0]) && all_close(bushing.rotational_stiffness, [0.02, 0.0, 0.0]));
     assert!(all_close(bushing.damping, [0.0, 100.0, 0.0]));
-    let cartesian = section("CARTESIAN", ", BEHAVIOR=B");
-    assert_eq!(cartesian.rotational_stiffness, [0.0; 3]);
     let hinge = section("HINGE", "");
     assert!(hinge.stiffness.iter().all(|k| *k > 1e10) && hinge.rotational_stiffness[0] == 0.0);
     assert!(hinge.rotational_stiffness[1] > 0.0);
     assert!(section("JOIN, ALIGN", "").rotational_stiffness[0] > 0.0);
+}
+
+/// Two holes on one pin: both are rigid with its node, and so with each other.
+#[test]
+fn rigid_couplings_at_one_node_are_one_set() {
+    let second = "*SURFACE, NAME=Hub_nodes, TYPE=NODE\nHUB\n*COUPLING, REF NODE=101, SURFACE=HUB_NODES\n";
+    let pin = model(&coupled("*KINEMATIC", &format!("{second}*KINEMATIC\n*CLOAD\n101, 1, 3.")));
+    assert_eq!((pin.rigid_bodies.len(), pin.rigid_bodies[0].nodes.as_str()), (1, "Side and Hub_nodes"));
+    assert!(pin.loads.iter().any(|load| load.on == "Side and Hub_nodes"));
+    let two = format!("{}\n*MATERIAL, NAME=Steel\n", coupled("*KINEMATIC", &format!("{second}*DISTRIBUTING")));
+    let said = with("*MATERIAL, NAME=Steel\n", &two).unwrap_err();
+    assert!(said.contains("node 101 is the reference node of two couplings"), "{said}");
+}
+
+/// A joint between single nodes is as stiff in every system of units.
+#[test]
+fn a_joint_between_nodes_has_the_stiffness_of_an_element() {
+    let weld = model("*ELEMENT, TYPE=CONN3D2, ELSET=C\n901, 1, 11\n*CONNECTOR SECTION, ELSET=C\nJOIN");
+    // Two elements in a box of 10 x 10 x 20 mm, E = 2.1e11 Pa.
+    let size = (1e-4_f64 + 1e-4 + 4e-4).sqrt() / 2.0_f64.cbrt();
+    assert!(all_close(weld.connectors[0].stiffness, [1e4 * 2.1e11 * size; 3]), "{:?}", weld.connectors[0]);
 }
 
 #[test]
