@@ -8,7 +8,7 @@ use crate::contact::law::Tangential;
 use crate::element::facet;
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
-use crate::model::{Load, LoadKind, PointMass, Rayleigh, RigidBody, Rotation, Tie};
+use crate::model::{Load, LoadKind, PointMass, Rayleigh, RigidSet, Rotation, Tie};
 use crate::native::{Comm, Factor, FactorKind};
 use crate::output::model_summary::{
     LayoutRow, LoadRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow, RotationRow,
@@ -41,7 +41,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
         constrained_dofs: full.held.as_flattened().iter().filter(|&&h| h).count(),
         connectors: full.joints.count(JointKind::Connector),
         ties: full.model.ties.iter().zip(&full.joints.ties).map(|(own, summary)| tie(own, summary)).collect(),
-        rigid_sets: full.model.rigid_bodies.iter().map(|own| rigid_set(full, own)).collect(),
+        rigid_sets: full.model.rigid_sets.iter().map(|own| rigid_set(full, own)).collect(),
         masses: masses.iter().map(mass).collect(),
         equations: full.joints.count(JointKind::Equation),
         mass_kg,
@@ -124,9 +124,9 @@ fn tie(tie: &Tie, summary: &TieSummary) -> TieRow {
     }
 }
 
-fn rigid_set(full: &FullModel, body: &RigidBody) -> RigidRow {
-    let nodes = full.mesh.node_set(&body.nodes).map_or(0, |nodes| nodes.len());
-    RigidRow { rigid: body.name.clone(), nodes }
+fn rigid_set(full: &FullModel, own: &RigidSet) -> RigidRow {
+    let nodes = full.mesh.node_set(&own.nodes).map_or(0, |nodes| nodes.len());
+    RigidRow { rigid: own.name.clone(), nodes }
 }
 
 fn mass(mass: &PointMass) -> MassRow {

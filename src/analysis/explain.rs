@@ -118,7 +118,7 @@ fn kind_of(joint: JointKind) -> Kind {
     match joint {
         JointKind::Connector => Kind::Connector,
         JointKind::Tie => Kind::Tie,
-        JointKind::Rigid => Kind::Rigid,
+        JointKind::RigidSet => Kind::Rigid,
         JointKind::Equation => Kind::Equation,
         JointKind::Mass => Kind::Mass,
     }

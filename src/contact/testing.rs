@@ -119,7 +119,7 @@ pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
         contacts,
         connectors: Vec::new(),
         ties: Vec::new(),
-        rigid_bodies: Vec::new(),
+        rigid_sets: Vec::new(),
         masses: Vec::new(),
         equations: Vec::new(),
         loads: Vec::new(),

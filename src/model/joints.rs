@@ -1,10 +1,10 @@
-//! What joins parts and adds to them without a mesh: connectors, ties, rigid bodies, point masses and equations.
+//! What joins parts and adds to them without a mesh: connectors, ties, rigid sets, point masses and equations.
 
 use super::contacts::search_distance;
 use super::item::{Item, Vector, named};
 use super::keys;
 use super::source::ModelText;
-use super::{Connector, Equation, EquationTerm, PointMass, RigidBody, Tie, elasticity};
+use super::{Connector, Equation, EquationTerm, PointMass, RigidSet, Tie, elasticity};
 use crate::Result;
 use toml::Spanned;
 
@@ -60,11 +60,11 @@ pub fn ties(source: ModelText, raw: &[Spanned<keys::TieTable>], unit: f64) -> Re
     })
 }
 
-/// The rigid bodies.
-pub fn rigid_bodies(source: ModelText, raw: &[Spanned<keys::RigidTable>]) -> Result<Vec<RigidBody>> {
+/// The rigid sets.
+pub fn rigid_sets(source: ModelText, raw: &[Spanned<keys::RigidTable>]) -> Result<Vec<RigidSet>> {
     let called = |raw: &keys::RigidTable| raw.name.clone().unwrap_or_else(|| raw.nodes.clone());
     let read =
-        |item: &Item, name, raw: &keys::RigidTable| RigidBody { name, nodes: raw.nodes.clone(), place: item.place() };
+        |item: &Item, name, raw: &keys::RigidTable| RigidSet { name, nodes: raw.nodes.clone(), place: item.place() };
     named(source, "rigid", raw, called, |item, name, raw| Ok(read(item, name, raw)))
 }
 

@@ -6,7 +6,7 @@ use crate::Result;
 impl Model {
     /// This model file on top of the model of its deck.
     ///
-    /// Parts, contacts, connectors, ties, rigid bodies, masses, equations and loads of the file take the place of those
+    /// Parts, contacts, connectors, ties, rigid sets, masses, equations and loads of the file take the place of those
     /// of the same name, rotations of those of the same part; fixes are added; band, sweep, reduction and title are the
     /// file's.
     ///
@@ -20,28 +20,16 @@ impl Model {
         replace(&mut deck.contacts, &mut self.contacts, |a, b| a.name == b.name);
         replace(&mut deck.connectors, &mut self.connectors, |a, b| a.name == b.name);
         replace(&mut deck.ties, &mut self.ties, |a, b| a.name == b.name);
-        replace(&mut deck.rigid_bodies, &mut self.rigid_bodies, |a, b| a.name == b.name);
+        replace(&mut deck.rigid_sets, &mut self.rigid_sets, |a, b| a.name == b.name);
         replace(&mut deck.masses, &mut self.masses, |a, b| a.name == b.name);
         replace(&mut deck.equations, &mut self.equations, |a, b| a.name == b.name);
         replace(&mut deck.loads, &mut self.loads, |a, b| a.name == b.name);
         replace(&mut deck.rotations, &mut self.rotations, |a, b| a.part == b.part);
         deck.fixes.append(&mut self.fixes);
-        let Model {
-            parts, contacts, connectors, ties, rigid_bodies, masses, equations, loads, rotations, fixes, ..
-        } = deck;
-        let model = Model {
-            parts,
-            contacts,
-            connectors,
-            ties,
-            rigid_bodies,
-            masses,
-            equations,
-            loads,
-            rotations,
-            fixes,
-            ..self
-        };
+        let Model { parts, contacts, connectors, ties, rigid_sets, masses, equations, loads, rotations, fixes, .. } =
+            deck;
+        let model =
+            Model { parts, contacts, connectors, ties, rigid_sets, masses, equations, loads, rotations, fixes, ..self };
         model.check_names()?;
         Ok(model)
     }
@@ -73,7 +61,7 @@ impl Model {
         self.contacts.iter_mut().for_each(|item| item.place.file += n_files);
         self.connectors.iter_mut().for_each(|item| item.place.file += n_files);
         self.ties.iter_mut().for_each(|item| item.place.file += n_files);
-        self.rigid_bodies.iter_mut().for_each(|item| item.place.file += n_files);
+        self.rigid_sets.iter_mut().for_each(|item| item.place.file += n_files);
         self.masses.iter_mut().for_each(|item| item.place.file += n_files);
         self.equations.iter_mut().for_each(|item| item.place.file += n_files);
         self.loads.iter_mut().for_each(|item| item.place.file += n_files);

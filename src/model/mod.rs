@@ -52,7 +52,7 @@ pub use read::{is_deck, parse, read};
 pub use source::located;
 pub use types::{
     Connector, Contact, Equation, EquationTerm, Fix, GROUND, Load, LoadKind, Material, Model, NormalLaw, Part,
-    PointMass, Rayleigh, Reduction, RigidBody, Rotation, Tie,
+    PointMass, Rayleigh, Reduction, RigidSet, Rotation, Tie,
 };
 pub use units::UnitSystem;
 pub use write::{isotropic, write};

@@ -71,7 +71,7 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
         rotations: bodies::rotations(source, &raw.rotation, (!names_deck).then_some(&parts[..]), mesh_unit)?,
         connectors: joints::connectors(source, &raw.connector, mesh_unit)?,
         ties: joints::ties(source, &raw.tie, mesh_unit)?,
-        rigid_bodies: joints::rigid_bodies(source, &raw.rigid)?,
+        rigid_sets: joints::rigid_sets(source, &raw.rigid)?,
         masses: joints::masses(source, &raw.mass, mesh_unit)?,
         equations: joints::equations(source, &raw.equation)?,
         loads: loads::loads(source, &raw.load, mesh_unit)?,

@@ -41,7 +41,7 @@ pub struct Model {
     /// Surfaces that move as one.
     pub ties: Vec<Tie>,
     /// Node sets that move rigidly.
-    pub rigid_bodies: Vec<RigidBody>,
+    pub rigid_sets: Vec<RigidSet>,
     /// Masses without a mesh.
     pub masses: Vec<PointMass>,
     /// Linear relations between displacements.
@@ -97,7 +97,7 @@ impl Model {
         self.contacts.clear();
         self.connectors.clear();
         self.ties.clear();
-        self.rigid_bodies.clear();
+        self.rigid_sets.clear();
         self.masses.clear();
         self.equations.clear();
         self.loads.clear();
@@ -270,7 +270,7 @@ pub struct Tie {
 
 /// A node set that moves rigidly.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct RigidBody {
+pub struct RigidSet {
     /// Name in tables.
     pub name: String,
     /// Physical surface or node set.

@@ -45,7 +45,7 @@ pub enum JointKind {
     /// Two surfaces that move as one.
     Tie,
     /// A node set that moves rigidly.
-    Rigid,
+    RigidSet,
     /// A linear relation.
     Equation,
     /// A mass without a mesh.
@@ -53,9 +53,15 @@ pub enum JointKind {
 }
 
 impl std::fmt::Display for JointKind {
-    /// As the model file calls it.
+    /// The name of its table in a model file.
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "{}", format!("{self:?}").to_lowercase())
+        f.write_str(match self {
+            JointKind::Connector => "connector",
+            JointKind::Tie => "tie",
+            JointKind::RigidSet => "rigid",
+            JointKind::Equation => "equation",
+            JointKind::Mass => "mass",
+        })
     }
 }
 
@@ -116,29 +122,37 @@ impl Joints {
         let mut joints = Joints::default();
         for own in &model.connectors {
             let element = connector(sets, own).map(|element| vec![element]);
-            joints.add(model, (JointKind::Connector, &own.name, own.place), element)?;
+            joints.add(model, JointName { kind: JointKind::Connector, name: &own.name, place: own.place }, element)?;
         }
         for own in &model.ties {
             let tied = tie::elements(model, mesh, own, team).map(|(summary, elements)| {
                 joints.ties.push(summary);
                 elements
             });
-            joints.add(model, (JointKind::Tie, &own.name, own.place), tied)?;
+            joints.add(model, JointName { kind: JointKind::Tie, name: &own.name, place: own.place }, tied)?;
         }
         let points = model.equations.iter().map(|own| equation_nodes(mesh, own)).collect::<Vec<_>>();
         let penalised = sets.rigid_nodes().chain(points.iter().flatten().copied());
         let neighbours = Neighbours::new(model, mesh, nodes, penalised, team)?;
-        for (own, body) in model.rigid_bodies.iter().zip(&sets.bodies) {
-            let elements = rigid::elements(mesh, body, &neighbours);
-            joints.add(model, (JointKind::Rigid, &own.name, own.place), Ok(elements))?;
+        for (own, set) in model.rigid_sets.iter().zip(&sets.rigid_sets) {
+            let elements = rigid::elements(mesh, set, &neighbours);
+            joints.add(
+                model,
+                JointName { kind: JointKind::RigidSet, name: &own.name, place: own.place },
+                Ok(elements),
+            )?;
         }
         for (own, nodes) in model.equations.iter().zip(&points) {
-            let element = equation(own, nodes, &neighbours);
-            joints.add(model, (JointKind::Equation, &own.name, own.place), Ok(vec![element]))?;
+            let elements = vec![equation(own, nodes, &neighbours)];
+            joints.add(
+                model,
+                JointName { kind: JointKind::Equation, name: &own.name, place: own.place },
+                Ok(elements),
+            )?;
         }
         for own in &model.masses {
             let element = point_mass(sets, own).map(|element| vec![element]);
-            joints.add(model, (JointKind::Mass, &own.name, own.place), element)?;
+            joints.add(model, JointName { kind: JointKind::Mass, name: &own.name, place: own.place }, element)?;
         }
         Ok(joints)
     }
@@ -147,11 +161,11 @@ impl Joints {
     fn add(
         &mut self,
         model: &Model,
-        (kind, name, place): (JointKind, &String, Place),
+        JointName { kind, name, place }: JointName,
         elements: std::result::Result<Vec<JointElement>, String>,
     ) -> Result<()> {
         let joint = self.names.len();
-        self.names.push((kind, name.clone()));
+        self.names.push((kind, name.to_owned()));
         let refuse = |message| model.error(place, format_args!("{kind} {name:?}: {message}"));
         self.elements.extend(elements.map_err(refuse)?.into_iter().map(|own| JointElement { joint, ..own }));
         Ok(())
@@ -168,6 +182,14 @@ impl Joints {
         self.elements.iter().for_each(|element| counts[element.joint] += 1);
         counts
     }
+}
+
+/// What a joint of a model is called.
+struct JointName<'a> {
+    kind: JointKind,
+    name: &'a str,
+    /// Where it stands in the model.
+    place: Place,
 }
 
 impl Connectivity for Joints {

@@ -1,6 +1,6 @@
 //! Rigid sets.
 //!
-//! Three base nodes far apart stand for the body, so that no dofs are added:
+//! Three base nodes far apart stand for the set, so that no dofs are added:
 //!
 //! ```text
 //!   q_n  = u_n - (u_R + phi x (x_n - x_R))      n not in the base: three rows on four nodes
@@ -19,9 +19,9 @@ use super::neighbours::Neighbours;
 use super::rows::Rows;
 use super::{JointElement, PENALTY};
 
-/// Nodes that move rigidly.
+/// The nodes of a rigid set.
 #[derive(Debug, Clone)]
-pub struct Body {
+pub struct RigidNodes {
     /// All of them, by rising number.
     pub nodes: Vec<u32>,
     /// Three of them, far apart.
@@ -60,21 +60,21 @@ fn farthest(nodes: &[u32], measure: impl Fn(u32) -> f64) -> u32 {
     all.reduce(larger).map_or(0, |(n, _)| n)
 }
 
-/// The elements of a rigid body: its base, then a node each.
-pub fn elements(mesh: &Mesh, body: &Body, neighbours: &Neighbours) -> Vec<JointElement> {
-    let around = neighbours.around(&body.nodes);
-    let x = body.base.map(|n| mesh.nodes[n as usize]);
+/// The elements of a rigid set: its base, then a node each.
+pub fn elements(mesh: &Mesh, set: &RigidNodes, neighbours: &Neighbours) -> Vec<JointElement> {
+    let around = neighbours.around(&set.nodes);
+    let x = set.base.map(|n| mesh.nodes[n as usize]);
     let sides = [[0, 1], [1, 2], [2, 0]];
     let length = sides.iter().map(|&[i, j]| norm(sub(x[j], x[i]))).fold(0.0, f64::max);
     let mut distances = Rows::new(3);
     for (row, [i, j]) in sides.into_iter().enumerate() {
         let apart = sub(x[j], x[i]);
         let direction = apart.map(|component| component / norm(apart));
-        distances.add(row, body.base[j], direction);
-        distances.add(row, body.base[i], direction.map(|component| -component));
+        distances.add(row, set.base[j], direction);
+        distances.add(row, set.base[i], direction.map(|component| -component));
     }
-    let followers = body.nodes.iter().filter(|n| !body.base.contains(n)).map(|&n| {
-        let rows = follower(n, mesh.nodes[n as usize], body.base, &x);
+    let followers = set.nodes.iter().filter(|n| !set.base.contains(n)).map(|&n| {
+        let rows = follower(n, mesh.nodes[n as usize], set.base, &x);
         JointElement::springs(rows, vec![PENALTY * around.young * around.size; 3])
     });
     let base = JointElement::springs(distances, vec![PENALTY * around.young * length; 3]);

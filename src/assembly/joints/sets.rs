@@ -9,13 +9,13 @@ use crate::element::coupling::{Cloud, MeanMotion, mean_motion};
 use crate::mesh::{Mesh, Numbering};
 use crate::model::{GROUND, Model};
 
-use super::rigid::{Body, base};
+use super::rigid::{RigidNodes, base};
 
 /// The named node sets of a mesh, and which of them move rigidly.
 pub struct Sets<'a> {
     mesh: &'a Mesh,
-    /// The model's rigid bodies, in its order.
-    pub bodies: Vec<Body>,
+    /// The model's rigid sets, in its order.
+    pub rigid_sets: Vec<RigidNodes>,
 }
 
 /// The mean motion of a node set.
@@ -44,7 +44,9 @@ impl SetMotion {
         }
         let is_across = |i: usize| (0..3).any(|j| j != i && lever[j] != 0.0);
         match (0..3).any(|i| acting[i] && is_across(i)) {
-            true => Err(format!("{name:?} is one node, and what acts has a lever about it; leave out `at`")),
+            true => Err(format!(
+                "{name:?} is one node, and the force does not pass through it. Leave out `at`, or name nodes that span a plane"
+            )),
             false => Ok(()),
         }
     }
@@ -83,16 +85,16 @@ impl<'a> Sets<'a> {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) where a rigid set is missing or lies on a line.
     pub fn new(model: &Model, mesh: &'a Mesh, numbering: &Numbering) -> Result<Sets<'a>> {
-        let mut bodies = Vec::new();
-        for own in &model.rigid_bodies {
-            let body = mesh.node_set(&own.nodes).ok_or_else(|| missing(&own.nodes)).and_then(|nodes| {
+        let mut rigid_sets = Vec::new();
+        for own in &model.rigid_sets {
+            let set = mesh.node_set(&own.nodes).ok_or_else(|| missing(&own.nodes)).and_then(|nodes| {
                 let base = base(&nodes, &mesh.nodes, numbering.labels())?;
-                Ok(Body { nodes, base })
+                Ok(RigidNodes { nodes, base })
             });
             let refuse = |message: String| model.error(own.place, format_args!("rigid {:?}: {message}", own.name));
-            bodies.push(body.map_err(refuse)?);
+            rigid_sets.push(set.map_err(refuse)?);
         }
-        Ok(Sets { mesh, bodies })
+        Ok(Sets { mesh, rigid_sets })
     }
 
     /// Whether a name stands for what does not move.
@@ -100,9 +102,9 @@ impl<'a> Sets<'a> {
         name == GROUND && self.mesh.node_set(name).is_none()
     }
 
-    /// The nodes of all rigid bodies.
+    /// The nodes of all rigid sets.
     pub fn rigid_nodes(&self) -> impl Iterator<Item = u32> + '_ {
-        self.bodies.iter().flat_map(|body| body.nodes.iter().copied())
+        self.rigid_sets.iter().flat_map(|set| set.nodes.iter().copied())
     }
 
     /// The centroid of a set, m.
@@ -113,7 +115,7 @@ impl<'a> Sets<'a> {
         self.weighted(name).map(|own| own.cloud().centroid())
     }
 
-    /// The mean motion of a set at a point (m), or at its centroid. A set within a rigid body has that of the body's
+    /// The mean motion of a set at a point (m), or at its centroid. A set within a rigid set has that of the rigid set's
     /// base, so that sets of thousands of nodes are cheap. A set of one node has its displacement and no rotation:
     /// [`SetMotion::require`].
     ///
@@ -122,9 +124,9 @@ impl<'a> Sets<'a> {
     pub fn motion(&self, name: &str, at: Option<[f64; 3]>) -> std::result::Result<SetMotion, String> {
         let own = self.weighted(name)?;
         let at = at.unwrap_or_else(|| own.cloud().centroid());
-        let is_within = |body: &&Body| own.nodes.iter().all(|node| body.nodes.binary_search(node).is_ok());
-        let acting = match self.bodies.iter().find(is_within) {
-            Some(body) => self.alike(body.base.to_vec()),
+        let is_within = |set: &&RigidNodes| own.nodes.iter().all(|node| set.nodes.binary_search(node).is_ok());
+        let acting = match self.rigid_sets.iter().find(is_within) {
+            Some(set) => self.alike(set.base.to_vec()),
             None => own,
         };
         if let [x] = acting.positions[..] {

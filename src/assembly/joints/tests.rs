@@ -9,7 +9,7 @@ use crate::contact::search::Alone;
 use crate::contact::testing::{flipped, model, patch_of, skin};
 use crate::element::FacetShape;
 use crate::element::samples::{Random, rigid_displacement};
-use crate::model::{EquationTerm, Load, LoadKind, Material, Part, Rayleigh, RigidBody, Tie};
+use crate::model::{EquationTerm, Load, LoadKind, Material, Part, Rayleigh, RigidSet, Tie};
 
 const STIFFNESS: f64 = 3e17;
 
@@ -143,15 +143,15 @@ fn a_tie_is_ten_thousand_times_as_stiff_as_a_layer_of_the_softer_part() {
     assert!((summary.stiffness / (1e4 * 5e9 / size) - 1.0).abs() < 1e-12);
 }
 
-fn rigid(nodes: &str) -> RigidBody {
-    RigidBody { name: "stiff".into(), nodes: nodes.into(), place: Place { file: 0, line: 3 } }
+fn rigid(nodes: &str) -> RigidSet {
+    RigidSet { name: "stiff".into(), nodes: nodes.into(), place: Place { file: 0, line: 3 } }
 }
 
 #[test]
 fn a_rigid_set_has_rows_of_four_nodes_and_no_rigid_motion_moves_them() {
     let mesh = plates(FacetShape::Triangle6, 0.1);
     let parts = vec![part("base", 1.0), part("plate", 1.0)];
-    let model = Model { rigid_bodies: vec![rigid("upper")], parts, ..model(vec![], false) };
+    let model = Model { rigid_sets: vec![rigid("upper")], parts, ..model(vec![], false) };
     let mut joints = joints(&model, &mesh).unwrap();
     let n = mesh.node_set("upper").unwrap().len();
     assert_eq!(joints.elements.len(), 1 + n - 3);
@@ -186,7 +186,7 @@ fn a_rigid_set_on_a_line_is_refused() {
     mesh.node_sets.insert("edge".into(), edge.collect());
     for set in ["edge", "corner"] {
         mesh.node_sets.entry("corner".into()).or_insert(vec![0]);
-        let model = Model { rigid_bodies: vec![rigid(set)], ..model(vec![], false) };
+        let model = Model { rigid_sets: vec![rigid(set)], ..model(vec![], false) };
         let said = joints(&model, &mesh).unwrap_err().to_string();
         assert!(said.starts_with("brake.toml:3: rigid \"stiff\": its nodes lie on a line"), "{said}");
     }
@@ -198,10 +198,10 @@ fn whatever_acts_on_a_rigid_set_acts_on_its_base() {
     let nodes = mesh.node_set("upper").unwrap();
     mesh.node_sets.insert("some".into(), nodes[4..12].to_vec());
     mesh.node_sets.insert("others".into(), vec![0, 1, 2, nodes[0]]);
-    let model = Model { rigid_bodies: vec![rigid("upper")], ..model(vec![], false) };
+    let model = Model { rigid_sets: vec![rigid("upper")], ..model(vec![], false) };
     let sets = Sets::new(&model, &mesh, &Numbering::even(mesh.nodes.len(), 0, 1)).unwrap();
     let of = |name: &str| sets.motion(name, None).unwrap().nodes;
-    assert_eq!((of("upper"), of("some")), (sets.bodies[0].base.to_vec(), sets.bodies[0].base.to_vec()));
+    assert_eq!((of("upper"), of("some")), (sets.rigid_sets[0].base.to_vec(), sets.rigid_sets[0].base.to_vec()));
     assert_eq!(of("others").len(), 4);
     assert!(of("lower").len() > 3);
 }
@@ -239,10 +239,10 @@ fn a_point_mass_has_its_mass_and_inertia_about_its_point() {
 fn a_force_at_a_point_has_its_resultant_and_moment() {
     let mesh = plates(FacetShape::Triangle6, 0.1);
     let (force, moment, at) = ([1.0, -2.0, 3.0], [0.5, 0.25, -4.0], [3.0, 2.0, 1.0]);
-    for rigid_bodies in [vec![], vec![rigid("upper")]] {
+    for rigid_sets in [vec![], vec![rigid("upper")]] {
         let kind = LoadKind::ForceAt { force, moment, at: Some(at) };
         let load = Load { name: "pull".into(), on: "upper".into(), kind, place: Place::default() };
-        let model = Model { loads: vec![load], rigid_bodies, ..model(vec![], false) };
+        let model = Model { loads: vec![load], rigid_sets, ..model(vec![], false) };
         let sets = Sets::new(&model, &mesh, &Numbering::even(mesh.nodes.len(), 0, 1)).unwrap();
         let (mut sum, mut turning) = ([0.0; 3], [0.0; 3]);
         for (node, f) in assembly::loads(&model, &mesh, &sets).unwrap() {
@@ -329,7 +329,7 @@ fn a_set_of_one_node_takes_forces_on_their_line_and_no_moments() {
     let ahead = [tip[0] + 5.0, tip[1], tip[2]];
     let above = [tip[0], tip[1], tip[2] + 0.1];
     assert_eq!((said(tip, along_x), said(ahead, along_x)), (None, None));
-    assert!(said(above, along_x).unwrap().starts_with("\"tip\" is one node, and what acts has a lever about it"));
+    assert!(said(above, along_x).unwrap().starts_with("\"tip\" is one node, and the force does not pass through it"));
     assert!(said(tip, about_x).unwrap().starts_with("\"tip\" is one node, which does not rotate"));
     let of = |mesh: &Mesh, mass: f64, inertia| {
         let own = PointMass { name: "m".into(), nodes: "tip".into(), at: None, mass, inertia, place: Place::default() };

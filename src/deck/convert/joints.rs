@@ -17,7 +17,7 @@ use crate::Result;
 use crate::algebra::{cross, norm, sub};
 use crate::assembly::PENALTY;
 use crate::deck::geometry::surface_centroid;
-use crate::model::{Connector, Fix, GROUND, Load, LoadKind, Model, Part, Place, RigidBody};
+use crate::model::{Connector, Fix, GROUND, Load, LoadKind, Model, Part, Place, RigidSet};
 
 /// A connector without constants.
 pub(super) fn connector(name: String, between: [String; 2], at: [f64; 3], place: Place) -> Connector {
@@ -36,13 +36,10 @@ impl Conversion<'_> {
             } else {
                 self.require_all_axes(reference)?;
                 if reference.is_rigid {
-                    let name = unlike(
-                        &reference.region,
-                        |name| model.rigid_bodies.iter().any(|own| own.name == name),
-                        "rigid",
-                    );
+                    let name =
+                        unlike(&reference.region, |name| model.rigid_sets.iter().any(|own| own.name == name), "rigid");
                     let (nodes, place) = (reference.region.clone(), reference.place);
-                    model.rigid_bodies.push(RigidBody { name, nodes, place });
+                    model.rigid_sets.push(RigidSet { name, nodes, place });
                 }
                 model.connectors.extend(self.held(reference));
             }

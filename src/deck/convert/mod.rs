@@ -124,7 +124,7 @@ impl Conversion<'_> {
             contacts: self.with_friction_of(&state, contacts)?,
             connectors: Vec::new(),
             ties: self.ties()?,
-            rigid_bodies: Vec::new(),
+            rigid_sets: Vec::new(),
             masses: Vec::new(),
             equations,
             loads,

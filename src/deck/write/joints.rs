@@ -32,9 +32,9 @@ impl DeckWriter<'_> {
         let model = self.model;
         let mut text: String = model.connectors.iter().map(|connector| self.connector(connector)).collect();
         text.extend(model.ties.iter().enumerate().map(|(i, tie)| self.tie(i + 1, tie)));
-        for body in &model.rigid_bodies {
-            let node = self.node(self.mean_point(&body.nodes), &mut text);
-            writeln!(text, "*RIGID BODY,NSET={},REF NODE={node}", self.names.region(&body.nodes))
+        for set in &model.rigid_sets {
+            let node = self.node(self.mean_point(&set.nodes), &mut text);
+            writeln!(text, "*RIGID BODY,NSET={},REF NODE={node}", self.names.region(&set.nodes))
                 .expect("a string takes all");
         }
         text.extend(model.masses.iter().map(|mass| self.mass(mass)));

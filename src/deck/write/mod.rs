@@ -113,7 +113,7 @@ impl DeckWriter<'_> {
         let (model, mut out) = (self.model, String::new());
         let mut wanted: Vec<&str> = self.mesh.node_sets.keys().map(String::as_str).collect();
         wanted.extend(model.fixes.iter().map(|fix| fix.nodes.as_str()));
-        wanted.extend(model.rigid_bodies.iter().map(|body| body.nodes.as_str()));
+        wanted.extend(model.rigid_sets.iter().map(|set| set.nodes.as_str()));
         let by_node = |load: &&Load| matches!(load.kind, LoadKind::ForceByNode(_));
         wanted.extend(model.loads.iter().filter(by_node).map(|load| load.on.as_str()));
         wanted.sort_unstable();

@@ -1,4 +1,4 @@
-//! Connectors, ties, rigid bodies, masses and equations: their names are in the mesh.
+//! Connectors, ties, rigid sets, masses and equations: their names are in the mesh.
 
 use super::ModelCheck;
 use crate::model::{Equation, GROUND};
@@ -17,8 +17,8 @@ impl ModelCheck<'_> {
                 self.skin(surface, tie.place, &format!("tie {:?}", tie.name));
             }
         }
-        for body in &model.rigid_bodies {
-            self.node_set(&body.nodes, body.place, &format!("rigid {:?}", body.name));
+        for set in &model.rigid_sets {
+            self.node_set(&set.nodes, set.place, &format!("rigid {:?}", set.name));
         }
         for mass in &model.masses {
             self.node_set(&mass.nodes, mass.place, &format!("mass {:?}", mass.name));

@@ -1,4 +1,4 @@
-//! Connectors, ties, rigid bodies, masses, equations and forces at points.
+//! Connectors, ties, rigid sets, masses, equations and forces at points.
 
 use super::{GOOD, complains, parsed};
 use crate::model::{EquationTerm, LoadKind};
@@ -42,7 +42,7 @@ fn ties_have_two_surfaces_and_lengths_of_the_mesh() {
 fn names_of_one_kind_differ() {
     let twice = "[[rigid]]\nnodes = \"a\"\n[[rigid]]\nnodes = \"a\"";
     refused(twice, "the name is taken by line 49 (rigid \"a\"). Give each its own name");
-    assert_eq!(with("[[rigid]]\nnodes = \"a\"\n[[rigid]]\nname = \"b\"\nnodes = \"a\"").unwrap().rigid_bodies.len(), 2);
+    assert_eq!(with("[[rigid]]\nnodes = \"a\"\n[[rigid]]\nname = \"b\"\nnodes = \"a\"").unwrap().rigid_sets.len(), 2);
 }
 
 #[test]

@@ -1,14 +1,14 @@
-//! The connectors, ties, rigid bodies, masses and equations of a model file.
+//! The connectors, ties, rigid sets, masses and equations of a model file.
 
 use super::{Text, list, number, quoted};
-use crate::model::{Connector, Equation, EquationTerm, Model, PointMass, RigidBody, Tie};
+use crate::model::{Connector, Equation, EquationTerm, Model, PointMass, RigidSet, Tie};
 
 /// Writes all of them.
 pub fn write(out: &mut Text, model: &Model) {
     let unit = model.mesh_unit;
     model.connectors.iter().for_each(|own| connector(out, own, unit));
     model.ties.iter().for_each(|own| tie(out, own, unit));
-    model.rigid_bodies.iter().for_each(|own| rigid_body(out, own));
+    model.rigid_sets.iter().for_each(|own| rigid_set(out, own));
     model.masses.iter().for_each(|own| mass(out, own, unit));
     model.equations.iter().for_each(|own| equation(out, own));
 }
@@ -33,10 +33,10 @@ fn tie(out: &mut Text, tie: &Tie, unit: f64) {
     out.optional("stiffness", tie.stiffness);
 }
 
-fn rigid_body(out: &mut Text, body: &RigidBody) {
+fn rigid_set(out: &mut Text, set: &RigidSet) {
     out.table("[[rigid]]");
-    out.line("name", quoted(&body.name));
-    out.line("nodes", quoted(&body.nodes));
+    out.line("name", quoted(&set.name));
+    out.line("nodes", quoted(&set.nodes));
 }
 
 fn mass(out: &mut Text, mass: &PointMass, unit: f64) {

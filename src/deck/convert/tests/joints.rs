@@ -43,15 +43,15 @@ fn rigid_bodies_are_rigid_sets_and_what_is_on_their_nodes_acts_there() {
          *RIGID BODY, NSET=TOP, REF NODE=101, ROT NODE=102\n*CLOAD\n101, 1, 3.\n102, 3, 5.",
     );
     // The set has the nodes of BACK, and a name of its own.
-    assert_eq!((body.rigid_bodies.len(), body.rigid_bodies[0].nodes.as_str()), (1, "TOP"));
+    assert_eq!((body.rigid_sets.len(), body.rigid_sets[0].nodes.as_str()), (1, "TOP"));
     let load = body.loads.iter().find(|load| load.on == "TOP").unwrap();
     let LoadKind::ForceAt { force, moment, at } = load.kind else { panic!("{load:?}") };
     assert_eq!((force, at), ([3.0, 0.0, 0.0], Some([1e-3, 2e-3, 20e-3])));
     assert!(all_close(moment, [0.0, 0.0, 5e-3]));
     let beams = model("*NODE\n101, 1., 2., 20.\n*MPC\nBEAM, 14, 101\nBEAM, 18, 101\nBEAM, 19, 101");
-    assert_eq!((beams.rigid_bodies[0].nodes.as_str(), beams.equations.len()), ("beams to node 101", 0));
+    assert_eq!((beams.rigid_sets[0].nodes.as_str(), beams.equations.len()), ("beams to node 101", 0));
     let of_elements = model("*NODE\n101, 1., 2., 20.\n*RIGID BODY, ELSET=PAD, REF NODE=101");
-    assert_eq!(of_elements.rigid_bodies[0].nodes, "PAD nodes");
+    assert_eq!(of_elements.rigid_sets[0].nodes, "PAD nodes");
 }
 
 #[test]
@@ -59,10 +59,7 @@ fn a_reference_node_that_is_held_in_part_is_stiffly_joined_to_the_ground() {
     for (kind, n_rigid) in [("*KINEMATIC", 1), ("*DISTRIBUTING", 0)] {
         let held = model(&coupled(kind, "*BOUNDARY\n101, 1, 2\n101, 6"));
         let support = &held.connectors[0];
-        assert_eq!(
-            (held.rigid_bodies.len(), support.between.clone()),
-            (n_rigid, ["Side".to_owned(), GROUND.to_owned()])
-        );
+        assert_eq!((held.rigid_sets.len(), support.between.clone()), (n_rigid, ["Side".to_owned(), GROUND.to_owned()]));
         let [x, y, z] = support.stiffness;
         assert!(x > 1e11 && x == y && z == 0.0 && support.at == Some([1e-3, 2e-3, 20e-3]));
         let [u, v, w] = support.rotational_stiffness;
@@ -222,8 +219,8 @@ fn with_all_joints() -> String {
 fn assert_same_joints(one: &Model, two: &Model) {
     let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-11 * b.abs().max(1e-12));
     assert_eq!(
-        [one.connectors.len(), one.ties.len(), one.rigid_bodies.len(), one.masses.len(), one.equations.len()],
-        [two.connectors.len(), two.ties.len(), two.rigid_bodies.len(), two.masses.len(), two.equations.len()]
+        [one.connectors.len(), one.ties.len(), one.rigid_sets.len(), one.masses.len(), one.equations.len()],
+        [two.connectors.len(), two.ties.len(), two.rigid_sets.len(), two.masses.len(), two.equations.len()]
     );
     for (a, b) in one.connectors.iter().zip(&two.connectors) {
         assert_eq!(a.between.contains(&GROUND.to_owned()), b.between.contains(&GROUND.to_owned()));
@@ -271,7 +268,7 @@ fn joints_are_the_same_in_a_deck_and_in_a_model_file_that_are_written_of_them() 
             let again = read(&String::from_utf8(deck).unwrap()).unwrap();
             assert_same_joints(&model, &again.model);
             let nodes = |own: &Converted, name: &str| own.mesh.node_set(name).map(|nodes| nodes.len());
-            assert_eq!(nodes(&again, &again.model.rigid_bodies[0].nodes), Some(4));
+            assert_eq!(nodes(&again, &again.model.rigid_sets[0].nodes), Some(4));
         }
     }
 }
