@@ -36,6 +36,9 @@ pub use write::write;
 
 use crate::Result;
 
+/// Place in our order xx yy zz xy yz zx of each of the deck's 11 22 33 12 13 23; also the other way round.
+const VOIGT_ORDER: [usize; 6] = [0, 1, 2, 3, 5, 4];
+
 /// Reads a deck and converts it.
 ///
 /// # Errors

@@ -10,6 +10,7 @@ use super::references::References;
 use super::regions::unlike;
 use crate::Result;
 use crate::algebra::{norm, sub};
+use crate::deck::VOIGT_ORDER;
 use crate::deck::assembly::Element;
 use crate::deck::elements::Class;
 use crate::deck::sets::Kind;
@@ -18,8 +19,6 @@ use crate::model::{Connector, GROUND, Model, Place, PointMass, names};
 
 /// Points this near, relative to the size of the mesh, are one, and directions this close to an axis along it.
 const SAME: f64 = 1e-6;
-/// Place in our order xx yy zz xy yz zx of each of the deck's 11 22 33 12 13 23.
-const OURS: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
 /// What gives elements their constants.
 const OWN_KEYWORDS: &str = "*SPRING, *DASHPOT, *MASS, *ROTARY INERTIA or *CONNECTOR SECTION";
@@ -306,9 +305,10 @@ impl<'d> Conversion<'d> {
         });
         let unit = if is_inertia { self.units.mass * self.units.length.powi(2) } else { self.units.mass };
         match is_inertia {
-            true => {
-                OURS.iter().zip(property.values).for_each(|(&own, value)| model.masses[i].inertia[own] += value * unit)
-            }
+            true => VOIGT_ORDER
+                .iter()
+                .zip(property.values)
+                .for_each(|(&own, value)| model.masses[i].inertia[own] += value * unit),
             false => model.masses[i].mass += property.values[0] * unit,
         }
         Ok(())

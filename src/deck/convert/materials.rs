@@ -5,14 +5,12 @@ use nalgebra::{Matrix3, Matrix6};
 use super::KnownUnits;
 use super::bodies::SectionOf;
 use crate::Result;
+use crate::deck::VOIGT_ORDER;
 use crate::deck::types::{Deck, Elastic, ElasticKind, Material, Orientation};
 use crate::model::elasticity::{
     axes_from, from_compliance, is_positive_definite, isotropic_compliance, orthotropic_compliance, rotate, youngs,
 };
 use crate::model::{self, UnitSystem, names};
-
-/// Place in our order xx yy zz xy yz zx of each of the deck's 11 22 33 12 13 23.
-const OURS: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
 /// The elasticity in the material's axes, in the deck's unit; none where no material has these constants.
 fn elasticity(elastic: &Elastic) -> Option<Matrix6<f64>> {
@@ -38,7 +36,7 @@ fn elasticity(elastic: &Elastic) -> Option<Matrix6<f64>> {
 /// A symmetric matrix from its upper triangle by columns, in the deck's order.
 fn symmetric(triangle: &[f64]) -> Matrix6<f64> {
     let mut matrix = Matrix6::zeros();
-    let places = (0..6).flat_map(|column| (0..=column).map(move |row| (OURS[row], OURS[column])));
+    let places = (0..6).flat_map(|column| (0..=column).map(move |row| (VOIGT_ORDER[row], VOIGT_ORDER[column])));
     for ((i, j), &value) in places.zip(triangle) {
         matrix[(i, j)] = value;
         matrix[(j, i)] = value;

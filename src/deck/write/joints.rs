@@ -3,11 +3,10 @@
 use std::fmt::Write;
 
 use super::{DeckWriter, number};
+use crate::deck::VOIGT_ORDER;
 use crate::deck::geometry::surface_centroid;
 use crate::model::{Connector, GROUND, LoadKind, PointMass, Tie};
 
-/// Place in the deck's 11 22 33 12 13 23 of each of our xx yy zz xy yz zx.
-const OURS: [usize; 6] = [0, 1, 2, 3, 5, 4];
 /// Terms of an equation on a line.
 const TERMS_PER_LINE: usize = 4;
 
@@ -148,7 +147,7 @@ impl DeckWriter<'_> {
         if mass.inertia != [0.0; 6] {
             let set = self.element("ROTARYI", "INERTIA", &nodes, &mut out);
             let unit = self.units.mass * self.units.length.powi(2);
-            let values = OURS.map(|own| number(mass.inertia[own] / unit));
+            let values = VOIGT_ORDER.map(|own| number(mass.inertia[own] / unit));
             writeln!(out, "*ROTARY INERTIA,ELSET={set}\n{}", values.join(",")).expect("a string takes all");
         }
         out

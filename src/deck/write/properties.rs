@@ -3,10 +3,9 @@
 use std::fmt::Write;
 
 use super::{DeckWriter, number};
+use crate::deck::VOIGT_ORDER;
 use crate::model::{Contact, NormalLaw, Part, isotropic};
 
-/// Upper triangle by columns in the order 11 22 33 12 13 23: row and column in our order xx yy zz xy yz zx.
-const OURS: [usize; 6] = [0, 1, 2, 3, 5, 4];
 /// Constants on a line.
 const PER_LINE: usize = 8;
 /// Overlap at which a table of a cubic law ends, m.
@@ -34,7 +33,8 @@ impl DeckWriter<'_> {
         let elastic = match isotropic(material) {
             Some([young, poisson]) => format!("*ELASTIC\n{},{}\n", number(young / units.stress()), number(poisson)),
             None => {
-                let triangle = (0..6).flat_map(|column| (0..=column).map(move |row| [row, column].map(|i| OURS[i])));
+                let triangle =
+                    (0..6).flat_map(|column| (0..=column).map(move |row| [row, column].map(|i| VOIGT_ORDER[i])));
                 let constants: Vec<String> =
                     triangle.map(|[i, j]| number(material.elasticity[i][j] / units.stress())).collect();
                 let lines: Vec<String> = constants.chunks(PER_LINE).map(|line| line.join(",")).collect();
