@@ -38,6 +38,7 @@ mod place;
 mod read;
 mod sliding;
 mod source;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 mod types;
@@ -50,6 +51,7 @@ pub use friction::LARGEST_FRICTION;
 pub use place::Place;
 pub use read::{is_deck, parse, read};
 pub use source::located;
+pub use surfaces::softest_young;
 pub use types::{
     Connector, Contact, Equation, EquationTerm, Fix, GROUND, Load, LoadKind, Material, Model, NormalLaw, Part,
     PointMass, Rayleigh, Reduction, RigidSet, Rotation, Tie,

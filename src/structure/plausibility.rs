@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::element::ElementKind;
 use crate::element::solid::MassProperties;
-use crate::model::{Material, NormalLaw, Rotation};
+use crate::model::{Material, NormalLaw, Rotation, softest_young};
 use crate::native::Comm;
 
 /// Young's moduli of solids, from rubber to above diamond, Pa.
@@ -158,9 +158,8 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     let mass = with_mass.filter_map(|material| density(&material.name, material.density));
     let contacts = model.contacts.iter().zip(&full.interface.pairs).filter_map(|(contact, pair)| {
         let (NormalLaw::Linear { stiffness } | NormalLaw::Cubic { k1: stiffness, .. }) = contact.law;
-        let softest = [&contact.slave, &contact.master].map(|surface| full.youngs_of(surface)[0]);
-        let neighbour =
-            softest[0].min(softest[1]) / full.mesh.surfaces[&contact.slave].facet_size(pair.statistics.area);
+        let young = softest_young(&model.parts, &full.mesh, &[&contact.slave, &contact.master]);
+        let neighbour = young / full.mesh.surfaces[&contact.slave].facet_size(pair.statistics.area);
         contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())
     });
     let ties = model.ties.iter().zip(&full.joints.ties).filter_map(|(tie, own)| tie_sizes(&tie.name, own.sizes));
@@ -222,13 +221,6 @@ impl FullModel {
         let mut ends = [1.0, -1.0].map(|sign| [0, 1, 2].map(|i| most(sign, i)));
         comm.max_all(ends.as_flattened_mut());
         [0, 1, 2].map(|i| ends[0][i] + ends[1][i])
-    }
-
-    /// Young's moduli of the part that a surface lies on, Pa; none where it lies on several.
-    fn youngs_of(&self, surface: &str) -> [f64; 2] {
-        let part = self.mesh.part_of_surface(surface).map(|part| &self.mesh.parts[part as usize]);
-        let material = self.model.parts.iter().find(|own| Some(&own.name) == part).map(|part| &part.material);
-        material.map_or([f64::INFINITY; 2], Material::youngs)
     }
 }
 

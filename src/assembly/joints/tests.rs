@@ -7,8 +7,8 @@ use crate::algebra::{cross, norm, sub};
 use crate::assembly;
 use crate::contact::search::Alone;
 use crate::contact::testing::{flipped, model, patch_of, skin};
-use crate::element::FacetShape;
 use crate::element::samples::{Random, rigid_displacement};
+use crate::element::{ElementKind, FacetShape};
 use crate::model::{EquationTerm, Load, LoadKind, Material, Part, Rayleigh, RigidSet, Tie};
 
 const STIFFNESS: f64 = 3e17;
@@ -298,23 +298,56 @@ fn an_equation_has_a_row_of_length_one() {
 }
 
 #[test]
-fn neighbours_are_the_softest_and_largest_elements_beside_a_node() {
-    use crate::element::ElementKind;
-    let mut nodes = vec![[0.0; 3], [3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -2.0]];
-    nodes.push([9.0; 3]);
-    let mut mesh = Mesh { nodes, parts: vec!["hard".into(), "soft".into()], ..Mesh::default() };
-    mesh.elements.push(ElementKind::C3D4, 0, &[0, 1, 2, 3]);
-    mesh.elements.push(ElementKind::C3D4, 1, &[0, 2, 1, 4]);
-    let model = Model { parts: vec![part("hard", 2e11), part("soft", 1e9)], ..model(vec![], false) };
+fn neighbours_are_the_stiffest_and_largest_elements_beside_a_node() {
+    let (model, mesh) = tetrahedra();
     let numbering = Numbering::whole(6, 0..4);
     let neighbours = Neighbours::new(&model, &mesh, &numbering, [0, 3, 4].into_iter(), &Alone).unwrap();
     let of = |node| (neighbours.around(&[node]).young, neighbours.around(&[node]).size);
-    assert!((of(0).0 / 1e9 - 1.0).abs() < 1e-12 && of(0).1 == 3.0);
+    assert!((of(0).0 / 2e11 - 1.0).abs() < 1e-12 && of(0).1 == 3.0);
     assert!((of(3).0 / 2e11 - 1.0).abs() < 1e-12 && of(3).1 == 10.0_f64.sqrt());
     // Another rank has that node.
     assert_eq!(of(4), (0.0, 0.0));
     let both = neighbours.around(&[0, 3]);
     assert!((both.young / 2e11 - 1.0).abs() < 1e-12 && both.size == 10.0_f64.sqrt());
+}
+
+/// A tetrahedron of 2e11 Pa along x and z and 1e8 Pa along y on one of 1e9 Pa.
+fn tetrahedra() -> (Model, Mesh) {
+    let mut nodes = vec![[0.0; 3], [3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -2.0]];
+    nodes.push([9.0; 3]);
+    let mut mesh = Mesh { nodes, parts: vec!["hard".into(), "soft".into()], ..Mesh::default() };
+    mesh.elements.push(ElementKind::C3D4, 0, &[0, 1, 2, 3]);
+    mesh.elements.push(ElementKind::C3D4, 1, &[0, 2, 1, 4]);
+    let mut parts = vec![part("hard", 2e11), part("soft", 1e9)];
+    parts[0].material.elasticity[1][1] = 1e8;
+    (Model { parts, ..model(vec![], false) }, mesh)
+}
+
+/// The penalties of the elements of a model's joints are these, element by element.
+#[track_caller]
+fn assert_penalties(model: &Model, mesh: &Mesh, expected: &[f64]) {
+    let joints = joints(model, mesh).unwrap();
+    assert_eq!(joints.elements.len(), expected.len());
+    for (element, expected) in joints.elements.iter().zip(expected) {
+        assert!(!element.stiffness.is_empty());
+        assert!(element.stiffness.iter().all(|k| (k / expected - 1.0).abs() < 1e-12), "{:?}", element.stiffness);
+    }
+}
+
+#[test]
+fn penalties_are_1e4_times_the_stiffness_of_the_stiffest_and_largest_elements() {
+    let (mut model, mut mesh) = tetrahedra();
+    // The nodes are one another's and node 1's neighbours: h = |x_4 - x_1|, L = |x_4 - x_3|, E of the hard element.
+    let (young, size, length) = (2e11, 13.0_f64.sqrt(), 3.0);
+    mesh.node_sets.insert("side".into(), vec![0, 2, 3, 4]);
+    model.rigid_sets = vec![rigid("side")];
+    assert_penalties(&model, &mesh, &[1e4 * young * length, 1e4 * young * size]);
+    model.rigid_sets.clear();
+    // Node 0 is a corner of both elements, node 4 of the soft one.
+    mesh.node_sets.extend([("a".to_owned(), vec![0]), ("b".to_owned(), vec![4])]);
+    let terms = ["a", "b"].map(|node| EquationTerm { node: node.into(), axis: 0, coefficient: 2.0 });
+    model.equations = vec![Equation { name: "e".into(), terms: terms.into(), place: Place::default() }];
+    assert_penalties(&model, &mesh, &[1e4 * young * size]);
 }
 
 #[test]

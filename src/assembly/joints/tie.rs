@@ -29,9 +29,8 @@ use crate::contact::surface_points::Place;
 use crate::element::coupling::{Cloud, mean_motion};
 use crate::element::facet;
 use crate::mesh::{Facet, Mesh};
-use crate::model::{Model, Tie};
+use crate::model::{Model, Tie, softest_young};
 
-use super::neighbours::softest;
 use super::rows::Rows;
 use super::{JointElement, PENALTY};
 
@@ -80,8 +79,8 @@ pub fn elements(
     }
     let area = |facet: &Facet| facet::area(&facet.positions(&mesh.nodes));
     let sizes = [slave, master].map(|surface| surface.facet_size(surface.facets.iter().map(area).sum()));
-    let stiffness =
-        tie.stiffness.unwrap_or_else(|| PENALTY * softest(model, mesh, [&tie.slave, &tie.master]) / sizes[0]);
+    let young = || softest_young(&model.parts, mesh, &[&tie.slave, &tie.master]);
+    let stiffness = tie.stiffness.unwrap_or_else(|| PENALTY * young() / sizes[0]);
     let nodes: BTreeSet<u32> = tied.iter().flat_map(|facet| facet.nodes().iter().copied()).collect();
     let summary = TieSummary {
         n_tied: nodes.len(),

@@ -14,6 +14,7 @@
 
 use super::super::geometry::surface_centroid;
 use super::Conversion;
+use crate::model::softest_young;
 
 /// Multiple of the stiffness of a layer of elements.
 pub const STIFFNESS_FACTOR: f64 = 10.0;
@@ -22,11 +23,10 @@ impl Conversion<'_> {
     /// The proposed stiffness of a contact between two surfaces of the mesh, N/m3.
     pub(super) fn proposed_stiffness(&self, slave: &str, master: &str) -> f64 {
         let mesh = &self.regions.mesh;
-        let layer = |surface: &str| {
-            let surface = &mesh.surfaces[surface];
-            let young = |part: &u32| self.bodies.parts[*part as usize].material.youngs()[0];
+        let layer = |name: &str| {
+            let surface = &mesh.surfaces[name];
             let size = surface.facet_size(surface_centroid(mesh, surface).0);
-            surface.parts.iter().map(young).fold(f64::INFINITY, f64::min) / size
+            softest_young(&self.bodies.parts, mesh, &[name]) / size
         };
         STIFFNESS_FACTOR * layer(slave).min(layer(master))
     }
