@@ -88,6 +88,12 @@ pub fn is_positive_definite(matrix: &Matrix6<f64>) -> bool {
     pivots.is_some_and(|l| l.iter().all(|&l_ii| l_ii * l_ii > 1e-12))
 }
 
+/// Whether no eigenvalue of a symmetric matrix is negative beyond rounding, 1e-12 of the largest.
+pub fn is_positive_semidefinite(matrix: &Matrix6<f64>) -> bool {
+    let eigenvalues = matrix.symmetric_eigenvalues();
+    eigenvalues.min() >= -1e-12 * eigenvalues.max()
+}
+
 /// The symmetric part, `(A + A^T) / 2`.
 pub fn symmetric(matrix: &Matrix6<f64>) -> Matrix6<f64> {
     (matrix + matrix.transpose()) * 0.5

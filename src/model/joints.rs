@@ -4,7 +4,7 @@ use super::contacts::search_distance;
 use super::item::{Item, Vector, named};
 use super::keys;
 use super::source::ModelText;
-use super::{Connector, Equation, EquationTerm, PointMass, RigidSet, Tie, elasticity};
+use super::{Connector, Equation, EquationTerm, PointMass, RigidSet, Tie};
 use crate::Result;
 use toml::Spanned;
 
@@ -88,12 +88,11 @@ fn mass(item: &Item, name: String, raw: &keys::MassTable, unit: f64) -> Result<P
     })
 }
 
-/// An inertia tensor of which every rotation has a positive energy.
+/// An inertia tensor of which no rotation has a negative energy.
 fn inertia(item: &Item, given: &Spanned<[f64; 6]>) -> Result<[f64; 6]> {
     let inertia = item.finite(given, "inertia")?;
-    let what = "inertia is not positive definite: some rotation would have no or negative energy";
-    let advice = "Give [xx, yy, zz, xy, yz, zx] of the tensor in kg m2, or leave it out";
-    item.require_at(&given.span(), elasticity::is_positive_definite(&PointMass::matrix(1.0, inertia)), what, advice)?;
+    let advice = "Give [xx, yy, zz, xy, yz, zx] in kg m2; xy is minus the integral of x y dm";
+    item.require_at(&given.span(), PointMass::is_possible(inertia), PointMass::NEGATIVE_MOMENT, advice)?;
     Ok(inertia)
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 
-use super::elasticity::youngs;
+use super::elasticity::{is_positive_semidefinite, youngs};
 use super::friction::FrictionCurve;
 use super::{InstabilityCriterion, Place, names};
 use crate::{Error, Result};
@@ -298,6 +298,14 @@ pub struct PointMass {
 }
 
 impl PointMass {
+    /// What is wrong with an inertia that is not [possible](PointMass::is_possible).
+    pub const NEGATIVE_MOMENT: &str = "inertia has a negative principal moment";
+
+    /// Whether an inertia has no negative principal moment. That of a thin rod, 0 about its axis, is possible.
+    pub fn is_possible(inertia: [f64; 6]) -> bool {
+        is_positive_semidefinite(&PointMass::matrix(0.0, inertia))
+    }
+
     /// The 6x6 mass (kg, kg m2) of a rigid body of this mass and inertia about its centre of mass.
     pub fn matrix(mass: f64, [xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix6<f64> {
         let mut matrix = Matrix6::from_diagonal(&[mass, mass, mass, xx, yy, zz].into());

@@ -269,6 +269,8 @@ fn point_mass(sets: &Sets, mass: &PointMass) -> std::result::Result<JointElement
     motion.turn_rotation(&principal.eigenvectors);
     let mut rows = Rows::new(6);
     rows.add_motion(&motion, 1.0);
-    let masses = [vec![mass.mass; 3], principal.eigenvalues.as_slice().to_vec()].concat();
+    // The moment of a rod about its axis may be below 0 by rounding.
+    let moments = principal.eigenvalues.iter().map(|moment| moment.max(0.0));
+    let masses = std::iter::repeat_n(mass.mass, 3).chain(moments).collect();
     Ok(JointElement { mass: masses, ..JointElement::springs(rows, vec![0.0; 6]) })
 }

@@ -2,8 +2,10 @@
 
 use super::Parser;
 use crate::Result;
+use crate::deck::VOIGT_ORDER;
 use crate::deck::card::Card;
 use crate::deck::types::{Property, PropertyKind};
+use crate::model::PointMass;
 
 impl Parser {
     /// The constant of a spring or dashpot, below the displacements that it is between; a mass; an inertia.
@@ -27,7 +29,13 @@ impl Parser {
             let what = "a second row of constants: they depend on frequency or temperature. Keep one row";
             return Err(card.error(format_args!("{what} ({})", card.spelled)));
         }
-        if values[0] < 0.0 {
+        if kind == PropertyKind::RotaryInertia {
+            let advice = "Give I11, I22, I33, I12, I13, I23; I12 is minus the integral of x y dm";
+            if !PointMass::is_possible(VOIGT_ORDER.map(|i| values[i])) {
+                let what = PointMass::NEGATIVE_MOMENT;
+                return Err(card.error(format_args!("{what}. {advice} ({})", card.spelled)));
+            }
+        } else if values[0] < 0.0 {
             return Err(
                 card.error(format_args!("the constant must be 0 or above, not {} ({})", values[0], card.spelled))
             );

@@ -55,9 +55,13 @@ fn masses_are_positive_with_their_inertia() {
     let said = |keys: &str| mass(keys).unwrap_err();
     assert!(said("mass = -1").contains(":51: mass must be 0 or above, not -1 (mass \"a\")"));
     assert!(said("mass = 0").contains(":49: mass is 0, and there is no inertia (mass \"a\")"));
-    for inertia in ["[1, 1, 0, 0, 0, 0]", "[1, 1, -1, 0, 0, 0]", "[1, 1, 1, 1, 0, 0]", "[1, 1, 1, 0, 2, 0]"] {
-        let said = said(&format!("mass = 1\ninertia = {inertia}"));
-        assert!(said.contains(":52: inertia is not positive definite"), "{said}");
+    let with_inertia = |inertia: &str| mass(&format!("mass = 1\ninertia = {inertia}"));
+    for rod in ["[1, 1, 0, 0, 0, 0]", "[1, 1, 1, 1, 0, 0]", "[0.1, 0.9, 1, 0.3, 0, 0]"] {
+        assert!(with_inertia(rod).is_ok(), "{rod}");
+    }
+    for impossible in ["[1, 1, -1, 0, 0, 0]", "[1, 1, 1, 1.0000001, 0, 0]", "[1, 1, 1, 0, 2, 0]"] {
+        let said = with_inertia(impossible).unwrap_err();
+        assert!(said.contains(":52: inertia has a negative principal moment (mass \"a\"). Give [xx, yy, zz"), "{said}");
     }
 }
 

@@ -281,6 +281,11 @@ pub const BROKEN_JOINTS: &[[&str; 3]] = &[
     ],
     [
         "*MATERIAL, NAME=Steel\n",
+        "*ELEMENT, TYPE=ROTARYI, ELSET=M\n901, 14\n*ROTARY INERTIA, ELSET=M\n1., 1., 0., 0., 2.\n*MATERIAL, NAME=Steel\n",
+        "a.inp:40: inertia has a negative principal moment. Give I11, I22, I33, I12, I13, I23",
+    ],
+    [
+        "*MATERIAL, NAME=Steel\n",
         "*ELEMENT, TYPE=ROTARYI, ELSET=M\n901, 14\n*ROTARY INERTIA, ELSET=M\n1., 1., 1.\n*MATERIAL, NAME=Steel\n",
         "a.inp:39: a rotary inertia is supported on a reference node",
     ],

@@ -149,6 +149,8 @@ fn masses_and_inertias_on_one_node_are_one_mass() {
     assert_eq!((own.masses.len(), mass.nodes.as_str(), mass.at), (1, "Side", Some([1e-3, 2e-3, 20e-3])));
     let expected = [1e-6, 2e-6, 3e-6, 1e-7, 3e-7, 2e-7];
     assert!(close(mass.mass, 2e-3) && mass.inertia.iter().zip(expected).all(|(a, b)| close(*a, b)), "{mass:?}");
+    let rod = model(&coupled("*DISTRIBUTING", &both.replace("1e-3, 2e-3, 3e-3, 1e-4, 2e-4, 3e-4", "0, 2e-3, 2e-3")));
+    assert!(rod.masses[0].inertia.iter().zip([0.0, 2e-6, 2e-6, 0.0, 0.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-18));
     let single = model("*ELEMENT, TYPE=MASS, ELSET=M\n901, 14\n*MASS, ELSET=M\n2e-6");
     assert_eq!(single.masses[0].nodes, "node 14");
 }
