@@ -181,7 +181,7 @@ fn connector_elements_have_components() {
 fn rigid_couplings_at_one_node_are_one_set() {
     let second = "*SURFACE, NAME=Hub_nodes, TYPE=NODE\nHUB\n*COUPLING, REF NODE=101, SURFACE=HUB_NODES\n";
     let pin = model(&coupled("*KINEMATIC", &format!("{second}*KINEMATIC\n*CLOAD\n101, 1, 3.")));
-    assert_eq!((pin.rigid_bodies.len(), pin.rigid_bodies[0].nodes.as_str()), (1, "Side and Hub_nodes"));
+    assert_eq!((pin.rigid_sets.len(), pin.rigid_sets[0].nodes.as_str()), (1, "Side and Hub_nodes"));
     assert!(pin.loads.iter().any(|load| load.on == "Side and Hub_nodes"));
     let two = format!("{}\n*MATERIAL, NAME=Steel\n", coupled("*KINEMATIC", &format!("{second}*DISTRIBUTING")));
     let said = with("*MATERIAL, NAME=Steel\n", &two).unwrap_err();
