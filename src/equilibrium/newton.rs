@@ -13,6 +13,11 @@ use super::step_factor::{StepFactor, StepSystem};
 
 /// Residual at which an equilibrium counts as converged, relative to the larger of the loads and the contact forces.
 const TOLERANCE: f64 = 1e-9;
+/// A residual is also accepted where it is no more than this multiple of its own rounding error, which no step reduces:
+/// penalties are so stiff on slender parts.
+const ROUNDING_MULTIPLE: f64 = 4.0;
+/// Rounding excuses no residual above this.
+const ROUNDING_LIMIT: f64 = 1e-6;
 /// Residual of a step's linear system relative to the step's own.
 const LINEAR_TOLERANCE: f64 = 1e-2;
 /// The last step need not go further below the equilibrium's tolerance than this.
@@ -58,6 +63,8 @@ struct Newton<'a, 'b, 'c> {
     workspace: &'c mut Workspace<'a, 'b>,
     stage: &'c Stage,
     work: Vector,
+    /// The displacements of the last residual.
+    u: Vector,
     load_norm: f64,
     force_norm: f64,
     responses: Vec<Response>,
@@ -73,6 +80,7 @@ impl Problem for Newton<'_, '_, '_> {
         self.work.scale(0.0)?;
         self.workspace.contacts.add_forces(&self.responses, -1.0, &mut self.work)?;
         self.force_norm = self.work.norm()?;
+        self.u.copy_from(u)?;
         self.workspace.system.k.multiply(u, r)?;
         r.axpy(1.0, &self.work)?;
         r.axpy(-1.0, &self.workspace.system.load)
@@ -98,14 +106,28 @@ impl Problem for Newton<'_, '_, '_> {
     }
 
     fn judge(&mut self, iteration: usize, residual: f64, _step: f64) -> Verdict {
-        let relative = residual / self.load_norm.max(self.force_norm).max(f64::MIN_POSITIVE);
-        let flips = self.flips();
+        let size = self.load_norm.max(self.force_norm).max(f64::MIN_POSITIVE);
+        let (relative, flips) = (residual / size, self.flips());
+        let may_be_rounding = iteration > 0 && relative > TOLERANCE && relative < ROUNDING_LIMIT;
+        let rounding = if may_be_rounding { self.rounding().unwrap_or(0.0) / size } else { 0.0 };
         let entry = Iteration { residual: relative, counts: Counts::of(&self.responses), flips };
         (self.progress)(iteration, &entry);
         self.iterations.push(entry);
         self.accepted.clone_from(&self.responses);
-        verdict(iteration, relative)
+        verdict(iteration, relative, rounding)
     }
+}
+
+/// `eps/2 |K (s u)|` with signs s that look random: about how much of `K u` is the rounding of u. Collective.
+fn rounding(k: &Matrix, mut u: Vector, work: &mut Vector) -> Result<f64> {
+    let signed = |(i, x): (usize, &mut f64)| {
+        if (i.wrapping_mul(0x9e37_79b9) >> 16) & 1 == 1 {
+            *x = -*x;
+        }
+    };
+    u.local_mut(|u| u.iter_mut().enumerate().for_each(signed))?;
+    k.multiply(&u, work)?;
+    Ok(0.5 * f64::EPSILON * work.norm()?)
 }
 
 /// A step's linear residual relative to the step's own, after an iterate with this residual.
@@ -113,17 +135,24 @@ fn linear_tolerance(residual: f64) -> f64 {
     LINEAR_TOLERANCE.max(LAST_STEP_SHARE * TOLERANCE / residual)
 }
 
-/// What an iterate with this residual, relative to the larger of the loads and the contact forces, means.
-fn verdict(iteration: usize, residual: f64) -> Verdict {
+/// What an iterate with this residual and rounding error, relative to the larger of the loads and the contact forces,
+/// means.
+fn verdict(iteration: usize, residual: f64, rounding: f64) -> Verdict {
     match residual {
         r if r.is_nan() => Verdict::Diverged,
         r if r <= TOLERANCE => Verdict::Converged,
+        r if r <= ROUNDING_LIMIT.min(ROUNDING_MULTIPLE * rounding) => Verdict::Converged,
         _ if iteration >= MAX_ITERATIONS => Verdict::Diverged,
         _ => Verdict::Continue,
     }
 }
 
 impl Newton<'_, '_, '_> {
+    /// The rounding error of the last residual, N. Collective.
+    fn rounding(&mut self) -> Result<f64> {
+        rounding(&self.workspace.system.k, self.u.duplicate()?, &mut self.work)
+    }
+
     fn flips(&self) -> Vec<usize> {
         let changed = |a: usize| self.accepted.get(a).is_some_and(|r| r.status != self.responses[a].status);
         let pairs = &self.workspace.contacts.interface().pairs;
@@ -154,11 +183,13 @@ pub(super) fn solve(
     stage: &Stage,
     progress: &mut dyn FnMut(usize, &Iteration),
 ) -> Result<Outcome> {
-    let (work, load_norm) = (workspace.system.zeros()?, workspace.system.load.norm()?);
+    let [work, own] = [workspace.system.zeros()?, workspace.system.zeros()?];
+    let load_norm = workspace.system.load.norm()?;
     let mut newton = Newton {
         workspace,
         stage,
         work,
+        u: own,
         load_norm,
         force_norm: 0.0,
         responses: Vec::new(),
@@ -173,15 +204,37 @@ pub(super) fn solve(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::native::Session;
 
     #[test]
     fn an_iterate_is_judged_by_its_residual_and_its_number() {
-        assert_eq!(verdict(0, 1e-9), Verdict::Converged);
-        assert_eq!(verdict(0, 1.01e-9), Verdict::Continue);
-        assert_eq!(verdict(MAX_ITERATIONS - 1, 1e-3), Verdict::Continue);
-        assert_eq!(verdict(MAX_ITERATIONS, 1e-3), Verdict::Diverged);
-        assert_eq!(verdict(MAX_ITERATIONS, 1e-10), Verdict::Converged);
-        assert_eq!(verdict(3, f64::NAN), Verdict::Diverged);
+        let verdict_of = |iteration, residual| verdict(iteration, residual, 0.0);
+        assert_eq!(verdict_of(0, 1e-9), Verdict::Converged);
+        assert_eq!(verdict_of(0, 1.01e-9), Verdict::Continue);
+        assert_eq!(verdict_of(MAX_ITERATIONS - 1, 1e-3), Verdict::Continue);
+        assert_eq!(verdict_of(MAX_ITERATIONS, 1e-3), Verdict::Diverged);
+        assert_eq!(verdict_of(MAX_ITERATIONS, 1e-10), Verdict::Converged);
+        assert_eq!(verdict_of(3, f64::NAN), Verdict::Diverged);
+    }
+
+    #[test]
+    fn a_residual_of_rounding_is_accepted_unless_it_is_large() {
+        assert_eq!(verdict(1, 4e-8, 1e-8), Verdict::Converged);
+        assert_eq!(verdict(1, 4.1e-8, 1e-8), Verdict::Continue);
+        assert_eq!(verdict(1, 1.1e-6, 1.0), Verdict::Continue);
+    }
+
+    /// A spring of 1 N/m behind one of 1e10 N/m, both ends moved by 1 m: forces of 1e10 N cancel.
+    #[test]
+    fn rounding_is_that_of_the_forces_that_cancel() {
+        let comm = Session::start(&[]).unwrap();
+        let k = Matrix::dense(&comm, 2, &[1e10, -1e10, -1e10, 1e10 + 1.0]).unwrap();
+        let u = Vector::from_local(&comm, &[1.0, 1.0]).unwrap();
+        let mut work = u.duplicate().unwrap();
+        k.multiply(&u, &mut work).unwrap();
+        assert!(work.norm().unwrap() < 1.1);
+        let found = rounding(&k, u, &mut work).unwrap();
+        assert!(found > 1e-7 && found < 1e-5, "{found}");
     }
 
     #[test]
