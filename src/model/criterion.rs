@@ -43,8 +43,9 @@ impl InstabilityCriterion {
                 (!is_valid).then_some("growth_rate must be 0 or above. Give 1/s, such as 5.0")
             }
             InstabilityCriterion::DampingRatio(limit) => {
-                let is_valid = (-1.0..=0.0).contains(&limit);
-                (!is_valid).then_some("damping_ratio must be from -1 to 0. Give a fraction: -0.001 is -0.1 %")
+                let is_valid = limit > -1.0 && limit <= 0.0;
+                (!is_valid)
+                    .then_some("damping_ratio must be above -1 and not above 0. Give a fraction: -0.001 is -0.1 %")
             }
         }
     }
@@ -107,7 +108,7 @@ mod tests {
     #[test]
     fn limits_that_mean_nothing_are_refused_and_others_are_printed_with_their_unit() {
         use InstabilityCriterion::{DampingRatio, GrowthRate};
-        for wrong in [GrowthRate(-1.0), GrowthRate(f64::NAN), DampingRatio(0.001), DampingRatio(-1.1)] {
+        for wrong in [GrowthRate(-1.0), GrowthRate(f64::NAN), DampingRatio(0.001), DampingRatio(-1.0)] {
             assert!(wrong.mistake().is_some(), "{wrong}");
         }
         let texts = [InstabilityCriterion::default(), DampingRatio(-0.001), GrowthRate(5.0)].map(|criterion| {

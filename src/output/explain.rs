@@ -26,7 +26,8 @@ pub fn of_proposed(pairs: &[Pair], friction: f64, modes: &[&ModeData]) -> String
         let effects: Vec<String> = modes.iter().filter_map(|mode| effect(&pair.name, mode)).collect();
         (!effects.is_empty()).then(|| {
             format!(
-                "the contact stiffness of {} ({stiffness:.3e} N/m3) was proposed: at friction {friction}, {:+.0} % changes {}\n",
+                "the contact stiffness of {} ({stiffness:.3e} N/m3) was proposed: to first order {:+.0} % changes, at \
+                 friction {friction}, {}. Compare a run with another stiffness\n",
                 pair.name,
                 100.0 * CHANGE,
                 effects.join(", ")
@@ -41,10 +42,7 @@ fn effect(contact: &str, mode: &ModeData) -> Option<String> {
     let source = mode.sources.iter().find(|source| source.kind == Kind::Contact && source.name == contact)?;
     let change = CHANGE * source.sensitivity?.stiffness;
     let (growth, hertz) = (change.re, change.im / TAU);
-    Some(format!(
-        "the growth rate of {:.1} Hz by {growth:+.3} /s and the frequency by {hertz:+.2} Hz",
-        mode.frequency()
-    ))
+    Some(format!("the mode at {:.1} Hz by {growth:+.3} /s and {hertz:+.2} Hz", mode.frequency()))
 }
 
 /// The sources with most of something, in percent of its sum.
@@ -95,8 +93,8 @@ mod tests {
         let modes = [&mode, &other];
         assert_eq!(
             of_proposed(&[pair(Some(1.3e13))], friction, &modes),
-            "the contact stiffness of a / b (1.300e13 N/m3) was proposed: at friction 0.5, +10 % changes the growth rate of 1784.0 Hz \
-             by -2.000 /s and the frequency by +5.00 Hz\n"
+            "the contact stiffness of a / b (1.300e13 N/m3) was proposed: to first order +10 % changes, at friction 0.5, \
+             the mode at 1784.0 Hz by -2.000 /s and +5.00 Hz. Compare a run with another stiffness\n"
         );
         assert_eq!(of_proposed(&[pair(None)], friction, &modes), "");
     }

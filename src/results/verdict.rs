@@ -14,11 +14,11 @@ use super::{Results, Value};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// A mode grows.
+    /// A mode is unstable by the criterion.
     Unstable,
-    /// No mode grows, and there is no doubt.
+    /// No mode is unstable by the criterion, and there is no doubt.
     Stable,
-    /// No mode grows as far as is known.
+    /// No mode is unstable as far as is known.
     Unknown,
 }
 
@@ -38,7 +38,7 @@ pub enum Doubt {
     NoLoad,
     /// No sliding contact carries a force at these values.
     NoContact(Vec<f64>),
-    /// Nothing in the model takes energy out.
+    /// No element of the model dissipates energy.
     Undamped,
     /// Doubtful properties of the model.
     Implausible(String),
@@ -140,8 +140,8 @@ impl Display for Doubt {
             }
             Doubt::Undamped => write!(
                 f,
-                "the model has no damping: modes that do not grow do not decay either, and growth rates are too large. \
-                 Give parts rayleigh"
+                "the model has no damping: stable modes do not decay, so that a stable verdict means nothing. \
+                 Give `rayleigh` to the parts, or `damping` to a connector"
             ),
             Doubt::Implausible(what) => write!(f, "{what}"),
             Doubt::NoModes([from, to]) => {
