@@ -146,7 +146,7 @@ mod tests {
             ("zeta:0.1", "expected damping_ratio:"),
             ("growth_rate:x", "is not a number"),
             ("growth_rate:-1", "must be 0 or above"),
-            ("damping_ratio:0.1", "from -1 to 0"),
+            ("damping_ratio:0.1", "not above 0"),
         ] {
             assert!(criterion(text).unwrap_err().contains(reason), "{text}");
         }
