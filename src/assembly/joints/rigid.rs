@@ -7,9 +7,9 @@
 //!   q_ij = e_ij . (u_j - u_i)                   the base's three distances
 //! ```
 //!
-//! with the motion `u_R, phi` that fits the base best. Rigid motions give `q = 0`. With the largest Young's modulus E and size
-//! h of the elements beside the set and the length L of the base the penalties are `1e4 E h` for a node and `1e4 E L` for a
-//! distance: the set's own strain is about 1e-4 of that of the elements beside it.
+//! with the motion `u_R, phi` that fits the base best. Rigid motions give `q = 0`. With the largest Young's
+//! modulus E and size h of the elements beside the set and the length L of the base the penalties are `1e4 E h` for a
+//! node and `1e4 E L` for a distance: the set's own strain is about 1e-4 of that of the elements beside it.
 
 use crate::algebra::{cross, norm, sub};
 use crate::element::coupling::{Cloud, mean_motion};

@@ -115,9 +115,9 @@ impl<'a> Sets<'a> {
         self.weighted(name).map(|own| own.cloud().centroid())
     }
 
-    /// The mean motion of a set at a point (m), or at its centroid. A set within a rigid set has that of the rigid set's
-    /// base, so that sets of thousands of nodes are cheap. A set of one node has its displacement and no rotation:
-    /// [`SetMotion::require`].
+    /// The mean motion of a set at a point (m), or at its centroid. A set within a rigid set has that of the rigid
+    /// set's base, so that sets of thousands of nodes are cheap. A set of one node has its displacement and no
+    /// rotation: [`SetMotion::require`].
     ///
     /// # Errors
     /// A text: there is no such set, or it lies on a line.

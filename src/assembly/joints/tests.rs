@@ -337,7 +337,7 @@ fn assert_penalties(model: &Model, mesh: &Mesh, expected: &[f64]) {
 #[test]
 fn penalties_are_1e4_times_the_stiffness_of_the_stiffest_and_largest_elements() {
     let (mut model, mut mesh) = tetrahedra();
-    // The nodes are one another's and node 1's neighbours: h = |x_4 - x_1|, L = |x_4 - x_3|, E of the hard element.
+    // Both elements are beside the set: E of the hard one, h = |x_4 - x_1| of the soft one; L = |x_4 - x_3|.
     let (young, size, length) = (2e11, 13.0_f64.sqrt(), 3.0);
     mesh.node_sets.insert("side".into(), vec![0, 2, 3, 4]);
     model.rigid_sets = vec![rigid("side")];

@@ -29,18 +29,21 @@ impl Parser {
             let what = "a second row of constants: they depend on frequency or temperature. Keep one row";
             return Err(card.error(format_args!("{what} ({})", card.spelled)));
         }
-        if kind == PropertyKind::RotaryInertia {
-            let advice = "Give I11, I22, I33, I12, I13, I23; I12 is minus the integral of x y dm";
-            if !PointMass::is_possible(VOIGT_ORDER.map(|i| values[i])) {
-                let what = PointMass::NEGATIVE_MOMENT;
-                return Err(card.error(format_args!("{what}. {advice} ({})", card.spelled)));
-            }
-        } else if values[0] < 0.0 {
-            return Err(
-                card.error(format_args!("the constant must be 0 or above, not {} ({})", values[0], card.spelled))
-            );
+        if let Some(what) = impossible(kind, values) {
+            return Err(card.error(format_args!("{what} ({})", card.spelled)));
         }
         self.scope().properties.push(Property { kind, set, dofs, values, place: card.place });
         Ok(())
+    }
+}
+
+/// What is wrong with the values of a property.
+fn impossible(kind: PropertyKind, values: [f64; 6]) -> Option<String> {
+    match kind {
+        PropertyKind::RotaryInertia => (!PointMass::is_possible(VOIGT_ORDER.map(|i| values[i]))).then(|| {
+            let advice = "Give I11, I22, I33, I12, I13, I23; I12 is minus the integral of x y dm";
+            format!("{}. {advice}", PointMass::NEGATIVE_MOMENT)
+        }),
+        _ => (values[0] < 0.0).then(|| format!("the constant must be 0 or above, not {}", values[0])),
     }
 }

@@ -61,6 +61,21 @@ const BROKEN: &[[&str; 3]] = &[
     ["*STEP\n*STATIC", "*STEP\n*STEP\n*STATIC", "a.inp:56: a step within the step of line 55"],
     ["20, 100., 6000.\n*END STEP\n", "20, 100., 6000.\n", "a.inp:62: the step does not end: the deck is cut off"],
     ["*END STEP\n*STEP\n*COMPLEX", "\0*END STEP\n*STEP\n*COMPLEX", "a.inp:61: here is a zero byte: the file is binary"],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*ELEMENT, TYPE=MASS, ELSET=M\n901, 14\n*MASS, ELSET=M\n-1.\n*MATERIAL, NAME=Steel\n",
+        "a.inp:40: the constant must be 0 or above, not -1 (*MASS)",
+    ],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*ELEMENT, TYPE=ROTARYI, ELSET=M\n901, 14\n*ROTARY INERTIA, ELSET=M\n1., 1., 0., 0., 2.\n*MATERIAL, NAME=Steel\n",
+        "a.inp:40: inertia has a negative principal moment. Give I11, I22, I33, I12, I13, I23",
+    ],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*ELEMENT, TYPE=ROTARYI, ELSET=M\n901, 14\n*ROTARY INERTIA, ELSET=M\n1., 1., 1.\n*MATERIAL, NAME=Steel\n",
+        "a.inp:39: a rotary inertia is supported on a reference node",
+    ],
 ];
 
 #[test]
