@@ -24,7 +24,7 @@ mod system;
 
 pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
-pub use joints::{JointElement, JointKind, Joints, PENALTY};
+pub use joints::{JointElement, JointKind, Joints};
 pub use loads::{constraints, loads};
 pub use pattern::Pattern;
 pub use solids::Solids;

@@ -128,8 +128,8 @@ pub struct Refusal {
 
 impl FrictionTable {
     /// The table of rows `[mu, value, ...]` at a temperature, and the friction value: mu at the table's lowest speed
-    /// and pressure. `by` says what the values are: `"speed"` (m/s), `"pressure"` (Pa), `"temperature"` (in the unit of the
-    /// temperature given).
+    /// and pressure. `by` says what the values are: `"speed"` (m/s), `"pressure"` (Pa), `"temperature"` (in the unit of
+    /// the temperature given).
     ///
     /// # Errors
     /// [`Refusal`] where a row is wrong, or where the rows are not a full grid.

@@ -48,6 +48,7 @@ mod write;
 pub use analysis::spaced;
 pub use criterion::InstabilityCriterion;
 pub use friction::LARGEST_FRICTION;
+pub use joints::PENALTY;
 pub use place::Place;
 pub use read::{is_deck, parse, read};
 pub use source::located;

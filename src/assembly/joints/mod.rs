@@ -26,16 +26,13 @@ use crate::Result;
 use crate::contact::search::Team;
 use crate::element::linear::weighted_product;
 use crate::mesh::{Mesh, Numbering};
-use crate::model::{Connector, Equation, Model, Place, PointMass};
+use crate::model::{Connector, Equation, Model, PENALTY, Place, PointMass};
 
 use super::{Connectivity, ElementMatrices, Elements};
 use neighbours::Neighbours;
 use rows::Rows;
 pub use sets::{SetMotion, Sets};
 use tie::TieSummary;
-
-/// A penalty over the stiffness of the elements beside it: errors of 1e-4, and four digits fewer in a factor.
-pub const PENALTY: f64 = 1e4;
 
 /// What a joint is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

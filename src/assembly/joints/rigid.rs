@@ -15,9 +15,10 @@ use crate::algebra::{cross, norm, sub};
 use crate::element::coupling::{Cloud, mean_motion};
 use crate::mesh::Mesh;
 
+use super::JointElement;
 use super::neighbours::Neighbours;
 use super::rows::Rows;
-use super::{JointElement, PENALTY};
+use crate::model::PENALTY;
 
 /// The nodes of a rigid set.
 #[derive(Debug, Clone)]

@@ -29,10 +29,10 @@ use crate::contact::surface_points::Place;
 use crate::element::coupling::{Cloud, mean_motion};
 use crate::element::facet;
 use crate::mesh::{Facet, Mesh};
-use crate::model::{Model, Tie, softest_young};
+use crate::model::{Model, PENALTY, Tie, softest_young};
 
+use super::JointElement;
 use super::rows::Rows;
-use super::{JointElement, PENALTY};
 
 /// What became of a tie.
 #[derive(Debug, Clone, PartialEq)]

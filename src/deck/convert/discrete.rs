@@ -232,7 +232,14 @@ impl<'d> Conversion<'d> {
         model: &mut Model,
     ) -> Result<()> {
         let nodes = self.assembly.nodes(element).to_vec();
-        let behaviour = self.behaviour(section)?;
+        let region =
+            references.at(nodes[0]).or(references.at(nodes[1])).map_or_else(String::new, |one| one.region.clone());
+        let constants = self.connector_constants(section, &region)?;
+        self.join(element, &nodes, &constants, references, model)
+    }
+
+    /// Which components of a connector are free to have elasticity, and which do not give way.
+    fn components(&self, section: &ConnectorSection) -> Result<[[bool; N_COMPONENTS]; 2]> {
         let (mut free, mut rigid) = ([false; N_COMPONENTS], [false; N_COMPONENTS]);
         for name in &section.types {
             let Some((_, own_free, own_rigid)) = CONNECTOR_TYPES.iter().find(|(known, ..)| known == name) else {
@@ -245,9 +252,13 @@ impl<'d> Conversion<'d> {
                 rigid[i] |= own_rigid[i];
             });
         }
-        let region =
-            references.at(nodes[0]).or(references.at(nodes[1])).map_or_else(String::new, |one| one.region.clone());
-        let [along, about] = self.rigid_stiffness(&region);
+        Ok([free, rigid])
+    }
+
+    /// The constants of a connector beside a region.
+    fn connector_constants(&self, section: &ConnectorSection, region: &str) -> Result<Constants> {
+        let (behaviour, [free, rigid]) = (self.behaviour(section)?, self.components(section)?);
+        let [along, about] = self.rigid_stiffness(region);
         let mut constants = Constants { stiffness: [0.0; 6], damping: [0.0; 6] };
         for i in 0..N_COMPONENTS {
             let has_constant = behaviour.is_some_and(|own| own.elasticity[i] != 0.0 || own.damping[i] != 0.0);
@@ -271,7 +282,7 @@ impl<'d> Conversion<'d> {
                 "the connector has neither elasticity nor damping. Give BEHAVIOR= with *CONNECTOR ELASTICITY",
             ));
         }
-        self.join(element, &nodes, &constants, references, model)
+        Ok(constants)
     }
 
     fn behaviour(&self, section: &ConnectorSection) -> Result<Option<&'d ConnectorBehaviour>> {

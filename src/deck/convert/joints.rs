@@ -15,9 +15,8 @@ use super::references::{Reference, References};
 use super::regions::unlike;
 use crate::Result;
 use crate::algebra::{cross, norm, sub};
-use crate::assembly::PENALTY;
 use crate::deck::geometry::surface_centroid;
-use crate::model::{Connector, Fix, GROUND, Load, LoadKind, Model, Part, Place, RigidSet};
+use crate::model::{Connector, Fix, GROUND, Load, LoadKind, Model, PENALTY, Part, Place, RigidSet};
 
 /// A connector without constants.
 pub(super) fn connector(name: String, between: [String; 2], at: [f64; 3], place: Place) -> Connector {
