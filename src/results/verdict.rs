@@ -105,7 +105,7 @@ impl Results {
             when(n_done < n_asked, Doubt::Missing(n_asked.saturating_sub(n_done), n_asked)),
             when(!not_converged.is_empty(), Doubt::NotConverged(not_converged)),
             when(!intervals.is_empty(), Doubt::NotFollowed(intervals)),
-            when(self.about.undamped, Doubt::Undamped),
+            when(self.about.undamped && n_done > 0, Doubt::Undamped),
         ];
         let implausible = self.about.warnings.iter().cloned().map(Doubt::Implausible);
         let all = first.into_iter().flatten().chain(implausible).chain(ended);

@@ -91,8 +91,8 @@ fn statics_and_reduction_have_documents_too() {
     let reduced = document(&place.run(&arguments));
     has_keys(
         &reduced,
-        "title model mesh mesh_sha256 program friction dofs_of_the_model band_hz limit_hz friction_damping contacts retained_points \
-         fixed_interface_modes residual_modes coordinates constraint_seconds fixed_interface_seconds fixed_interface_solves \
+        "title model mesh mesh_sha256 program friction dofs_of_the_model band_hz limit_hz friction_damping unstable contacts \
+         retained_points fixed_interface_modes residual_modes coordinates constraint_seconds fixed_interface_seconds fixed_interface_solves \
          projection_seconds seconds file",
     );
     assert_eq!((&reduced["contacts"], &reduced["file"]), (&Value::from(4), &Value::from("brake.se.h5")));
