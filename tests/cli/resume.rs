@@ -298,9 +298,9 @@ fn a_full_disc_is_told() {
 #[test]
 fn a_signal_within_a_long_value_ends_the_run_within_five_seconds() {
     let place = Place::pads();
-    let arguments = ["stability", "brake.toml", "--friction=0.4", "--band=0:9000", "--no-branches", "-o", "run", "-v"];
+    let arguments = ["stability", "brake.toml", "--friction=0.4", "--band=0:25000", "--no-branches", "-o", "run", "-v"];
     let mut child = start(&place, 1, &arguments);
-    std::thread::sleep(std::time::Duration::from_secs(3));
+    std::thread::sleep(std::time::Duration::from_secs(2));
     assert!(child.try_wait().unwrap().is_none(), "the value is long enough");
     let sent = std::time::Instant::now();
     signal("TERM", child.id());
