@@ -27,8 +27,6 @@ use squeal::element::{ElementKind, Shape, solid, voigt};
 
 const SAME: f64 = 1e-6;
 const DENSITY: f64 = 7.8;
-/// The one point of a C3D8R.
-const CENTRE: [QuadraturePoint<3>; 1] = [QuadraturePoint { at: [0.0; 3], weight: 8.0 }];
 
 /// CalculiX's stiffness and mass matrix of a free element.
 fn theirs(kind: ElementKind, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6]) -> [DMatrix<f64>; 2] {
@@ -128,7 +126,7 @@ fn product(gradients: &[Vector3<f64>], elasticity: &[[f64; 6]; 6]) -> DMatrix<f6
     b.transpose() * d * b
 }
 
-/// CalculiX's points of the mass; those of C3D8I at the nodes alone.
+/// CalculiX's points of the mass; those of C3D8I at the nodes alone. C3D8R has its whole mass at one point.
 fn mass_points(kind: ElementKind) -> &'static [QuadraturePoint<3>] {
     match kind {
         ElementKind::C3D4 => &TETRAHEDRON_1,
@@ -136,14 +134,16 @@ fn mass_points(kind: ElementKind) -> &'static [QuadraturePoint<3>] {
         ElementKind::C3D10 => &TETRAHEDRON_4,
         ElementKind::C3D15 => &WEDGE_9,
         ElementKind::C3D20 => &HEXAHEDRON_27,
-        ElementKind::C3D8R => &CENTRE,
-        ElementKind::C3D8 | ElementKind::C3D8I | ElementKind::C3D20R => &HEXAHEDRON_8,
+        ElementKind::C3D8 | ElementKind::C3D8I | ElementKind::C3D8R | ElementKind::C3D20R => &HEXAHEDRON_8,
     }
 }
 
 /// The mass with CalculiX's points, for a density of 1: `m_ab = sum_q w detJ N_a N_b`.
 pub fn mass(kind: ElementKind, x: &[[f64; 3]]) -> DMatrix<f64> {
     let (n, shape) = (x.len(), kind.shape());
+    if kind == ElementKind::C3D8R {
+        return DMatrix::repeat(n, n, solid::volume(shape, x) / (n * n) as f64);
+    }
     let mut m = DMatrix::zeros(n, n);
     for q in mass_points(kind) {
         let (shapes, det) = (shape.interpolation().shape(q.at), gradients(shape, x, q.at).0.determinant());
