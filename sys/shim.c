@@ -33,6 +33,10 @@ void squeal_libraries(char *text, size_t size)
            METIS_VER_SUBMINOR, openblas_get_config ? openblas_get_config() : "of unknown kind", mpi);
 }
 
+char *openblas_get_corename(void) __attribute__((weak));
+
+const char *squeal_blas_kernels(void) { return openblas_get_corename ? openblas_get_corename() : NULL; }
+
 void squeal_give_memory_back(void)
 {
 #ifdef __GLIBC__

@@ -23,6 +23,8 @@ PetscErrorCode PetscObjectStateGet(PetscObject object, PetscObjectState *state);
 void squeal_give_memory_back(void);
 /* Writes the names and versions of MUMPS, METIS, BLAS and MPI, a line each. */
 void squeal_libraries(char *text, size_t size);
+/* The kernels that OpenBLAS has chosen; NULL of another BLAS. */
+const char *squeal_blas_kernels(void);
 /* BLAS and LAPACK that PETSc's headers leave out. */
 void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
             double *x, const int *incx);

@@ -32,6 +32,7 @@ use serde::Serialize;
 
 use crate::analysis::Output;
 use crate::model::NormalLaw;
+use crate::native::blas::restart_with_fitting_kernels;
 use crate::native::{Comm, Session, all_libraries};
 use crate::output::json::{self, Failed, Warned};
 use crate::results::Results;
@@ -216,6 +217,7 @@ impl Run {
 /// std::process::exit(squeal::cli::main());
 /// ```
 pub fn main() -> i32 {
+    restart_with_fitting_kernels();
     let (arguments, options) = match arguments() {
         Ok(parsed) => parsed,
         Err(usage) => return print_usage(&usage),

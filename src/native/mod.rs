@@ -8,6 +8,7 @@
 //! | [`direct`] | factors by MUMPS, orderings and partitions by METIS |
 //! | [`block`] | blocks of vectors and the sparse kernels that multiply them |
 //! | [`machine`] | memory that is left |
+//! | [`blas`] | the kernels of OpenBLAS |
 //!
 //! Every handle holds the session through its [`Comm`], so that finalisation comes last by construction; there is one
 //! session at a time. Every code that a library returns is looked at: PETSc's and SLEPc's by `petsc::error::check`,
@@ -15,6 +16,7 @@
 //! and panics inside callbacks of PETSc come out of the call that runs them. Everything that takes a handle is
 //! collective over its communicator unless it says otherwise.
 
+pub mod blas;
 pub mod block;
 pub mod direct;
 pub mod lapack;
