@@ -23,6 +23,7 @@ use crate::{Error, Result};
 /// ```
 /// use nalgebra::DMatrix;
 /// use num_complex::Complex64;
+/// use squeal::model::InstabilityCriterion;
 /// use squeal::tracking::{Family, Options, track};
 ///
 /// /// One oscillator, `lambda^2 + c lambda + 1 = 0`, whose damping `c = 0.1 - 0.2 mu` becomes negative at mu = 0.5.
