@@ -4,6 +4,7 @@ use super::assembly::Assembly;
 use super::types::{Entry, Scope, SetDefinition, SurfaceDefinition, SurfaceItem};
 use crate::model::{Place, names};
 use crate::{Error, Result};
+use std::collections::HashSet;
 
 /// Sets may be nested this deep.
 const DEEPEST: usize = 64;
@@ -193,7 +194,8 @@ impl Assembly<'_> {
         self.spaces.iter().flat_map(names).collect()
     }
 
-    /// What a surface consists of, each once.
+    /// What a surface consists of, each once, faces in the order of the deck. A contact point in the corner of two walls
+    /// meets the first of them, so that another order would be another model.
     ///
     /// # Errors
     /// [`Error::Input`] for sets, elements and faces that are not there, and for a surface of nothing.
@@ -217,8 +219,8 @@ impl Assembly<'_> {
         for item in &surface.items {
             self.item_faces(space, item, &mut faces)?;
         }
-        faces.sort_unstable();
-        faces.dedup();
+        let mut seen = HashSet::new();
+        faces.retain(|face| seen.insert(*face));
         Ok(Faces::OfElements(faces))
     }
 

@@ -338,6 +338,19 @@ fn a_held_kinematic_coupling_is_a_support_and_a_distributing_one_spreads_a_force
 }
 
 #[test]
+fn the_faces_of_a_surface_keep_their_order_and_are_there_once() {
+    let corners = |faces: &str| {
+        let Converted { mesh, .. } =
+            with("*SURFACE, NAME=Pad_face\n2, S1\n", &format!("*SURFACE, NAME=Pad_face\n{faces}"))?;
+        Ok::<_, String>(mesh.surfaces["Pad_face"].facets.iter().map(|facet| facet.key()).collect::<Vec<_>>())
+    };
+    let (first, third) = (corners("2, S1\n").unwrap()[0], corners("2, S3\n").unwrap()[0]);
+    assert_ne!(first, third);
+    assert_eq!(corners("2, S3\n2, S1\n2, S3\n").unwrap(), [third, first]);
+    assert_eq!(corners("2, S1\n2, S3\n").unwrap(), [first, third]);
+}
+
+#[test]
 fn bodies_of_one_section_that_touch_are_parts() {
     let sections = "*SOLID SECTION, ELSET=DISC, MATERIAL=STEEL\n*SOLID SECTION, ELSET=PAD, MATERIAL=STEEL\n";
     let one = "*ELSET, ELSET=BOTH\nDISC, PAD\n*SOLID SECTION, ELSET=BOTH, MATERIAL=STEEL\n";
