@@ -59,6 +59,7 @@ pub fn reduce(
     warn(comm, model, observer);
     model.require_constrained(comm)?;
     model.require_mass()?;
+    model.require_no_prescribed()?;
     let friction = options.friction.unwrap_or_else(|| model.own_friction());
     let limit = options.limit.unwrap_or_else(|| model.reduction_limit());
     let may_write = || may_write_file(&options.file, &SUPER_ELEMENT, options.force);

@@ -1,13 +1,16 @@
 //! A model's constraints and loads on its mesh.
 
+use std::collections::BTreeMap;
+
 use crate::Result;
 use crate::element::facet;
 use crate::mesh::{Mesh, Surface};
 use crate::model::{Load, LoadKind, Model, Place};
 
 use super::joints::Sets;
+use super::{ElementMatrices, Elements};
 
-/// Which displacements of each node the model holds at zero.
+/// Which displacements of each node the model prescribes.
 ///
 /// # Errors
 /// [`Error::Input`](crate::Error::Input) where a set is missing.
@@ -19,6 +22,65 @@ pub fn constraints(model: &Model, mesh: &Mesh) -> Result<Vec<[bool; 3]>> {
         }
     }
     Ok(constrained)
+}
+
+/// The prescribed displacements (m) that are not zero, by node.
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input) where a set is missing, or two supports prescribe different displacements.
+pub fn prescribed(model: &Model, mesh: &Mesh) -> Result<BTreeMap<u32, [f64; 3]>> {
+    if model.fixes.iter().all(|fix| fix.displacement == [0.0; 3]) {
+        return Ok(BTreeMap::new());
+    }
+    let mut known: BTreeMap<(u32, usize), f64> = BTreeMap::new();
+    for fix in &model.fixes {
+        for n in nodes_of(model, mesh, &fix.nodes, fix.place)? {
+            for axis in (0..3).filter(|&axis| fix.axes[axis]) {
+                let value = *known.entry((n, axis)).or_insert(fix.displacement[axis]);
+                if value != fix.displacement[axis] {
+                    let what = format_args!(
+                        "fix of {:?}: another [[fix]] prescribes another displacement {} of a node of both. Take the node \
+                         out of one of the two sets",
+                        fix.nodes,
+                        ["x", "y", "z"][axis]
+                    );
+                    return Err(model.error(fix.place, what));
+                }
+            }
+        }
+    }
+    let mut moved: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+    for ((node, axis), value) in known.into_iter().filter(|(_, value)| *value != 0.0) {
+        moved.entry(node).or_default()[axis] = value;
+    }
+    Ok(moved)
+}
+
+/// What prescribed displacements `u_c` (m, by node) do to the free dofs: forces `-K_e u_c` (N) of all elements of which
+/// a node is moved.
+pub fn forces_of_prescribed(families: &[&dyn Elements], prescribed: &BTreeMap<u32, [f64; 3]>) -> Vec<(u32, [f64; 3])> {
+    let (mut element, mut forces) = (ElementMatrices::default(), Vec::new());
+    if prescribed.is_empty() {
+        return forces;
+    }
+    for family in families {
+        for e in 0..family.len() {
+            let nodes = family.nodes(e);
+            if !nodes.iter().any(|node| prescribed.contains_key(node)) {
+                continue;
+            }
+            family.matrices(e, &mut element);
+            let moved: Vec<f64> = nodes.iter().flat_map(|n| prescribed.get(n).copied().unwrap_or_default()).collect();
+            let product = element.k.chunks_exact(moved.len()).map(|row| -dot(row, &moved));
+            let own: Vec<f64> = product.collect();
+            forces.extend(nodes.iter().copied().zip(own.as_chunks().0.iter().copied()));
+        }
+    }
+    forces
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The nodal forces (N) of the model's loads.
@@ -78,4 +140,27 @@ fn surface_of<'a>(model: &Model, mesh: &'a Mesh, load: &Load) -> Result<&'a Surf
     mesh.surfaces.get(&load.on).ok_or_else(|| {
         model.error(load.place, format_args!("{:?} is not a surface of the mesh: a traction needs one", load.on))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::testing::model;
+    use crate::model::Fix;
+
+    #[test]
+    fn prescribed_displacements_agree_where_two_supports_have_a_node_or_are_refused() {
+        let mut mesh = Mesh { nodes: vec![[0.0; 3]; 3], ..Mesh::default() };
+        mesh.node_sets.extend([("a".to_owned(), vec![0, 1]), ("b".to_owned(), vec![1, 2])]);
+        let fix =
+            |nodes: &str, axes, displacement| Fix { nodes: nodes.into(), axes, displacement, place: Place::default() };
+        let of = |second: Fix| {
+            let first = fix("a", [true, false, true], [0.5, 0.0, 0.0]);
+            prescribed(&Model { fixes: vec![first, second], ..model(vec![], false) }, &mesh)
+        };
+        let both = of(fix("b", [true, true, false], [0.5, 2.0, 0.0])).unwrap();
+        assert_eq!(both, BTreeMap::from([(0, [0.5, 0.0, 0.0]), (1, [0.5, 2.0, 0.0]), (2, [0.5, 2.0, 0.0])]));
+        let message = of(fix("b", [true, false, false], [0.0; 3])).unwrap_err().to_string();
+        assert!(message.contains("another [[fix]] prescribes another displacement x of a node of both"), "{message}");
+    }
 }

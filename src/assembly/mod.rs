@@ -25,7 +25,7 @@ mod system;
 pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
 pub use joints::{JointElement, JointKind, Joints};
-pub use loads::{constraints, loads};
+pub use loads::{constraints, forces_of_prescribed, loads, prescribed};
 pub use pattern::Pattern;
 pub use solids::Solids;
 pub use system::{Connectivity, ElementMatrices, Elements, System};

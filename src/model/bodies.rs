@@ -1,6 +1,6 @@
 //! Parts, fixed displacements and imposed velocities.
 
-use super::item::Item;
+use super::item::{Item, Vector};
 use super::keys::{self, Text};
 use super::source::{ModelText, Span};
 use super::{Fix, Material, Part, Rayleigh, Rotation, names};
@@ -34,14 +34,25 @@ fn rayleigh(item: &Item, raw: &keys::RayleighTable) -> Result<Rayleigh> {
     })
 }
 
-/// The fixed displacements.
-pub fn fixes(source: ModelText, raw: &[Spanned<keys::FixTable>]) -> Result<Vec<Fix>> {
+/// The fixed displacements; `unit` is metres per unit of the mesh.
+pub fn fixes(source: ModelText, raw: &[Spanned<keys::FixTable>], unit: f64) -> Result<Vec<Fix>> {
     let fix = |fix: &Spanned<keys::FixTable>| {
         let raw = fix.get_ref();
         let item = Item::new(source, format!("fix of {:?}", raw.nodes), fix.span());
-        Ok(Fix { nodes: raw.nodes.clone(), axes: axes(&item, &raw.axes)?, place: item.place() })
+        let axes = axes(&item, &raw.axes)?;
+        let displacement = displacement(&item, &raw.displacement, axes, unit)?;
+        Ok(Fix { nodes: raw.nodes.clone(), axes, displacement, place: item.place() })
     };
     raw.iter().map(fix).collect()
+}
+
+/// A displacement along held axes, m; zero where none is given.
+fn displacement(item: &Item, raw: &Option<Vector>, held: [bool; 3], unit: f64) -> Result<[f64; 3]> {
+    let (Some(raw), Some(value)) = (raw, item.point(raw, "displacement", unit)?) else { return Ok([0.0; 3]) };
+    let is_along_held = (0..3).all(|i| held[i] || value[i] == 0.0);
+    let what = "displacement has a part along an axis that is free";
+    item.require_at(&raw.span(), is_along_held, what, "Name this axis in axes, or give 0 along it")?;
+    Ok(value)
 }
 
 /// `"xz"` -> [true, false, true].

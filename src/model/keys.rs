@@ -116,6 +116,7 @@ tables! {
     pub struct FixTable {
         pub nodes: String,
         pub axes: Text,
+        pub displacement: Option<Vector>,
     }
 
     pub struct RotationTable {

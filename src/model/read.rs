@@ -67,7 +67,7 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
         mesh_unit,
         unit_system,
         mesh_place: Place { file: 0, line: source.line(raw.mesh.get_ref().file.span().start) as u32 },
-        fixes: bodies::fixes(source, &raw.fix)?,
+        fixes: bodies::fixes(source, &raw.fix, mesh_unit)?,
         rotations: bodies::rotations(source, &raw.rotation, (!names_deck).then_some(&parts[..]), mesh_unit)?,
         connectors: joints::connectors(source, &raw.connector, mesh_unit)?,
         ties: joints::ties(source, &raw.tie, mesh_unit)?,

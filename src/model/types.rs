@@ -156,6 +156,8 @@ pub struct Fix {
     pub nodes: String,
     /// Which of x, y, z.
     pub axes: [bool; 3],
+    /// What the displacements are in the equilibrium, m; zero along the axes that are free.
+    pub displacement: [f64; 3],
     /// Where it stands.
     pub place: Place,
 }

@@ -73,7 +73,7 @@ impl FieldWriter<'_> {
         match self.structure {
             Structure::Full(full) => {
                 let volume = Volume::new(full);
-                let u = volume.at_nodes(&self.system.nodal(&[u])?[0]);
+                let u = volume.at_nodes(&full.displacements(self.system, u)?);
                 self.volume(&volume, LAST_STATE, vec![("displacement", Values::Vectors(&u))], vec![])?;
             }
             Structure::Reduced(reduced) => self.outer_displacement(reduced, LAST_STATE, u)?,
@@ -83,7 +83,7 @@ impl FieldWriter<'_> {
     }
 
     fn full_equilibrium(&self, full: &FullModel, name: &str, equilibrium: &Equilibrium) -> Result<()> {
-        let u = self.system.nodal(&[&equilibrium.u])?.remove(0);
+        let u = full.displacements(self.system, &equilibrium.u)?;
         let surface = ContactSurface::new(&full.mesh, &full.interface, &equilibrium.responses);
         let (volume, solids) = (Volume::new(full), full.families()?.solids);
         let contact = surface.on_mesh(full.mesh.nodes.len()).at(volume.nodes());

@@ -21,7 +21,7 @@ pub struct EquilibriumChecks {
 impl EquilibriumChecks {
     /// Those of a full model. Collective.
     pub(super) fn of_full(full: &FullModel, system: &System, equilibrium: &Equilibrium) -> Result<EquilibriumChecks> {
-        let (u, families) = (system.nodal(&[&equilibrium.u])?.remove(0), full.families()?);
+        let (u, families) = (full.displacements(system, &equilibrium.u)?, full.families()?);
         let mut balance = Balance::new(
             system,
             &full.mesh.nodes,

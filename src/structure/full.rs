@@ -1,5 +1,6 @@
 //! A brake with all nodes of its mesh.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::assembly::joints::Sets;
@@ -10,7 +11,7 @@ use crate::deck::DeckSummary;
 use crate::element::solid::{MassProperties, mass_properties};
 use crate::mesh::{Mesh, Numbering, Piece};
 use crate::model::{self, Load, LoadKind, Model, is_deck};
-use crate::native::Comm;
+use crate::native::{Comm, Vector};
 use crate::reduction;
 use crate::results::{About, ContactFaces, Pair, Part};
 use crate::{Error, Result};
@@ -33,8 +34,10 @@ pub struct FullModel {
     pub interface: Interface,
     /// Forces (N) at nodes.
     pub loads: Vec<(u32, [f64; 3])>,
-    /// Which displacements of each node are zero.
+    /// Which displacements of each node are prescribed.
     pub held: Vec<[bool; 3]>,
+    /// Those of them that are not zero in the equilibrium, m.
+    pub prescribed: BTreeMap<u32, [f64; 3]>,
     /// Connectors, ties, rigid sets, equations and point masses.
     pub joints: Joints,
     /// What was understood of the deck, where there is one.
@@ -114,10 +117,12 @@ impl FullModel {
         model.check_against(&mesh)?;
         let interface = Interface::build(&model, &mesh, team)?;
         let held = assembly::constraints(&model, &mesh)?;
+        let prescribed = assembly::prescribed(&model, &mesh)?;
+        refuse_moved_contacts(&model, &interface, &prescribed)?;
         let sets = Sets::new(&model, &mesh, &nodes)?;
         let loads = assembly::loads(&model, &mesh, &sets)?;
         let joints = Joints::new(&model, &mesh, &nodes, &sets, team)?;
-        Ok(FullModel { model, mesh, nodes, interface, loads, held, joints, deck: None })
+        Ok(FullModel { model, mesh, nodes, interface, loads, held, prescribed, joints, deck: None })
     }
 
     /// Refuses a brake of which a part is unconstrained, or constrained by contacts that nothing presses. Collective.
@@ -145,6 +150,16 @@ impl FullModel {
             "{}: unconstrained:\n{free}\nAdd a [[fix]], a [[connector]], a [[tie]] or a [[contact]] that stops these motions{gaps}",
             self.model.file.display()
         )))
+    }
+
+    /// Refuses a brake with prescribed displacements, which a super-element does not retain.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the line of the support.
+    pub fn require_no_prescribed(&self) -> Result<()> {
+        let what = "a displacement other than zero cannot be reduced. Press the parts together by a [[load]]";
+        let moved = self.model.fixes.iter().find(|fix| fix.displacement != [0.0; 3]);
+        moved.map_or(Ok(()), |fix| Err(self.model.error(fix.place, format_args!("fix of {:?}: {what}", fix.nodes))))
     }
 
     /// Refuses a brake of which a part has no mass, so that it has no modes.
@@ -175,7 +190,8 @@ impl FullModel {
             LoadKind::Pressure(pressure) => pressure == 0.0,
         };
         let overlaps = |pair: &ContactPair| pair.separation && pair.statistics.gap[0] < -SMALLEST_OVERLAP;
-        self.model.loads.iter().all(is_zero) && !self.interface.pairs.iter().any(overlaps)
+        let is_moved = self.model.fixes.iter().any(|fix| fix.displacement != [0.0; 3]);
+        self.model.loads.iter().all(is_zero) && !is_moved && !self.interface.pairs.iter().any(overlaps)
     }
 
     /// Refuses a brake whose parts only contacts constrain, where nothing presses these: its equilibrium is not unique.
@@ -255,7 +271,21 @@ impl FullModel {
         let contacts: [&dyn Connectivity; 1] = [&self.interface.gap_operator];
         let mut system = System::assemble(comm, &self.nodes, &self.held, families, &contacts)?;
         system.add_load(&self.loads)?;
+        system.add_load(&assembly::forces_of_prescribed(families, &self.prescribed))?;
         Ok(system)
+    }
+
+    /// Displacements (m) of an equilibrium at the nodes that this rank has, prescribed ones included. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn displacements(&self, system: &System, u: &Vector) -> Result<Vec<[f64; 3]>> {
+        let mut nodal = system.nodal(&[u])?.remove(0);
+        for (&node, moved) in &self.prescribed {
+            // Where one is not zero, the free ones of the node are zero here.
+            (0..3).for_each(|i| nodal[node as usize][i] += moved[i]);
+        }
+        Ok(nodal)
     }
 
     /// The values of the friction coefficient to analyse: those given, else the model's sweep, else the swept pairs'
@@ -346,4 +376,15 @@ impl FullModel {
         };
         system.dofs.owned_nodes().flat_map(label).collect()
     }
+}
+/// Refuses prescribed displacements of contact points: their gaps would change without a displacement of the system.
+fn refuse_moved_contacts(model: &Model, interface: &Interface, prescribed: &BTreeMap<u32, [f64; 3]>) -> Result<()> {
+    let is_moved = |a: usize| interface.gap_operator.point(a).0.iter().any(|node| prescribed.contains_key(node));
+    let Some(pair) = interface.pairs.iter().find(|pair| pair.points.clone().any(is_moved)) else { return Ok(()) };
+    let place = model.contacts.iter().find(|own| own.name == pair.name).map_or(model.mesh_place, |own| own.place);
+    let what = format_args!(
+        "contact {:?}: a [[fix]] with a displacement moves nodes of the contact. Move nodes behind the contact's surfaces",
+        pair.name
+    );
+    Err(model.error(place, what))
 }

@@ -8,7 +8,7 @@ use crate::support::block::Block;
 use crate::support::{assert_close, brake, nodes_where};
 use squeal::assembly::System;
 use squeal::element::ElementKind;
-use squeal::equilibrium::LabelledFactor;
+use squeal::equilibrium::{Balance, LabelledFactor};
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Factor, FactorKind, Precision, Session, Vector};
 use squeal::stability::{BandRequest, BandSolver, EigenOptions, QuadraticProblem};
@@ -76,7 +76,7 @@ fn displacements(comm: &Comm, brake: &FullModel) -> Vec<[f64; 3]> {
     factor.factorise(&system.k).unwrap();
     let mut u = system.zeros().unwrap();
     factor.solve(&system.load, &mut u).unwrap();
-    system.nodal(&[&u]).unwrap().remove(0)
+    brake.displacements(&system, &u).unwrap()
 }
 
 /// Frequencies, Hz, of a band.
@@ -361,4 +361,37 @@ fn a_rigid_set_of_two_bodies_joins_them() {
     let brake = brake(&format!("{STEEL}{UPPER}{CLAMP}[[rigid]]\nnodes = \"side\"\n"), mesh);
     let free = free_motions(&comm, &brake.mesh, &brake.nodes, &brake.interface, &brake.held, &brake.joints);
     assert_eq!(free.len(), 0);
+}
+
+/// A block that is stretched by a prescribed displacement: uniform strain and stress [2e-14], and supports that pull at
+/// both ends with the force of that stress.
+#[test]
+fn a_prescribed_displacement_stretches_a_block() {
+    let comm = Session::start(&[]).unwrap();
+    let strain = 5e-4;
+    let planes = ["x", "y", "z"].map(|axis| format!("[[fix]]\nnodes = \"lower_{axis}0\"\naxes = \"{axis}\"\n"));
+    let moved = format!("[[fix]]\nnodes = \"lower_z1\"\naxes = \"z\"\ndisplacement = [0, 0, {}]\n", strain * 0.02);
+    for kind in KINDS {
+        let brake = brake(&format!("{STEEL}{}{moved}", planes.concat()), one(kind, 2));
+        let u = displacements(&comm, &brake);
+        let error = |(n, u): (usize, &[f64; 3])| {
+            let exact: [f64; 3] =
+                std::array::from_fn(|i| [-POISSON, -POISSON, 1.0][i] * strain * brake.mesh.nodes[n][i]);
+            largest((0..3).map(|i| u[i] - exact[i])) / (strain * 0.02)
+        };
+        let displacement_error = largest(u.iter().enumerate().map(error));
+        let solids = brake.families().unwrap().solids;
+        let stress = |e| solids.von_mises(e, &u) / (YOUNG * strain) - 1.0;
+        let stress_error = largest((0..brake.mesh.elements.len()).map(stress));
+        println!("{}: displacements {displacement_error:.1e}, stress {stress_error:.1e}", kind.name());
+        assert!(displacement_error < 1e-12 && stress_error < 1e-11);
+
+        let (system, families) = (assembled(&comm, &brake), brake.families().unwrap());
+        let balance =
+            Balance::new(&system, &brake.mesh.nodes, &families.list(), &brake.loads, &brake.interface, &u, &[]);
+        let pull = YOUNG * strain * WIDTH * WIDTH;
+        let top = balance.reactions.iter().filter(|(n, _)| brake.mesh.nodes[*n as usize][2] > 0.019);
+        assert_close("pull", top.map(|(_, force)| force[2]).sum(), pull, 1e-11);
+        assert!(balance.residual()[0] < 1e-11 * pull && balance.residual()[1] < 1e-11 * pull * WIDTH);
+    }
 }

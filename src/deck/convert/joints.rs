@@ -13,6 +13,7 @@
 use super::Conversion;
 use super::references::{Reference, References};
 use super::regions::unlike;
+use super::supports::OTHER_THAN_ZERO;
 use crate::Result;
 use crate::algebra::{cross, norm, sub};
 use crate::deck::geometry::surface_centroid;
@@ -31,9 +32,14 @@ impl Conversion<'_> {
             let is_support = reference.is_rigid && reference.held == [true; 6];
             if is_support {
                 let (nodes, place) = (reference.region.clone(), reference.place);
-                model.fixes.push(Fix { nodes, axes: reference.coupled, place });
+                let axes = reference.coupled;
+                let along = |i: usize| if axes[i] { reference.displacement[i] * self.units.length } else { 0.0 };
+                model.fixes.push(Fix { nodes, axes, displacement: [0, 1, 2].map(along), place });
             } else {
                 self.require_all_axes(reference)?;
+                if reference.displacement != [0.0; 3] {
+                    return Err(self.assembly.error(reference.place, OTHER_THAN_ZERO));
+                }
                 if reference.is_rigid {
                     let name =
                         unlike(&reference.region, |name| model.rigid_sets.iter().any(|own| own.name == name), "rigid");

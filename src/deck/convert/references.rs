@@ -8,6 +8,7 @@ use std::collections::HashMap;
 
 use super::Conversion;
 use super::history::State;
+use super::supports::OTHER_THAN_ZERO;
 use crate::Result;
 use crate::deck::sets::{Faces, Kind};
 use crate::deck::types::{ActionKind, ConstraintKind, Coupling, Entry, RigidDefinition};
@@ -30,6 +31,8 @@ pub(super) struct Reference {
     pub coupled: [bool; 3],
     /// Which of its six displacements are held.
     pub held: [bool; 6],
+    /// Its prescribed displacement, in the deck's unit.
+    pub displacement: [f64; 3],
     /// Force and moment on it, in the deck's unit.
     pub force: [Acting; 6],
     /// Where that stands.
@@ -196,10 +199,11 @@ impl Conversion<'_> {
             for node in
                 self.assembly.set(Kind::Node, 0, of, action.place)?.into_iter().filter(|&node| !self.is_used(node))
             {
-                if !is_force && value != 0.0 {
-                    return Err(self.assembly.error(action.place, super::supports::OTHER_THAN_ZERO));
-                }
+                let moves = !is_force && value != 0.0;
                 let Some((reference, shift)) = references.acted_on(node) else {
+                    if moves {
+                        return Err(self.assembly.error(action.place, OTHER_THAN_ZERO));
+                    }
                     if is_force && value != 0.0 {
                         let what = "a force on a node that belongs to no solid and no coupling. \
                                     Couple it, or remove the force";
@@ -214,7 +218,11 @@ impl Conversion<'_> {
                         super::supports::add(&mut reference.force[axis], step, value);
                         reference.force_place = Some(action.place);
                     } else {
+                        if axis > 2 && moves {
+                            return Err(self.assembly.error(action.place, OTHER_THAN_ZERO));
+                        }
                         reference.held[axis] = true;
+                        reference.displacement.get_mut(axis).into_iter().for_each(|own| *own = value);
                     }
                 }
             }
@@ -232,6 +240,7 @@ impl Reference {
             is_rigid,
             coupled: [true; 3],
             held: [false; 6],
+            displacement: [0.0; 3],
             force: [(0, 0.0); 6],
             force_place: None,
             place,

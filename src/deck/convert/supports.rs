@@ -17,9 +17,12 @@ type Forces = BTreeMap<u32, [(usize, f64); 3]>;
 /// A pressure with the step that it began in.
 type Pressure = (usize, f64, Place);
 
-/// Why a prescribed displacement is refused.
-pub(super) const OTHER_THAN_ZERO: &str =
-    "a displacement other than 0 is not supported. Press the parts together by a load";
+/// Why a displacement is refused of a node that is no node of a solid, or has axes of its own.
+pub(super) const OTHER_THAN_ZERO: &str = "a displacement other than 0 is supported of nodes of solids along x, y and z, and of reference nodes of \
+     which all six displacements are held. Press the parts together by a load";
+
+/// Which displacements of a node are prescribed, what they are, and where that stands.
+type Prescribed = BTreeMap<u32, ([Option<f64>; 3], Place)>;
 
 /// Adds to a value of the same step, replaces one of an earlier step.
 pub(super) fn add(known: &mut (usize, f64), step: usize, value: f64) {
@@ -27,23 +30,21 @@ pub(super) fn add(known: &mut (usize, f64), step: usize, value: f64) {
 }
 
 impl Conversion<'_> {
-    /// Displacements held at zero; those of reference nodes are left to the couplings. Oblique ones are equations.
+    /// Prescribed displacements; those of reference nodes are left to the couplings. Oblique ones are equations.
     pub(super) fn supports(&mut self, state: &State, equations: &mut Vec<Equation>) -> Result<Vec<Fix>> {
         let mut fixes: Vec<Fix> = Vec::new();
         let mut local: BTreeMap<u32, ([bool; 3], Place)> = BTreeMap::new();
+        let moved = self.moved(state)?;
         for (_, action) in state.actions() {
-            let ActionKind::Boundary(of, [first, last], value) = &action.what else { continue };
+            let ActionKind::Boundary(of, [first, last], _) = &action.what else { continue };
             let nodes = self.bodies.used(&self.assembly.set(Kind::Node, 0, of, action.place)?);
             // Solids have no rotations to hold, and nodes outside them no stiffness.
             if *first > 3 || nodes.is_empty() {
                 continue;
             }
-            if *value != 0.0 {
-                return Err(self.assembly.error(action.place, OTHER_THAN_ZERO));
-            }
             let axes: [bool; 3] = std::array::from_fn(|i| (*first..=*last).contains(&(i as u8 + 1)));
-            let (oblique, nodes): (Vec<u32>, Vec<u32>) =
-                nodes.into_iter().partition(|node| self.axes.contains_key(node));
+            let nodes = nodes.into_iter().filter(|node| !moved.contains_key(node));
+            let (oblique, nodes): (Vec<u32>, Vec<u32>) = nodes.partition(|node| self.axes.contains_key(node));
             for node in oblique {
                 let held = &mut local.entry(node).or_insert(([false; 3], action.place)).0;
                 (0..3).for_each(|i| held[i] |= axes[i]);
@@ -54,7 +55,42 @@ impl Conversion<'_> {
             }
         }
         self.local_supports(&local, equations, &mut fixes)?;
+        self.moved_supports(&moved, &mut fixes);
         Ok(fixes)
+    }
+
+    /// The nodes of solids with a displacement other than zero, and all that is prescribed of them: the last value of
+    /// each axis.
+    fn moved(&self, state: &State) -> Result<Prescribed> {
+        let mut all = Prescribed::new();
+        for (_, action) in state.actions() {
+            let ActionKind::Boundary(of, [first, last], value) = &action.what else { continue };
+            for node in self.bodies.used(&self.assembly.set(Kind::Node, 0, of, action.place)?) {
+                if *value != 0.0 && self.axes.contains_key(&node) {
+                    return Err(self.assembly.error(action.place, OTHER_THAN_ZERO));
+                }
+                let (values, place) = all.entry(node).or_insert(([None; 3], action.place));
+                (*first..=*last)
+                    .filter(|axis| *axis <= 3)
+                    .for_each(|axis| values[usize::from(axis) - 1] = Some(*value));
+                *place = action.place;
+            }
+        }
+        all.retain(|_, (values, _)| values.iter().flatten().any(|value| *value != 0.0));
+        Ok(all)
+    }
+
+    /// Nodes with the same prescribed displacement are one support.
+    fn moved_supports(&mut self, moved: &Prescribed, fixes: &mut Vec<Fix>) {
+        let mut groups: BTreeMap<[Option<u64>; 3], (Vec<u32>, Place)> = BTreeMap::new();
+        for (&node, (values, place)) in moved {
+            groups.entry(values.map(|value| value.map(f64::to_bits))).or_insert((Vec::new(), *place)).0.push(node);
+        }
+        for (bits, (nodes, place)) in groups {
+            let nodes = self.regions.add_node_set("moved", nodes);
+            let displacement = bits.map(|bits| bits.map_or(0.0, f64::from_bits) * self.units.length);
+            fixes.push(Fix { nodes, axes: bits.map(|bits| bits.is_some()), displacement, place });
+        }
     }
 
     /// Supports along local axes; nodes with the same global ones are one set.
@@ -225,7 +261,7 @@ impl Conversion<'_> {
 fn fix(fixes: &mut Vec<Fix>, nodes: String, axes: [bool; 3], place: Place) {
     match fixes.iter_mut().find(|fix| fix.nodes == nodes) {
         Some(fix) => (0..3).for_each(|i| fix.axes[i] |= axes[i]),
-        None => fixes.push(Fix { nodes, axes, place }),
+        None => fixes.push(Fix { nodes, axes, displacement: [0.0; 3], place }),
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::joints::PointForce;
 use super::{DeckWriter, number};
-use crate::model::{Load, LoadKind, Rotation};
+use crate::model::{Fix, Load, LoadKind, Rotation};
 
 /// Modes that a step asks for, at most.
 const N_MODES: usize = 200;
@@ -20,6 +20,7 @@ impl DeckWriter<'_> {
             }
         }
         out += "*STEP\n*STATIC\n";
+        self.model.fixes.iter().for_each(|fix| out += &self.displacement(fix));
         self.model.loads.iter().for_each(|load| out += &self.load(load));
         forces.iter().for_each(|force| out += &self.point_force(force));
         self.model.rotations.iter().for_each(|rotation| out += &self.rotation(rotation));
@@ -29,6 +30,14 @@ impl DeckWriter<'_> {
             false => "*FREQUENCY",
         };
         out + &format!("*END STEP\n*STEP\n{procedure}\n{N_MODES},{low},{high}\n*END STEP\n")
+    }
+
+    fn displacement(&self, fix: &Fix) -> String {
+        let parts = (1..).zip(fix.displacement).filter(|(_, value)| *value != 0.0);
+        let on = self.names.region(&fix.nodes);
+        let lines: String =
+            parts.map(|(axis, value)| format!("{on},{axis},{axis},{}\n", number(value / self.units.length))).collect();
+        if lines.is_empty() { lines } else { format!("*BOUNDARY\n{lines}") }
     }
 
     fn load(&self, load: &Load) -> String {

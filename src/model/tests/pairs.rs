@@ -12,6 +12,14 @@ fn fixes_and_rotations_are_checked() {
         );
         complains("axes = \"zx\"", &format!("axes = \"{axes}\""), 0, &said);
     }
+    let along_y = "axes = \"zx\"\ndisplacement = [0, 0.1, 0]";
+    let said = "displacement has a part along an axis that is free (fix of \"hub\"). Name this axis in axes, or give 0 along it";
+    complains("axes = \"zx\"", along_y, 1, said);
+    let moved = GOOD.replace("axes = \"zx\"", "axes = \"zx\"\ndisplacement = [0.1, 0, -0.2]");
+    let model = parsed(&moved).unwrap();
+    assert_eq!(model.fixes[0].displacement, [0.1 * 1e-3, 0.0, -0.2 * 1e-3]);
+    let again = parsed(&crate::model::write(&model, "brake.msh")).unwrap();
+    assert_eq!(again.fixes[0].displacement, model.fixes[0].displacement);
     let said = "axis has no direction: it is zero (rotation of \"disc\"). Give a vector such as [0, 0, 1]";
     complains("axis = [0, 3, 4]", "axis = [0, 0, 0]", 0, said);
     let said = "speed is 0, so that nothing turns (rotation of \"disc\"). Give rad/s, such as 5.0; its sign is the sense of rotation";
