@@ -26,6 +26,7 @@ pub(super) fn add_pair(
     let surfaces = ContactSurfaces { model, mesh, contact, slave, master, team };
     let mut found = surfaces.search()?;
     let adjusted = adjust(&mut found, contact.adjust);
+    set_gaps(&mut found, contact.clearance);
     let rotation = model.sliding(contact, mesh);
     let first = interface.points.len();
     for point in &found.points {
@@ -172,6 +173,11 @@ impl NothingFound<'_> {
 fn adjust(found: &mut Found, largest: f64) -> Vec<f64> {
     let gaps = found.points.iter_mut().map(|point| &mut point.gap);
     gaps.filter(|gap| (0.0..=largest).contains(*gap) && **gap > 0.0).map(std::mem::take).collect()
+}
+
+/// Gives all points one gap (m), where there is one.
+fn set_gaps(found: &mut Found, gap: Option<f64>) {
+    gap.into_iter().for_each(|gap| found.points.iter_mut().for_each(|point| point.gap = gap));
 }
 
 /// Sums up what the search found; there is at least one point.

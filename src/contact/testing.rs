@@ -148,6 +148,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         separation: true,
         search_distance: None,
         adjust: 0.0,
+        clearance: None,
         place: Place { file: 0, line: 12 },
     }
 }

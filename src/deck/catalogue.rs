@@ -91,7 +91,7 @@ const READ: &[(&str, Treatment)] = &[
     ("*EQUATION", Read(&[], &[])),
     ("*MPC", Read(&[], &[])),
     ("*TRANSFORM", Read(&["NSET", "TYPE"], &[])),
-    ("*CLEARANCE", Read(&["VALUE"], &["MASTER", "SLAVE", "CPSET"])),
+    ("*CLEARANCE", Read(&["VALUE", "MASTER", "SLAVE"], &[])),
     ("*SPRING", Read(&["ELSET"], &[])),
     ("*DASHPOT", Read(&["ELSET"], &[])),
     ("*MASS", Read(&["ELSET"], &[])),

@@ -31,6 +31,7 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         search_distance: search_distance(item, &raw.search, unit)?,
         adjust: item.positive_if_given(&raw.adjust, "adjust", "Give a distance in the mesh's unit")?.unwrap_or(0.0)
             * unit,
+        clearance: clearance(item, raw, unit)?,
         place: item.place(),
     })
 }
@@ -39,6 +40,15 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
 pub fn search_distance(item: &Item, raw: &Option<Number>, unit: f64) -> Result<Option<f64>> {
     let advice = "Give a distance in the mesh's unit, or leave it out for no limit";
     Ok(item.positive_if_given(raw, "search", advice)?.map(|distance| distance * unit))
+}
+
+/// The gap of all points, m.
+fn clearance(item: &Item, raw: &keys::ContactTable, unit: f64) -> Result<Option<f64>> {
+    let Some(gap) = &raw.clearance else { return Ok(None) };
+    let what = "there are adjust and clearance, which both say what the gaps are";
+    item.require_at(&gap.span(), raw.adjust.is_none(), what, "Leave one of them out")?;
+    let value = item.check(gap, true, "clearance", "must be finite", "Give a distance in the mesh's unit")?;
+    Ok(Some(value * unit))
 }
 
 fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {

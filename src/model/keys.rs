@@ -136,6 +136,7 @@ tables! {
         pub separation: Option<bool>,
         pub search: Option<Number>,
         pub adjust: Option<Number>,
+        pub clearance: Option<Number>,
     }
 
     #[derive(Clone, Copy)]

@@ -200,6 +200,8 @@ pub struct Contact {
     pub search_distance: Option<f64>,
     /// Initial gaps up to this are closed, m.
     pub adjust: f64,
+    /// Initial gap of all points in place of the mesh's, m; below 0 an overlap.
+    pub clearance: Option<f64>,
     /// Where it stands.
     pub place: Place,
 }

@@ -164,6 +164,7 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
     out.line("separation", contact.separation);
     out.optional("search", contact.search_distance.map(|distance| distance / unit));
     out.optional("adjust", (contact.adjust > 0.0).then_some(contact.adjust / unit));
+    out.optional("clearance", contact.clearance.map(|gap| gap / unit));
 }
 
 /// The key `friction` of a coefficient that depends on other things, its friction value given.

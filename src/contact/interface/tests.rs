@@ -57,6 +57,20 @@ fn pads_on_a_disc_slide_along_the_circles_of_the_disc() {
     }
 }
 
+#[test]
+fn a_clearance_is_the_gap_of_all_points_in_place_of_the_meshs() {
+    let mesh = plates(0.01);
+    let gaps = |clearance| {
+        let contact = Contact { clearance, search_distance: Some(1.0), ..pad() };
+        let interface = Interface::build(&model(vec![contact], true), &mesh, &Alone).unwrap();
+        let touching = interface.pairs[0].statistics.touching;
+        (interface.points.iter().map(|point| point.law.gap).collect::<Vec<_>>(), touching == interface.points.len())
+    };
+    assert!(gaps(None).0.iter().all(|gap| (gap - 0.01).abs() < 1e-15) && !gaps(None).1);
+    assert!(gaps(Some(0.2)).0.iter().all(|gap| *gap == 0.2) && !gaps(Some(0.2)).1);
+    assert!(gaps(Some(-1e-3)).0.iter().all(|gap| *gap == -1e-3) && gaps(Some(-1e-3)).1);
+}
+
 /// Sum of forces and of moments about the origin that all points put on the slaves, and on all nodes together.
 fn resultants(
     interface: &Interface,

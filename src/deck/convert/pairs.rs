@@ -37,7 +37,8 @@ impl<'d> Conversion<'d> {
                 stick: None,
                 separation: !interaction.no_separation,
                 search_distance: None,
-                adjust: pair.adjust.map_or(0.0, |gap| gap * self.units.length),
+                adjust: pair.adjust.filter(|_| pair.clearance.is_none()).map_or(0.0, |gap| gap * self.units.length),
+                clearance: pair.clearance.map(|gap| gap * self.units.length),
                 place: pair.place,
             });
         }

@@ -112,14 +112,19 @@ impl Parser {
         Ok(())
     }
 
-    /// Gaps are those of the mesh.
+    /// The gap of a contact pair that stands above, in place of the mesh's.
     fn clearance(&mut self, card: &Card) -> Result<()> {
-        let value = card.number("VALUE")?.unwrap_or(0.0);
-        if value != 0.0 {
-            let what = "a gap other than that of the mesh is not supported (*CLEARANCE). Move the nodes";
-            return Err(card.error(format_args!("{what} by {value}")));
-        }
-        self.note("CLEARANCE is not applied: the gaps of contacts are those of the mesh");
+        let [slave, master] = [self.name_of(card, "SLAVE")?, self.name_of(card, "MASTER")?];
+        let Some(value) = card.number("VALUE")? else {
+            return Err(card.error("VALUE= is missing (*CLEARANCE): a gap by tables is not supported"));
+        };
+        let pairs = &mut self.deck.contact_pairs;
+        let Some(pair) = pairs.iter_mut().find(|pair| pair.slave == slave && pair.master == master) else {
+            let [slave, master] = [slave, master].map(|name| self.deck.spelled(&name));
+            let what = format_args!("no *CONTACT PAIR of {slave} and {master} stands above it (*CLEARANCE)");
+            return Err(card.error(what));
+        };
+        pair.clearance = Some(value);
         Ok(())
     }
 }

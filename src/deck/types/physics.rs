@@ -124,6 +124,8 @@ pub struct ContactPair {
     pub interaction: String,
     /// Whether nodes of the slave are moved onto the master, and from which distance.
     pub adjust: Option<f64>,
+    /// Initial gap in place of the mesh's.
+    pub clearance: Option<f64>,
     /// Whether the surfaces move as one.
     pub tied: bool,
     /// Where it stands.

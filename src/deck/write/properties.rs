@@ -81,6 +81,11 @@ impl DeckWriter<'_> {
         } else {
             String::new()
         };
-        out + &format!("*CONTACT PAIR,INTERACTION=LAW{},TYPE=SURFACE TO SURFACE{adjust}\n{slave},{master}\n", i + 1)
+        let clearance = contact.clearance.map_or_else(String::new, |gap| {
+            format!("*CLEARANCE,MASTER={master},SLAVE={slave},VALUE={}\n", number(gap / self.units.length))
+        });
+        let pair =
+            format!("*CONTACT PAIR,INTERACTION=LAW{},TYPE=SURFACE TO SURFACE{adjust}\n{slave},{master}\n", i + 1);
+        out + &pair + &clearance
     }
 }

@@ -211,7 +211,7 @@ pub const BROKEN_JOINTS: &[[&str; 3]] = &[
     [
         "*MATERIAL, NAME=Steel\n",
         "*CLEARANCE, VALUE=0.1, MASTER=DISC_FACE, SLAVE=PAD_FACE\n*MATERIAL, NAME=Steel\n",
-        "a.inp:38: a gap other than that of the mesh is not supported",
+        "a.inp:38: no *CONTACT PAIR of Pad_face and Disc_face stands above it (*CLEARANCE)",
     ],
     ["*MATERIAL, NAME=Steel\n", "*SPRING\n1\n5.\n*MATERIAL, NAME=Steel\n", "a.inp:38: ELSET= is missing (*SPRING)"],
     [

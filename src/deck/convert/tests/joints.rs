@@ -198,10 +198,15 @@ fn a_joint_between_nodes_has_the_stiffness_of_an_element() {
 }
 
 #[test]
-fn a_clearance_of_zero_is_noted() {
-    let text = "*CLEARANCE, VALUE=0., MASTER=DISC_FACE, SLAVE=PAD_FACE\n*MATERIAL, NAME=Steel\n";
-    let notes = with("*MATERIAL, NAME=Steel\n", text).unwrap().summary.notes;
-    assert!(notes.iter().any(|note| note.starts_with("CLEARANCE is not applied")), "{notes:?}");
+fn a_clearance_is_the_gap_of_a_pair() {
+    let lines = "*BOUNDARY\nHUB, 1, 3\n";
+    let text = format!("*CLEARANCE, VALUE=-0.02, MASTER=DISC_FACE, SLAVE=PAD_FACE\n{lines}");
+    let Converted { model, mesh, .. } = with(lines, &text).unwrap();
+    assert!(close(model.contacts[0].clearance.unwrap(), -2e-5));
+    let mut deck = Vec::new();
+    crate::deck::write(&model, &mesh, UnitSystem::ALL[0], "a test", &mut deck).unwrap();
+    let again = read(&String::from_utf8(deck).unwrap()).unwrap();
+    assert!(close(again.model.contacts[0].clearance.unwrap(), -2e-5));
 }
 
 /// A deck with everything that joins nodes.
