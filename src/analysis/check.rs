@@ -96,6 +96,7 @@ fn sliding(full: &FullModel, pair: &ContactPair) -> Option<[f64; 2]> {
 fn pair(full: &FullModel, pair: &ContactPair) -> PairRow {
     let statistics = &pair.statistics;
     let sliding = sliding(full, pair);
+    let proposed = full.model.proposed(&full.mesh).into_iter().find(|own| own.contact == pair.name);
     PairRow {
         pair: pair.name.clone(),
         kind: format!("{:?}", pair.kind).to_lowercase(),
@@ -110,6 +111,8 @@ fn pair(full: &FullModel, pair: &ContactPair) -> PairRow {
         gap_min_m: statistics.gap[0],
         gap_max_m: statistics.gap[1],
         friction: pair.friction,
+        proposed_stiffness_n_per_m3: proposed.as_ref().map(|own| own.stiffness),
+        proposed_stick_n_per_m3: proposed.and_then(|own| own.stick),
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a caller sees of an analysis while it runs.
 
 use crate::equilibrium::Iteration;
+use crate::model::ProposedStiffness;
 use crate::native::Comm;
 use crate::reduction::craig_bampton;
 use crate::results::Value;
@@ -21,6 +22,13 @@ pub enum Event<'a> {
     },
     /// The model has something that can hardly be meant.
     Warning(&'a str),
+    /// The user gives no stiffness of a contact pair.
+    Proposed {
+        /// Name of the pair.
+        pair: &'a str,
+        /// The stiffness that the program proposes, N/m3.
+        stiffness: f64,
+    },
     /// So many values are to be analysed.
     Planned(usize),
     /// A value is analysed beside those asked for.
@@ -63,9 +71,12 @@ pub trait Observer {
     }
 }
 
-/// Reports what a model has that can hardly be meant. Collective.
+/// Reports what a model has that can hardly be meant, and what the program proposes. Collective.
 pub(super) fn warn(comm: &Comm, model: &FullModel, observer: &mut dyn Observer) {
     plausibility::warnings(model, comm).iter().for_each(|warning| observer.event(Event::Warning(warning)));
+    for ProposedStiffness { contact, stiffness, .. } in model.model.proposed(&model.mesh) {
+        observer.event(Event::Proposed { pair: &contact, stiffness });
+    }
 }
 
 /// Follows nothing.

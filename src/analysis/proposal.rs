@@ -10,7 +10,6 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::contact::search::{Alone, Options, find};
 use crate::contact::surface_points::surface_points;
-use crate::deck::convert::STIFFNESS_FACTOR;
 use crate::element::solid::{MassProperties, mass_properties};
 use crate::mesh::Mesh;
 
@@ -18,8 +17,8 @@ use crate::mesh::Mesh;
 const TOUCHING: f64 = 0.1;
 /// Two principal moments of inertia are equal within this fraction of the third.
 const REVOLUTION: f64 = 0.02;
-/// Extents of brakes in their unit of length: (smallest, name of the unit, metres).
-const UNITS: [(f64, &str, f64); 3] = [(20.0, "mm", 1e-3), (2.0, "cm", 1e-2), (0.0, "m", 1.0)];
+/// Extents of brakes in their unit of length: (smallest, name of the unit).
+const UNITS: [(f64, &str); 3] = [(20.0, "mm"), (2.0, "cm"), (0.0, "m")];
 /// What a part's name says of its material: words, material.
 const MATERIALS: [(&[&str], &str); 3] = [
     (&["lining", "friction"], "lining"),
@@ -42,14 +41,12 @@ struct Touching {
     master: String,
     /// Whether one of them turns.
     sliding: bool,
-    /// Mean edge of the slave's facets, in units of the mesh.
-    size: f64,
 }
 
 /// The text of a model file for a mesh as its file has it, in the file's unit; `mesh_file` is the path that the model
 /// file gives.
 pub fn propose_model(mesh: &Mesh, mesh_file: &Path) -> String {
-    let (unit, metres) = unit(mesh);
+    let unit = unit(mesh);
     let turning = turning(mesh);
     let pairs = touching(mesh, turning.as_ref().map(|turning| turning.part));
     let mut text = format!(
@@ -60,7 +57,7 @@ pub fn propose_model(mesh: &Mesh, mesh_file: &Path) -> String {
     materials(&mut text, mesh);
     supports_and_loads(&mut text, mesh, &pairs);
     rotation(&mut text, mesh, turning.as_ref());
-    contacts(&mut text, &pairs, metres);
+    contacts(&mut text, &pairs);
     text += "\n[stability]\nband = [0, 6000]   # Hz\n";
     text += match turning {
         Some(_) => "\n[sweep]\nfriction = { from = 0.1, to = 0.7, step = 0.1 }\n",
@@ -69,15 +66,14 @@ pub fn propose_model(mesh: &Mesh, mesh_file: &Path) -> String {
     text
 }
 
-/// The unit of length in which the mesh is as large as a brake: its name, and metres.
-fn unit(mesh: &Mesh) -> (&'static str, f64) {
+/// Name of the unit of length in which the mesh is as large as a brake.
+fn unit(mesh: &Mesh) -> &'static str {
     let extent = |i: usize| {
         let ends = mesh.nodes.iter().fold([f64::MAX, f64::MIN], |[low, high], x| [low.min(x[i]), high.max(x[i])]);
         ends[1] - ends[0]
     };
     let largest = (0..3).map(extent).fold(0.0, f64::max);
-    let (_, name, metres) = UNITS.into_iter().find(|(from, ..)| largest >= *from).unwrap_or(UNITS[0]);
-    (name, metres)
+    UNITS.into_iter().find(|(from, _)| largest >= *from).unwrap_or(UNITS[0]).1
 }
 
 /// A part that turns.
@@ -135,7 +131,7 @@ fn touch(mesh: &Mesh, slave: &str, master: &str, sliding: bool) -> Option<Touchi
     let met: f64 = found.points.iter().map(|point| point.weight).sum();
     let (_, other) = surface_points(b, &mesh.nodes);
     let touch = met > TOUCHING * found.area.min(other);
-    touch.then(|| Touching { slave: slave.into(), master: master.into(), sliding, size: a.facet_size(found.area) })
+    touch.then(|| Touching { slave: slave.into(), master: master.into(), sliding })
 }
 
 fn material_of(part: &str) -> &'static str {
@@ -192,21 +188,14 @@ fn rotation(text: &mut String, mesh: &Mesh, turning: Option<&Turning>) {
     );
 }
 
-fn contacts(text: &mut String, pairs: &[Touching], metres: f64) {
-    for Touching { slave, master, sliding, size } in pairs {
-        // As for a deck without a stiffness, to one digit.
-        let stiffness = STIFFNESS_FACTOR * PROPERTIES[1].1 / (size * metres);
+fn contacts(text: &mut String, pairs: &[Touching]) {
+    for Touching { slave, master, sliding } in pairs {
+        let friction = if *sliding { 0.4 } else { 0.15 };
         let _ = write!(
             text,
-            "\n[[contact]]\nslave = {slave:?}\nmaster = {master:?}\nlaw = {{ linear = {stiffness:.0e} }}   # N/m3, about 10 E/h of a lining; choose\n"
+            "\n[[contact]]\nslave = {slave:?}\nmaster = {master:?}\n\
+             law = \"auto\"                 # by the elements beside it; or {{ linear = 2e13 }}, N/m3\nfriction = {friction}\n"
         );
-        *text += match sliding {
-            true => "friction = 0.4\n",
-            false => "friction = 0.15\n",
-        };
-        if !sliding {
-            let _ = writeln!(text, "stick = {:.0e}", 0.5 * stiffness);
-        }
     }
     if pairs.is_empty() {
         *text += "\n# No two named surfaces touch. Name the faces of pads and disc as physical surfaces in Gmsh.\n";
@@ -248,9 +237,9 @@ mod tests {
     #[test]
     fn a_brake_is_as_large_in_its_unit_as_brakes_are() {
         let mut mesh = pads_on_disc();
-        assert_eq!(unit(&mesh), ("mm", 1e-3));
+        assert_eq!(unit(&mesh), "mm");
         mesh.nodes.iter_mut().flatten().for_each(|x| *x *= 1e-3);
-        assert_eq!(unit(&mesh), ("m", 1.0));
+        assert_eq!(unit(&mesh), "m");
     }
 
     #[test]
@@ -265,5 +254,6 @@ mod tests {
             model.parts.iter().map(|part| (part.name.as_str(), part.material.name.as_str())).collect();
         assert!(materials.contains(&("disc", "iron")) && materials.contains(&("backplate_inner", "steel")));
         assert_eq!(model.fixes[0].nodes, "hub");
+        assert!(model.contacts.iter().all(|contact| contact.law.is_none()));
     }
 }

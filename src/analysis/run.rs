@@ -140,6 +140,11 @@ fn resume(
 /// Reports what is known before anything is computed.
 fn announce(job: &Job, output: Option<&Output>, about: &About, n_earlier: usize, observer: &mut dyn Observer) {
     about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
+    for (pair, stiffness) in
+        about.pairs.iter().filter_map(|own| own.proposed_stiffness.map(|stiffness| (own, stiffness)))
+    {
+        observer.event(Event::Proposed { pair: &pair.name, stiffness });
+    }
     observer.event(Event::Planned(job.values.len()));
     if let Some(output) = output.filter(|_| n_earlier > 0) {
         observer.event(Event::Resumed { place: &output.folder.display().to_string(), n_values: n_earlier });

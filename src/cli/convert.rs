@@ -71,9 +71,9 @@ impl Convert {
         read.model.check_against(&read.mesh)?;
         let mut notes = read.deck.as_ref().map_or_else(Vec::new, |deck| {
             let units = format!("the deck's units are {}", deck.units);
-            let proposed = deck.proposed.iter().map(ToString::to_string);
-            std::iter::once(units).chain(proposed).chain(deck.notes.iter().cloned()).collect()
+            std::iter::once(units).chain(deck.notes.iter().cloned()).collect()
         });
+        notes.extend(read.model.proposed(&read.mesh).iter().map(ToString::to_string));
         match &files[..] {
             [model, mesh] => {
                 notes.extend(changed_kinds(&read));

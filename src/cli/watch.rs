@@ -2,6 +2,7 @@
 
 use crate::Result;
 use crate::analysis::{Event, Observer};
+use crate::model::ProposedStiffness;
 use crate::reduction::craig_bampton;
 use crate::results::Value;
 use crate::stability::EigenProgress;
@@ -54,6 +55,12 @@ impl Observer for Watch {
                 "{place}: an earlier run has finished {n_values} values; this run continues from there"
             )),
             Event::Warning(text) => self.progress.print(&warning_line(text, self.json)),
+            // In JSON the results have it.
+            Event::Proposed { pair, stiffness } if !self.json => {
+                let proposed = ProposedStiffness { contact: pair.to_owned(), stiffness, stick: None };
+                self.progress.print(&proposed.to_string());
+            }
+            Event::Proposed { .. } => {}
             Event::Part { name, is_made } => {
                 self.progress.print(&format!("{name}: {}", if is_made { "made before" } else { "begins" }));
             }

@@ -28,6 +28,7 @@ pub(super) fn add_pair(
     let adjusted = adjust(&mut found, contact.adjust);
     set_gaps(&mut found, contact.clearance);
     let rotation = model.sliding(contact, mesh);
+    let (normal_law, stick) = (model.normal_law(contact, mesh), model.stick(contact, mesh));
     let first = interface.points.len();
     for point in &found.points {
         interface.gap_operator.push_projection(&point.slave, &point.master);
@@ -36,17 +37,26 @@ pub(super) fn add_pair(
             places: vec![point.place],
             nodes: point.slave.nodes.clone(),
             position: point.position,
-            law: surfaces.law(point, rotation),
+            law: law::PointLaw {
+                weight: point.weight,
+                normal: point.normal,
+                gap: point.gap,
+                correction: 0.0,
+                touching: point.gap <= TOUCH * point.size,
+                separation: contact.separation,
+                normal_law,
+                tangential: tangential(point, rotation, stick),
+            },
         });
     }
     interface.pairs.push(ContactPair {
         name: contact.name.clone(),
         slave: contact.slave.clone(),
         master: contact.master.clone(),
-        law: contact.law,
+        law: normal_law,
         friction: contact.friction,
         friction_law: contact.friction_curve.clone().map_or(FrictionLaw::Constant, FrictionLaw::Curve),
-        kind: kind(rotation, contact.stick),
+        kind: kind(rotation, stick),
         separation: contact.separation,
         swept,
         points: first..interface.points.len(),
@@ -64,6 +74,15 @@ fn kind(rotation: Option<&Rotation>, stick: Option<f64>) -> TangentialKind {
         (Some(_), _) => TangentialKind::Sliding,
         (None, Some(_)) => TangentialKind::StickSlip,
         (None, None) => TangentialKind::Frictionless,
+    }
+}
+
+/// What acts in the tangent plane of a point, on which the master slides with its rotation or rests.
+fn tangential(point: &FoundPoint, rotation: Option<&Rotation>, stick: Option<f64>) -> Tangential {
+    match (rotation, stick) {
+        (Some(rotation), _) => sliding(rotation, point.position, point.normal, point.size),
+        (None, Some(stick)) => Tangential::StickSlip { stick },
+        (None, None) => Tangential::Frictionless,
     }
 }
 
@@ -108,25 +127,6 @@ impl ContactSurfaces<'_> {
                 "{shared} nodes belong to both surfaces, so nothing can move there. Mesh the two parts \
                  separately (in Gmsh: no fragment or duplicate removal across the contact)"
             ))),
-        }
-    }
-
-    /// The law of a point, on which the master slides with its rotation or rests.
-    fn law(&self, point: &FoundPoint, rotation: Option<&Rotation>) -> law::PointLaw {
-        let tangential = match (rotation, self.contact.stick) {
-            (Some(rotation), _) => sliding(rotation, point.position, point.normal, point.size),
-            (None, Some(stick)) => Tangential::StickSlip { stick },
-            (None, None) => Tangential::Frictionless,
-        };
-        law::PointLaw {
-            weight: point.weight,
-            normal: point.normal,
-            gap: point.gap,
-            correction: 0.0,
-            touching: point.gap <= TOUCH * point.size,
-            separation: self.contact.separation,
-            normal_law: self.contact.law,
-            tangential,
         }
     }
 }

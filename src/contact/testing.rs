@@ -141,7 +141,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         name: name.into(),
         slave: slave.into(),
         master: master.into(),
-        law: NormalLaw::Linear { stiffness: 2e13 },
+        law: Some(NormalLaw::Linear { stiffness: 2e13 }),
         friction: 0.5,
         friction_curve: None,
         stick: None,

@@ -30,7 +30,7 @@ use std::path::Path;
 
 pub use convert::{Converted, KnownUnits, settle};
 pub use parse::parse;
-pub use summary::{DeckSummary, ProposedStiffness};
+pub use summary::DeckSummary;
 pub use types::Deck;
 pub use write::write;
 

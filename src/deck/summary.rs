@@ -1,7 +1,5 @@
 //! What was understood of a deck, for the user to compare with what was meant.
 
-use std::fmt::{Display, Formatter};
-
 use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
@@ -31,20 +29,8 @@ pub struct DeckSummary {
     pub steps: usize,
     /// Keywords that change no result, how often they are there, and where first.
     pub ignored: Vec<IgnoredKeyword>,
-    /// Contact pairs without a stiffness, and the one proposed.
-    pub proposed: Vec<ProposedStiffness>,
     /// How something was understood, or what was chosen.
     pub notes: Vec<String>,
-}
-
-/// The stiffness of a contact pair for which a deck has none.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ProposedStiffness {
-    /// Name of the contact pair.
-    pub contact: String,
-    /// N/m3.
-    #[serde(rename = "stiffness_n_per_m3")]
-    pub stiffness: f64,
 }
 
 /// How many elements of a kind there are.
@@ -67,20 +53,9 @@ pub struct IgnoredKeyword {
     pub first: String,
 }
 
-impl Display for ProposedStiffness {
-    fn fmt(&self, out: &mut Formatter) -> std::fmt::Result {
-        write!(out, "proposed: the contact {} gets a stiffness of {:.3e} N/m3", self.contact, self.stiffness)
-    }
-}
-
 impl DeckSummary {
     /// The summary of an assembly.
-    pub fn new(
-        assembly: &Assembly,
-        units: &UnitSystem,
-        proposed: Vec<ProposedStiffness>,
-        notes: Vec<String>,
-    ) -> DeckSummary {
+    pub fn new(assembly: &Assembly, units: &UnitSystem, notes: Vec<String>) -> DeckSummary {
         let deck = assembly.deck;
         let mut elements: Vec<ElementCount> = Vec::new();
         for element in &assembly.elements {
@@ -106,7 +81,6 @@ impl DeckSummary {
             surfaces: assembly.surface_names().len(),
             steps: deck.steps.len(),
             ignored: ignored.collect(),
-            proposed,
             notes,
         }
     }
@@ -129,7 +103,6 @@ impl DeckSummary {
             let times = if *times == 1 { String::new() } else { format!(", {times} times") };
             out += &format!("  {keyword} ({first}{times})\n");
         }
-        self.proposed.iter().for_each(|own| out += &format!("{own}\n"));
         self.notes.iter().for_each(|note| out += &format!("note: {note}\n"));
         out
     }

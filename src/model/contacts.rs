@@ -51,13 +51,15 @@ fn clearance(item: &Item, raw: &keys::ContactTable, unit: f64) -> Result<Option<
     Ok(Some(value * unit))
 }
 
-fn law(item: &Item, raw: &Spanned<keys::LawTable>) -> Result<NormalLaw> {
-    let example = "Give law = { linear = 2e13 } in N/m3, or { cubic = [k1, k3] } in N/m3 and N/m5";
-    match (&raw.get_ref().linear, &raw.get_ref().cubic) {
-        (Some(k), None) => Ok(NormalLaw::Linear { stiffness: item.positive(k, "linear", example)? }),
-        (None, Some(k)) => {
-            item.each(k, |x| x > 0.0, "cubic", "must be above 0", example).map(|[k1, k3]| NormalLaw::Cubic { k1, k3 })
-        }
+/// The law that the file gives; none where the program is to propose one.
+fn law(item: &Item, raw: &Spanned<keys::Law>) -> Result<Option<NormalLaw>> {
+    let example = "Give law = { linear = 2e13 } in N/m3, { cubic = [k1, k3] } in N/m3 and N/m5, or \"auto\"";
+    let keys::Law::Given(table) = raw.get_ref() else { return Ok(None) };
+    match (&table.linear, &table.cubic) {
+        (Some(k), None) => Ok(Some(NormalLaw::Linear { stiffness: item.positive(k, "linear", example)? })),
+        (None, Some(k)) => item
+            .each(k, |x| x > 0.0, "cubic", "must be above 0", example)
+            .map(|[k1, k3]| Some(NormalLaw::Cubic { k1, k3 })),
         (None, None) => Err(item.error(&raw.span(), "the law is empty", example)),
         (Some(_), Some(_)) => Err(item.error(&raw.span(), "there are two laws", example)),
     }

@@ -3,8 +3,11 @@
 
 use super::InstabilityCriterion;
 use super::item::{Number, Vector};
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, MapAccess, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::fmt::{self, Formatter};
 use toml::Spanned;
 
 /// A string and where it stands.
@@ -38,6 +41,36 @@ pub enum Friction {
     },
     Stribeck(StribeckTable),
     Table(FrictionRows),
+}
+
+/// A contact law, or `"auto"`: the program proposes one.
+pub enum Law {
+    Auto,
+    Given(LawTable),
+}
+
+impl<'de> Deserialize<'de> for Law {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Law, D::Error> {
+        struct LawVisitor;
+
+        impl<'de> Visitor<'de> for LawVisitor {
+            type Value = Law;
+
+            fn expecting(&self, out: &mut Formatter) -> fmt::Result {
+                out.write_str("\"auto\", { linear = 2e13 } or { cubic = [2e13, 1e22] }")
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<Law, E> {
+                if text == "auto" { Ok(Law::Auto) } else { Err(E::invalid_value(Unexpected::Str(text), &self)) }
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Law, A::Error> {
+                LawTable::deserialize(MapAccessDeserializer::new(map)).map(Law::Given)
+            }
+        }
+
+        deserializer.deserialize_any(LawVisitor)
+    }
 }
 
 /// Tables of the file, in which every key must be known.
@@ -130,7 +163,7 @@ tables! {
         pub name: Option<String>,
         pub slave: String,
         pub master: String,
-        pub law: Spanned<LawTable>,
+        pub law: Spanned<Law>,
         pub friction: Spanned<Friction>,
         pub stick: Option<Number>,
         pub separation: Option<bool>,

@@ -103,7 +103,7 @@ fn sample(key: &str) -> &'static str {
         "speed" => "speed in rad/s, such as 5.0",
         "slave" => "slave = the name of the pad's surface",
         "master" => "master = the name of the surface that the slave meets",
-        "law" => "law = { linear = 2e13 } in N/m3",
+        "law" => "law = { linear = 2e13 } in N/m3, or law = \"auto\"",
         "friction" => "friction = 0.5, or 0 for none",
         "between" => "between = [\"one set\", \"other set\"]",
         "stiffness" => "stiffness = [x, y, z] in N/m",

@@ -186,13 +186,14 @@ pub struct Contact {
     pub slave: String,
     /// Physical surface that they meet.
     pub master: String,
-    /// Normal law.
-    pub law: NormalLaw,
+    /// Normal law; none where the program is to propose one ([`Model::normal_law`]).
+    pub law: Option<NormalLaw>,
     /// Coefficient of friction: the static one, or a table's first, where it depends on anything.
     pub friction: f64,
     /// How the coefficient depends on sliding speed and pressure, where it does.
     pub friction_curve: Option<FrictionCurve>,
-    /// Elastic stick, N/m3; none on pairs that slide for ever.
+    /// Elastic stick, N/m3; none on pairs that slide for ever, and where the program is to propose it
+    /// ([`Model::stick`]).
     pub stick: Option<f64>,
     /// Whether the pair may open.
     pub separation: bool,

@@ -153,8 +153,9 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
     out.line("slave", quoted(&contact.slave));
     out.line("master", quoted(&contact.master));
     match contact.law {
-        NormalLaw::Linear { stiffness } => out.line("law", format_args!("{{ linear = {} }}", number(stiffness))),
-        NormalLaw::Cubic { k1, k3 } => out.line("law", format_args!("{{ cubic = {} }}", list(&[k1, k3]))),
+        None => out.line("law", quoted("auto")),
+        Some(NormalLaw::Linear { stiffness }) => out.line("law", format_args!("{{ linear = {} }}", number(stiffness))),
+        Some(NormalLaw::Cubic { k1, k3 }) => out.line("law", format_args!("{{ cubic = {} }}", list(&[k1, k3]))),
     }
     match &contact.friction_curve {
         None => out.line("friction", number(contact.friction)),

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::model_summary::joined;
+use crate::model::ProposedStiffness;
 
 /// A rotation.
 #[derive(Serialize)]
@@ -46,6 +47,10 @@ pub struct PairRow {
     pub gap_max_m: f64,
     /// Friction coefficient.
     pub friction: f64,
+    /// Normal stiffness where the program proposes it; none where the user gives a law.
+    pub proposed_stiffness_n_per_m3: Option<f64>,
+    /// Stick where the program proposes it.
+    pub proposed_stick_n_per_m3: Option<f64>,
 }
 
 /// The reference nodes of a sliding pair, and how even their cells are.
@@ -76,7 +81,7 @@ impl RotationRow {
 }
 
 impl PairRow {
-    /// Sliding and adjustment, a line each; nothing where there is none.
+    /// Sliding, adjustment and proposals, a line each; nothing where there is none.
     pub(super) fn notes(&self) -> String {
         let name = &self.pair;
         let sliding = self.sliding_speed_m_per_s.zip(self.radius_m).map(|(speed, radius)| {
@@ -85,7 +90,11 @@ impl PairRow {
         let (n, largest) = (self.adjusted, 1e3 * self.adjusted_gap_max_m);
         let adjusted =
             (n > 0).then(|| format!("{name}: gaps of {n} points are closed, the largest {largest:.2e} mm\n"));
-        sliding.into_iter().chain(adjusted).collect()
+        let proposed = self.proposed_stiffness_n_per_m3.map(|stiffness| {
+            let (contact, stick) = (name.clone(), self.proposed_stick_n_per_m3);
+            format!("{}\n", ProposedStiffness { contact, stiffness, stick })
+        });
+        sliding.into_iter().chain(adjusted).chain(proposed).collect()
     }
 }
 

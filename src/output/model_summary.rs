@@ -269,6 +269,8 @@ pub(super) mod tests {
             gap_min_m: 0.0,
             gap_max_m: 1e-6,
             friction: 0.4,
+            proposed_stiffness_n_per_m3: None,
+            proposed_stick_n_per_m3: None,
         };
         let layout = LayoutRow {
             pair: "disc / pad".into(),

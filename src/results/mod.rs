@@ -150,7 +150,7 @@ pub struct Pair {
     /// Contact points.
     #[serde(rename = "points")]
     pub n_points: usize,
-    /// Its normal stiffness, N/m3, where a deck has none and the program proposed it.
+    /// Its normal stiffness, N/m3, where the user gives none and the program proposes it.
     #[serde(rename = "proposed_stiffness_n_per_m3")]
     pub proposed_stiffness: Option<f64>,
 }

@@ -48,8 +48,6 @@ impl ModelFiles {
 
     fn of_deck(converted: Converted, is_of_deck: impl Fn(&model::Contact) -> bool) -> ModelFiles {
         let Converted { mut model, mesh, mut summary } = converted;
-        let is_used = |name: &str| model.contacts.iter().any(|own| own.name == name && is_of_deck(own));
-        summary.proposed.retain(|own| is_used(&own.contact));
         summary.notes.extend(deck::settle(&mut model, &mesh, is_of_deck));
         ModelFiles { model, mesh, deck: Some(summary) }
     }

@@ -348,14 +348,12 @@ impl FullModel {
         })
     }
 
-    /// The contact pairs, with the stiffness that was proposed for those of a deck.
+    /// The contact pairs, with the stiffness that the program proposes for those without one.
     fn pairs(&self) -> Vec<Pair> {
-        let proposed = |name: &str| {
-            let all = self.deck.iter().flat_map(|deck| &deck.proposed);
-            all.into_iter().find(|own| own.contact == name).map(|own| own.stiffness)
-        };
+        let proposed = self.model.proposed(&self.mesh);
+        let of = |name: &str| proposed.iter().find(|own| own.contact == name).map(|own| own.stiffness);
         let mut pairs = pairs(&self.interface);
-        pairs.iter_mut().for_each(|pair| pair.proposed_stiffness = proposed(&pair.name));
+        pairs.iter_mut().for_each(|pair| pair.proposed_stiffness = of(&pair.name));
         pairs
     }
 

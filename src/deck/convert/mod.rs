@@ -19,7 +19,6 @@ mod history;
 mod joints;
 mod materials;
 mod pairs;
-mod penalty;
 mod references;
 mod regions;
 mod supports;
@@ -28,7 +27,7 @@ mod tests;
 mod ties;
 
 use super::assembly::Assembly;
-use super::summary::{DeckSummary, ProposedStiffness};
+use super::summary::DeckSummary;
 use super::types::Deck;
 use crate::Result;
 use crate::mesh::Mesh;
@@ -38,7 +37,6 @@ use equations::Axes;
 use regions::Regions;
 
 pub use pairs::settle;
-pub use penalty::STIFFNESS_FACTOR;
 
 /// What is known of a deck's units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -71,7 +69,6 @@ struct Conversion<'d> {
     numbers: Vec<u32>,
     /// Local axes of the mesh's nodes that have them.
     axes: HashMap<u32, Axes>,
-    proposed: Vec<ProposedStiffness>,
     notes: Vec<String>,
 }
 
@@ -90,11 +87,10 @@ pub fn convert(deck: &Deck, known: KnownUnits) -> Result<Converted> {
     let regions = Regions::new(mesh);
     let used = (0..assembly.numbers.len()).filter(|&node| bodies.node_of[node] != bodies::UNUSED);
     let numbers = used.map(|node| assembly.numbers[node]).collect();
-    let (axes, proposed) = Default::default();
-    let mut conversion = Conversion { deck, assembly, units, bodies, regions, numbers, axes, proposed, notes };
+    let mut conversion = Conversion { deck, assembly, units, bodies, regions, numbers, axes: HashMap::new(), notes };
     let model = conversion.model()?;
-    let Conversion { assembly, regions, proposed, notes, .. } = conversion;
-    let summary = DeckSummary::new(&assembly, &units, proposed, notes);
+    let Conversion { assembly, regions, notes, .. } = conversion;
+    let summary = DeckSummary::new(&assembly, &units, notes);
     Ok(Converted { model, mesh: regions.mesh, summary })
 }
 

@@ -5,7 +5,6 @@ use std::fmt::Display;
 use super::Conversion;
 use super::history::State;
 use crate::Result;
-use crate::deck::summary::ProposedStiffness;
 use crate::deck::types::{Behaviour, ContactPair, Dependence, Friction, Interaction};
 use crate::mesh::Mesh;
 use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay};
@@ -26,12 +25,12 @@ impl<'d> Conversion<'d> {
             if contacts.iter().any(|other| other.name == name) {
                 return Err(self.assembly.error(pair.place, format_args!("the contact pair {name} is there already")));
             }
-            let stiffness = self.stiffness(interaction, &slave, &master)?;
+            let stiffness = self.stiffness(interaction)?;
             contacts.push(Contact {
                 name,
                 slave,
                 master,
-                law: NormalLaw::Linear { stiffness },
+                law: stiffness.map(|stiffness| NormalLaw::Linear { stiffness }),
                 friction: 0.0,
                 friction_curve: None,
                 stick: None,
@@ -65,23 +64,19 @@ impl<'d> Conversion<'d> {
         })
     }
 
-    /// The stiffness of the normal law, N/m3.
-    fn stiffness(&mut self, interaction: &Interaction, slave: &str, master: &str) -> Result<f64> {
+    /// The stiffness of the normal law, N/m3; none where the deck has none.
+    fn stiffness(&self, interaction: &Interaction) -> Result<Option<f64>> {
         let unit = self.units.foundation();
         match &interaction.behaviour {
-            Behaviour::Linear(stiffness, _) => Ok(stiffness * unit),
+            Behaviour::Linear(stiffness, _) => Ok(Some(stiffness * unit)),
             Behaviour::Table(rows, place) => match slope(rows) {
-                Some(slope) => Ok(slope * unit),
+                Some(slope) => Ok(Some(slope * unit)),
                 None => {
                     let what = "a table that is no straight line through the origin is not supported. Give LINEAR";
                     Err(self.assembly.error(*place, what))
                 }
             },
-            Behaviour::Hard | Behaviour::Tied(_) => {
-                let (contact, stiffness) = (format!("{slave} / {master}"), self.proposed_stiffness(slave, master));
-                self.proposed.push(ProposedStiffness { contact, stiffness });
-                Ok(stiffness)
-            }
+            Behaviour::Hard | Behaviour::Tied(_) => Ok(None),
         }
     }
 
@@ -160,12 +155,12 @@ pub fn settle(model: &mut Model, mesh: &Mesh, is_of_deck: impl Fn(&Contact) -> b
             std::mem::swap(&mut contact.slave, &mut contact.master);
             notes.push(format!("slave and master of {} are swapped: the turning side is the master", contact.name));
         }
-        let (NormalLaw::Linear { stiffness } | NormalLaw::Cubic { k1: stiffness, .. }) = contact.law;
         if model.sliding(&contact, mesh).is_some() {
             contact.stick = None;
-        } else if contact.stick.is_none() && contact.friction > 0.0 {
-            contact.stick = Some(0.5 * stiffness);
-            notes.push(format!("{} sticks with {:.3e} N/m3, half of its stiffness", contact.name, 0.5 * stiffness));
+        } else if contact.law.is_some() && contact.stick.is_none() && contact.friction > 0.0 {
+            let stick = model.half_stiffness(&contact, mesh);
+            contact.stick = Some(stick);
+            notes.push(format!("{} sticks with {stick:.3e} N/m3, half of its stiffness", contact.name));
         }
         model.contacts[i] = contact;
     }

@@ -59,11 +59,12 @@ impl DeckWriter<'_> {
         let separation = if contact.separation { "" } else { ",NO SEPARATION" };
         let mut out = format!("*SURFACE INTERACTION,NAME=LAW{}\n", i + 1);
         match contact.law {
-            NormalLaw::Linear { stiffness } => {
+            None => out += &format!("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=HARD{separation}\n"),
+            Some(NormalLaw::Linear { stiffness }) => {
                 let stiffness = number(stiffness / unit);
                 out += &format!("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR{separation}\n{stiffness}\n");
             }
-            NormalLaw::Cubic { k1, k3 } => {
+            Some(NormalLaw::Cubic { k1, k3 }) => {
                 out += &format!("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR{separation}\n0.0,0.0\n");
                 for d in (1..=10).map(|i| f64::from(i) * MICROMETRE) {
                     let pressure = number((k1 * d + k3 * d.powi(3)) / self.units.stress());

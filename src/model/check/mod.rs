@@ -172,19 +172,13 @@ impl ModelCheck<'_> {
                 master.part
             ),
             (None, Some(_)) => return,
-            _ if contact.stick.is_none() && self.has_friction(contact) => format!(
+            _ if self.model.stick(contact, self.mesh).is_none() && self.model.has_friction(contact) => format!(
                 "the pair does not slide and has friction, but no stick ({item}). \
                  Add stick in N/m3, such as half the normal stiffness, or set friction = 0"
             ),
             _ => return,
         };
         self.complain(place, message);
-    }
-
-    /// Whether a contact has friction, in the file or in the sweep.
-    fn has_friction(&self, contact: &Contact) -> bool {
-        let swept = self.model.swept.contains(&contact.name);
-        contact.friction > 0.0 || (swept && self.model.frictions.iter().any(|&friction| friction > 0.0))
     }
 
     /// A sweep changes something.

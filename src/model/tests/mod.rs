@@ -84,7 +84,8 @@ fn the_documented_example_parses_and_uses_every_kind() {
     assert_eq!(model.swept, ["disc / inner pad", "disc / outer pad"]);
     let reduction = model.reduction.unwrap();
     assert_eq!((reduction.contacts, reduction.band), (104, [0.0, 12_000.0]));
-    assert_eq!(model.contacts[1].law, NormalLaw::Cubic { k1: 2e13, k3: 1e22 });
+    assert_eq!(model.contacts[1].law, Some(NormalLaw::Cubic { k1: 2e13, k3: 1e22 }));
+    assert_eq!(model.contacts[2].law, None);
     assert_eq!(model.loads[1].kind, LoadKind::Pressure(4e6));
     let at = [-90.0, 60.0, 25.0].map(|x: f64| x * 1e-3);
     assert_eq!(

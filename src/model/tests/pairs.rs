@@ -37,6 +37,10 @@ fn contacts_are_checked() {
     wrong("law = {}", "the law is empty (contact \"pair\")");
     wrong("law = { linear = 1, cubic = [1, 1] }", "there are two laws (contact \"pair\")");
     wrong("law = { linar = 1 }", "unknown key \"linar\" ([[contact]]). Did you mean \"linear\"?");
+    let auto = "\"auto\", { linear = 2e13 } or { cubic = [2e13, 1e22] }";
+    let advice = "([[contact]]). Correct it; squeal example explains every key";
+    wrong("law = \"aut\"", &format!("invalid value: string \"aut\", expected {auto} {advice}"));
+    wrong("law = 2e13", &format!("invalid type: floating point `20000000000000.0`, expected {auto} {advice}"));
     wrong("stick = 0\nlaw = { linear = 1 }", "stick must be above 0, not 0 (contact \"pair\")");
     for friction in ["-0.1", "2.5", "inf"] {
         let said =
