@@ -6,10 +6,12 @@ use clap::Args;
 
 use crate::Result;
 use crate::analysis::{matrix_summary, model_summary};
+use crate::native::Comm;
 use crate::output::contact_cells_vtu::ContactCells;
 use crate::output::files::write_whole;
+use crate::output::model_vtu::ModelPicture;
 use crate::output::overwrite::may_write_file;
-use crate::output::vtu;
+use crate::output::vtu::{self, Grid};
 use crate::structure::FullModel;
 
 use super::{Shell, values};
@@ -23,8 +25,9 @@ pub struct Check {
     /// Show how this number of reference pairs would be spread over the sliding contacts
     #[arg(long, value_name = "N", value_parser = values::count)]
     contacts: Option<usize>,
-    /// A VTU file that shows the cells of the reference nodes (with --contacts)
-    #[arg(short, long, value_name = "FILE", requires = "contacts")]
+    /// A VTU file that shows the model: parts, contact surfaces, constrained nodes, loads and axes; with --contacts the
+    /// cells of the reference nodes
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace an earlier VTU file
     #[arg(long, requires = "output")]
@@ -44,7 +47,7 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
         shell.print(&std::mem::take(&mut text), &())?;
     }
     if let Some(file) = output {
-        comm.agree(if comm.is_root() { draw(file, &full) } else { Ok(()) })?;
+        draw(comm, file, &full, contacts.is_some())?;
     }
     shell.warn(&summary.warnings);
     full.require_constrained(comm)?;
@@ -54,8 +57,14 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     shell.print(&text, &summary)
 }
 
-/// Writes the cells of the reference nodes.
-fn draw(file: &Path, full: &FullModel) -> Result<()> {
-    let picture = ContactCells::new(&full.mesh, &full.interface);
-    write_whole(file, |mut out| picture.grid().write(&mut out))
+/// Writes the picture of the model, or that of the cells of the reference nodes. Collective.
+fn draw(comm: &Comm, file: &Path, full: &FullModel, shows_cells: bool) -> Result<()> {
+    let write = |grid: Grid| match comm.is_root() {
+        true => write_whole(file, |mut out| grid.write(&mut out)),
+        false => Ok(()),
+    };
+    comm.agree(match shows_cells {
+        true => write(ContactCells::new(&full.mesh, &full.interface).grid()),
+        false => write(ModelPicture::new(comm, full).grid()),
+    })
 }

@@ -15,6 +15,7 @@ pub mod folder;
 pub mod free_modes;
 pub mod json;
 pub mod model_summary;
+pub mod model_vtu;
 pub mod overwrite;
 pub mod results_folder;
 pub mod study;

@@ -22,6 +22,8 @@ pub enum Cells<'a> {
     Facets(&'a [Facet]),
     /// 3-node triangles.
     Patches(&'a [[u32; 3]]),
+    /// Points, lines and facets, by their number of nodes: 1, 2, or that of a [`FacetShape`].
+    Lists(&'a [Vec<u32>]),
 }
 
 /// Values of a named array.
@@ -74,6 +76,15 @@ const fn facet_type(shape: FacetShape) -> u8 {
     }
 }
 
+/// VTK's number of the type of a point, a line or a facet with so many nodes.
+fn type_of(n_nodes: usize) -> u8 {
+    match n_nodes {
+        1 => 1,
+        2 => 3,
+        n => facet_type(FacetShape::of(n)),
+    }
+}
+
 /// Cells as VTK has them: the type of each, all their nodes, and where each one's end.
 #[derive(Default)]
 struct CellArrays {
@@ -95,6 +106,7 @@ impl CellArrays {
             Cells::Patches(list) => {
                 list.iter().for_each(|nodes| arrays.push(facet_type(FacetShape::Triangle3), nodes));
             }
+            Cells::Lists(list) => list.iter().for_each(|nodes| arrays.push(type_of(nodes.len()), nodes)),
         }
         arrays
     }
@@ -238,6 +250,8 @@ mod tests {
         elements.push(ElementKind::C3D8I, 0, &[0, 1, 2, 3, 4, 5, 6, 7]);
         let arrays = CellArrays::new(&Cells::Elements(&elements));
         assert_eq!((arrays.types, arrays.ends), (vec![24, 12], vec![10, 18]));
+        let lists = CellArrays::new(&Cells::Lists(&[vec![0], vec![0, 1], vec![0, 1, 2]]));
+        assert_eq!((lists.types, lists.ends), (vec![1, 3, 5], vec![1, 3, 6]));
         let cells = Cells::Elements(&elements);
         let grid = Grid { points: &points, cells, point_data: vec![], cell_data: vec![] };
         let mut out = Vec::new();

@@ -145,6 +145,30 @@ fn a_reduction_that_cannot_be_made_writes_nothing() {
 }
 
 #[test]
+fn check_draws_the_model() {
+    let place = Place::blocks();
+    let said = place.run(&["check", "brake.toml", "-o", "model.vtu"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let picture = place.read("model.vtu");
+    let xml = roxmltree::Document::parse(&picture).unwrap();
+    let arrays: Vec<&str> = xml.descendants().filter_map(|node| node.attribute("Name")).collect();
+    let names = ["force_n", "constrained", "kind", "part", "pair", "normal"];
+    assert!(names.iter().all(|name| arrays.contains(name)), "{arrays:?}");
+    assert_refused(&place.run(&["check", "brake.toml", "-o", "model.vtu"]), &["model.vtu exists. Use --force"]);
+    assert_refused(
+        &place.run(&["check", "brake.toml", "-o", "blocks.msh", "--force"]),
+        &["is not a VTU file of squeal"],
+    );
+    let two = place.run_on(2, &["check", "brake.toml", "-o", "two.vtu"]);
+    assert_eq!(two.code, 0, "{}", two.err);
+    let n_cells = |file: &str| {
+        let text = place.read(file);
+        text[text.find("NumberOfCells").unwrap()..].lines().next().unwrap().to_owned()
+    };
+    assert_eq!(n_cells("two.vtu"), n_cells("model.vtu"));
+}
+
+#[test]
 fn check_shows_and_draws_a_layout() {
     let place = Place::blocks();
     let finished = place.run(&["check", "brake.toml", "--contacts", "4", "--output", "cells.vtu"]);
