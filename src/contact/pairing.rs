@@ -6,7 +6,7 @@ use super::motion::sliding;
 use super::search::{Found, FoundPoint, Options, Team, find};
 use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Surface};
-use crate::model::{Contact, Model, Rotation};
+use crate::model::{Contact, Model, NormalLaw, Rotation};
 use std::collections::BTreeSet;
 
 /// A point touches where its gap is below this fraction of the slave's facet size. It decides only where the settling
@@ -27,8 +27,12 @@ pub(super) fn add_pair(
     let mut found = surfaces.search()?;
     let adjusted = adjust(&mut found, contact.adjust);
     set_gaps(&mut found, contact.clearance);
-    let rotation = model.sliding(contact, mesh);
-    let (normal_law, stick) = (model.normal_law(contact, mesh), model.stick(contact, mesh));
+    let law = PairLaw {
+        rotation: model.sliding(contact, mesh),
+        normal_law: model.normal_law(contact, mesh),
+        stick: model.stick(contact, mesh),
+        separation: contact.separation,
+    };
     let first = interface.points.len();
     for point in &found.points {
         interface.gap_operator.push_projection(&point.slave, &point.master);
@@ -37,26 +41,17 @@ pub(super) fn add_pair(
             places: vec![point.place],
             nodes: point.slave.nodes.clone(),
             position: point.position,
-            law: law::PointLaw {
-                weight: point.weight,
-                normal: point.normal,
-                gap: point.gap,
-                correction: 0.0,
-                touching: point.gap <= TOUCH * point.size,
-                separation: contact.separation,
-                normal_law,
-                tangential: tangential(point, rotation, stick),
-            },
+            law: law.at(point),
         });
     }
     interface.pairs.push(ContactPair {
         name: contact.name.clone(),
         slave: contact.slave.clone(),
         master: contact.master.clone(),
-        law: normal_law,
+        law: law.normal_law,
         friction: contact.friction,
         friction_law: contact.friction_curve.clone().map_or(FrictionLaw::Constant, FrictionLaw::Curve),
-        kind: kind(rotation, stick),
+        kind: law.kind(),
         separation: contact.separation,
         swept,
         points: first..interface.points.len(),
@@ -69,20 +64,41 @@ pub(super) fn add_pair(
     Ok(())
 }
 
-fn kind(rotation: Option<&Rotation>, stick: Option<f64>) -> TangentialKind {
-    match (rotation, stick) {
-        (Some(_), _) => TangentialKind::Sliding,
-        (None, Some(_)) => TangentialKind::StickSlip,
-        (None, None) => TangentialKind::Frictionless,
-    }
+/// What acts at all points of a pair.
+struct PairLaw<'a> {
+    /// That of the master, where it slides for ever.
+    rotation: Option<&'a Rotation>,
+    normal_law: NormalLaw,
+    stick: Option<f64>,
+    separation: bool,
 }
 
-/// What acts in the tangent plane of a point, on which the master slides with its rotation or rests.
-fn tangential(point: &FoundPoint, rotation: Option<&Rotation>, stick: Option<f64>) -> Tangential {
-    match (rotation, stick) {
-        (Some(rotation), _) => sliding(rotation, point.position, point.normal, point.size),
-        (None, Some(stick)) => Tangential::StickSlip { stick },
-        (None, None) => Tangential::Frictionless,
+impl PairLaw<'_> {
+    fn kind(&self) -> TangentialKind {
+        match (self.rotation, self.stick) {
+            (Some(_), _) => TangentialKind::Sliding,
+            (None, Some(_)) => TangentialKind::StickSlip,
+            (None, None) => TangentialKind::Frictionless,
+        }
+    }
+
+    /// The law of a point, on which the master slides with its rotation or rests.
+    fn at(&self, point: &FoundPoint) -> law::PointLaw {
+        let tangential = match (self.rotation, self.stick) {
+            (Some(rotation), _) => sliding(rotation, point.position, point.normal, point.size),
+            (None, Some(stick)) => Tangential::StickSlip { stick },
+            (None, None) => Tangential::Frictionless,
+        };
+        law::PointLaw {
+            weight: point.weight,
+            normal: point.normal,
+            gap: point.gap,
+            correction: 0.0,
+            touching: point.gap <= TOUCH * point.size,
+            separation: self.separation,
+            normal_law: self.normal_law,
+            tangential,
+        }
     }
 }
 

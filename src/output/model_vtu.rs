@@ -214,12 +214,9 @@ mod tests {
     #[test]
     fn an_axis_passes_through_the_part_in_the_sense_of_its_rotation() {
         let mesh = square();
-        let boundary = Boundary {
-            nodes: mesh.nodes.clone(),
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            part: vec![0; 2],
-            ..Boundary::default()
-        };
+        let mut boundary = Boundary::default();
+        (boundary.nodes, boundary.triangles) = (mesh.nodes.clone(), vec![[0, 1, 2], [0, 2, 3]]);
+        boundary.part = vec![0; 2];
         let (axis, through) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
         let rotation = Rotation { part: "disc".into(), axis, through, speed: -5.0, place: Place::default() };
         let mut picture = ModelPicture::default();
