@@ -10,6 +10,9 @@ use crate::Result;
 /// Friction above this is taken for a mistake.
 pub const LARGEST_FRICTION: f64 = 2.0;
 
+/// The coefficient of rough surfaces, which never slip where they touch.
+pub const ROUGH: f64 = 1e9;
+
 /// A coefficient as a function of the sliding speed v (m/s) and the pressure q (Pa), divided by the friction value
 /// `mu_0` of its contact: `mu = mu_0 phi(v, q)`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -62,6 +65,7 @@ const VARIABLES: [&str; 3] = ["speed", "pressure", "temperature"];
 pub fn contact_friction(item: &Item, raw: &Spanned<keys::Friction>) -> Result<(f64, Option<FrictionCurve>)> {
     match raw.get_ref() {
         keys::Friction::Constant(mu) => Ok((friction(item, &Spanned::new(raw.span(), *mu))?, None)),
+        keys::Friction::Word(keys::FrictionWord::Rough) => Ok((ROUGH, None)),
         &keys::Friction::Decay { at_rest, kinetic, decay } => {
             let holds = is_positive(at_rest) && is_coefficient(kinetic) && decay > 0.0 && decay.is_finite();
             let what = format_args!("friction has static = {at_rest}, kinetic = {kinetic}, decay = {decay}");

@@ -28,11 +28,12 @@ pub enum OneOrThree {
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "expected a number, { static = 0.6, kinetic = 0.4, decay = 0.5 }, the same with stribeck_speed = 0.1 in \
+    expecting = "expected a number, \"rough\", { static = 0.6, kinetic = 0.4, decay = 0.5 }, the same with stribeck_speed = 0.1 in \
                  place of decay, or { by = [\"speed\"], table = [[0.6, 0], [0.4, 2]] }"
 )]
 pub enum Friction {
     Constant(f64),
+    Word(FrictionWord),
     Decay {
         #[serde(rename = "static")]
         at_rest: f64,
@@ -41,6 +42,13 @@ pub enum Friction {
     },
     Stribeck(StribeckTable),
     Table(FrictionRows),
+}
+
+/// Friction without a number.
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FrictionWord {
+    Rough,
 }
 
 /// A contact law, or `"auto"`: the program proposes one.

@@ -48,7 +48,7 @@ mod write;
 
 pub use analysis::spaced;
 pub use criterion::InstabilityCriterion;
-pub use friction::LARGEST_FRICTION;
+pub use friction::{LARGEST_FRICTION, ROUGH};
 pub use joints::PENALTY;
 pub use place::Place;
 pub use proposed::ProposedStiffness;

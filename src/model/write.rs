@@ -10,7 +10,7 @@ use nalgebra::Matrix6;
 use super::elasticity::{from_compliance, isotropic_compliance};
 use super::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use super::read::UNITS;
-use super::{Contact, InstabilityCriterion, Material, Model, NormalLaw};
+use super::{Contact, InstabilityCriterion, Material, Model, NormalLaw, ROUGH};
 use loads::loads;
 
 /// Elasticities are isotropic to this relative difference.
@@ -158,6 +158,7 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
         Some(NormalLaw::Cubic { k1, k3 }) => out.line("law", format_args!("{{ cubic = {} }}", list(&[k1, k3]))),
     }
     match &contact.friction_curve {
+        None if contact.friction == ROUGH => out.line("friction", quoted("rough")),
         None => out.line("friction", number(contact.friction)),
         Some(curve) => out.line("friction", friction_curve(curve, contact.friction)),
     }

@@ -6,6 +6,7 @@ pub use super::contact_rows::{LayoutRow, PairRow, RotationRow};
 
 use super::text::{aligned, paragraph};
 use crate::deck::DeckSummary;
+use crate::model::ROUGH;
 
 /// A model, read and checked.
 #[derive(Serialize)]
@@ -203,6 +204,7 @@ impl ModelSummary {
         let row = |row: &PairRow| {
             let PairRow { pair, kind, points, dropped, touching, friction, .. } = row;
             let (area, low, high) = (1e6 * row.area_m2, 1e3 * row.gap_min_m, 1e3 * row.gap_max_m);
+            let friction = if *friction == ROUGH { "rough".to_owned() } else { friction.to_string() };
             format!("{pair}\t{kind}\t{points}\t{dropped}\t{touching}\t{area:.2}\t{low:.2e} {high:.2e}\t{friction}")
         };
         let heading = "pair\tkind\tpoints\tdropped\ttouching\tarea mm2\tgap mm (min max; below 0: overlap)\tfriction";

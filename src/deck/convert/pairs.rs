@@ -8,10 +8,13 @@ use crate::Result;
 use crate::deck::types::{Behaviour, ContactPair, Dependence, Friction, Interaction};
 use crate::mesh::Mesh;
 use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay};
-use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, names};
+use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, ROUGH, names};
 
 /// Tables of a contact law are straight to this relative difference.
 const STRAIGHT: f64 = 1e-6;
+
+/// Decks say by coefficients from this on that surfaces are rough.
+const ROUGH_FROM: f64 = 1e3;
 
 impl<'d> Conversion<'d> {
     /// The contact pairs with their normal laws.
@@ -85,12 +88,14 @@ impl<'d> Conversion<'d> {
         for (contact, pair) in contacts.iter_mut().zip(self.contact_pairs()?) {
             let own = self.interaction(pair)?.friction.as_ref();
             let Some(friction) = state.friction(&pair.interaction).or(own) else { continue };
-            if friction.coefficient > LARGEST_FRICTION {
+            let is_rough = friction.coefficient >= ROUGH_FROM && matches!(friction.dependence, Dependence::None);
+            if !is_rough && friction.coefficient > LARGEST_FRICTION {
                 let what =
                     format_args!("a friction coefficient of {} is above {LARGEST_FRICTION}", friction.coefficient);
                 return Err(self.assembly.error(friction.place, what));
             }
-            (contact.friction, contact.friction_curve) = self.friction(friction)?;
+            (contact.friction, contact.friction_curve) =
+                if is_rough { (ROUGH, None) } else { self.friction(friction)? };
             contact.stick =
                 friction.stick.or(own.and_then(|own| own.stick)).map(|stick| stick * self.units.foundation());
         }

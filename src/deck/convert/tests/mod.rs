@@ -260,6 +260,20 @@ fn friction_that_depends_on_slip_rate_and_pressure_comes_in_si_units() {
 }
 
 #[test]
+fn rough_surfaces_and_coefficients_from_a_thousand_on_never_slip() {
+    let friction = |text: &str| {
+        let still = good().replace("*MOTION, ROTATION\nTURNING, 5., 0,0,0, 0,0,1\n", "");
+        read(&still.replace("*FRICTION\n0.4\n", text))
+            .map(|own| (own.model.contacts[0].friction, own.model.contacts[0].stick))
+    };
+    let half = Some(1e13);
+    assert_eq!(friction("*FRICTION, ROUGH\n").unwrap(), (crate::model::ROUGH, half));
+    assert_eq!(friction("*FRICTION\n1000.\n").unwrap(), (crate::model::ROUGH, half));
+    assert_eq!(friction("*FRICTION\n1.9\n").unwrap(), (1.9, half));
+    assert!(friction("*FRICTION\n999.\n").unwrap_err().contains("a friction coefficient of 999 is above 2"));
+}
+
+#[test]
 fn pressures_act_on_faces_and_surfaces() {
     let loads = |new: &str| {
         let Converted { model, mesh, .. } = with("*CLOAD\nBACK, 3, -25.\n", new).unwrap();
