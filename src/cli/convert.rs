@@ -67,7 +67,7 @@ impl Convert {
             }
         }
         files.iter().try_for_each(|file| may_write_file(file, &KIND, self.force))?;
-        let read = ModelFiles::read(&self.input, self.units.filter(|_| is_deck(&self.input)))?;
+        let mut read = ModelFiles::read(&self.input, self.units.filter(|_| is_deck(&self.input)))?;
         read.model.check_against(&read.mesh)?;
         let mut notes = read.deck.as_ref().map_or_else(Vec::new, |deck| {
             let units = format!("the deck's units are {}", deck.units);
@@ -76,7 +76,7 @@ impl Convert {
         notes.extend(read.model.proposed(&read.mesh).iter().map(ToString::to_string));
         match &files[..] {
             [model, mesh] => {
-                notes.extend(changed_kinds(&read));
+                notes.extend(name_kinds(&mut read));
                 write_model(&read, model, mesh)?;
             }
             _ => notes.extend(self.write_deck(&read)?),
@@ -95,14 +95,29 @@ impl Convert {
     }
 }
 
-/// Gmsh's meshes know shapes alone, so that some kinds of element become the usual one of their shape.
-fn changed_kinds(read: &ModelFiles) -> Vec<String> {
-    let kinds: BTreeSet<ElementKind> = read.mesh.elements.iter().map(|element| element.kind).collect();
-    let usual = |kind: ElementKind| ElementKind::default_for(kind.shape());
-    let changed = kinds.into_iter().filter(|kind| usual(*kind) != *kind);
-    let note =
-        |kind: ElementKind| format!("elements {} become {}: a Gmsh mesh has no kinds", kind.name(), usual(kind).name());
-    changed.map(note).collect()
+/// Gmsh's meshes know shapes alone: the parts name the kinds that are not the usual ones of their shapes. Gives what is
+/// lost where a part has two kinds of one shape.
+fn name_kinds(read: &mut ModelFiles) -> Vec<String> {
+    let mut lost = Vec::new();
+    for (index, name) in read.mesh.parts.iter().enumerate() {
+        let own = read.mesh.elements.iter().filter(|element| element.part as usize == index);
+        let kinds: BTreeSet<ElementKind> = own.map(|element| element.kind).collect();
+        let unusual = kinds.iter().filter(|kind| ElementKind::default_for(kind.shape()) != **kind);
+        let Some(part) = read.model.parts.iter_mut().find(|part| part.name == *name) else { continue };
+        part.elements.clear();
+        for &kind in unusual {
+            match kinds.iter().find(|other| **other != kind && other.shape() == kind.shape()) {
+                None => part.elements.push(kind),
+                Some(other) => lost.push(format!(
+                    "elements {} and {} of {name} become {}: a part has one kind for each shape",
+                    kind.name(),
+                    other.name(),
+                    ElementKind::default_for(kind.shape()).name()
+                )),
+            }
+        }
+    }
+    lost
 }
 
 fn write_model(read: &ModelFiles, model: &Path, mesh: &Path) -> Result<()> {

@@ -86,6 +86,13 @@ impl ElementList {
         (&self.nodes, &self.offsets)
     }
 
+    /// Gives the elements of a part that have the shape of a kind this kind; gives their number.
+    pub fn change_kind(&mut self, part: u32, kind: ElementKind) -> usize {
+        let all = self.kinds.iter_mut().zip(&self.parts);
+        let own = all.filter(|(own, of)| **of == part && own.shape() == kind.shape());
+        own.map(|(own, _)| *own = kind).count()
+    }
+
     /// Gives the nodes other numbers.
     pub fn renumber(&mut self, number: impl Fn(u32) -> u32) {
         self.nodes.iter_mut().for_each(|n| *n = number(*n));
@@ -207,6 +214,17 @@ mod tests {
         list.renumber(|n| n + 10);
         assert_eq!(list.get(0).nodes, [13, 11, 14, 10]);
         assert_eq!(list.iter().collect::<ElementList>(), list);
+    }
+
+    #[test]
+    fn the_kind_of_a_parts_elements_of_one_shape_changes() {
+        let mut list = ElementList::default();
+        list.push(ElementKind::C3D4, 1, &[3, 1, 4, 0]);
+        list.push(ElementKind::C3D8I, 1, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        list.push(ElementKind::C3D8I, 0, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!((list.change_kind(1, ElementKind::C3D8R), list.change_kind(0, ElementKind::C3D20)), (1, 0));
+        let kinds: Vec<ElementKind> = list.iter().map(|element| element.kind).collect();
+        assert_eq!(kinds, [ElementKind::C3D4, ElementKind::C3D8R, ElementKind::C3D8I]);
     }
 
     #[test]

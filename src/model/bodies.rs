@@ -5,6 +5,7 @@ use super::keys::{self, Text};
 use super::source::{ModelText, Span};
 use super::{Fix, Material, Part, Rayleigh, Rotation, names};
 use crate::Result;
+use crate::element::ElementKind;
 use std::collections::HashSet;
 use toml::Spanned;
 
@@ -21,8 +22,22 @@ fn part(source: ModelText, name: &Text, raw: &keys::PartTable, materials: &[Mate
         name: name.get_ref().clone(),
         material: item.find("material", &raw.material, materials, |material| &material.name)?.clone(),
         rayleigh: rayleigh(&item, &raw.rayleigh)?,
+        elements: elements(&item, &raw.elements)?,
         place: item.place(),
     })
+}
+
+/// Kinds of element of different shapes.
+fn elements(item: &Item, raw: &[Text]) -> Result<Vec<ElementKind>> {
+    let mut kinds: Vec<ElementKind> = Vec::new();
+    for name in raw {
+        let kind = *item.find("kind of element", name, &ElementKind::ALL, |kind| kind.name())?;
+        let same = kinds.iter().find(|other| other.shape() == kind.shape());
+        let what = format_args!("{} has the shape of {}", kind.name(), same.map_or("", |other| other.name()));
+        item.require_at(&name.span(), same.is_none(), what, "Keep one kind for each shape")?;
+        kinds.push(kind);
+    }
+    Ok(kinds)
 }
 
 fn rayleigh(item: &Item, raw: &keys::RayleighTable) -> Result<Rayleigh> {

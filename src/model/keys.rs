@@ -146,6 +146,8 @@ tables! {
         pub material: Text,
         #[serde(default)]
         pub rayleigh: RayleighTable,
+        #[serde(default)]
+        pub elements: Vec<Text>,
     }
 
     #[derive(Default)]

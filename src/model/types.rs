@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::elasticity::{is_positive_semidefinite, youngs};
 use super::friction::FrictionCurve;
 use super::{InstabilityCriterion, Place, names};
+use crate::element::ElementKind;
 use crate::{Error, Result};
 
 /// Everything the user states about a brake, in SI units. Names of the mesh are still names here.
@@ -118,6 +119,8 @@ pub struct Part {
     pub material: Material,
     /// Mass- and stiffness-proportional damping, `C = alpha M + beta K` (1/s, s).
     pub rayleigh: Rayleigh,
+    /// Kinds of its elements, one for each shape at most; elements of other shapes are of the kind that the mesh has.
+    pub elements: Vec<ElementKind>,
     /// Where it stands.
     pub place: Place,
 }

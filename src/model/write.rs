@@ -111,6 +111,10 @@ fn parts(out: &mut Text, model: &Model) {
         if alpha != 0.0 || beta != 0.0 {
             out.line("rayleigh", format_args!("{{ alpha = {}, beta = {} }}", number(alpha), number(beta)));
         }
+        let kinds: Vec<String> = part.elements.iter().map(|kind| quoted(kind.name()).to_string()).collect();
+        if !kinds.is_empty() {
+            out.line("elements", format_args!("[{}]", kinds.join(", ")));
+        }
     }
 }
 

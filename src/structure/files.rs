@@ -26,6 +26,13 @@ impl ModelFiles {
     /// # Errors
     /// [`Error::Input`] with file and line, whatever is wrong.
     pub fn read(path: &Path, units: Option<UnitSystem>) -> Result<ModelFiles> {
+        let mut files = ModelFiles::as_written(path, units)?;
+        change_kinds(&files.model, &mut files.mesh)?;
+        Ok(files)
+    }
+
+    /// Model and mesh, whose elements are of the kinds of the mesh.
+    fn as_written(path: &Path, units: Option<UnitSystem>) -> Result<ModelFiles> {
         if is_deck(path) {
             let known = KnownUnits { system: units, length: None };
             return Ok(ModelFiles::of_deck(deck::read(path, known)?, |_| true));
@@ -64,4 +71,19 @@ impl ModelFiles {
         let (model, deck) = known.ok_or_else(|| Error::input(format!("{}: no model", path.display())))?;
         Ok((model, mesh, deck))
     }
+}
+
+/// Gives the elements the kinds that the model's parts ask for.
+fn change_kinds(model: &Model, mesh: &mut Mesh) -> Result<()> {
+    for part in &model.parts {
+        let Some(index) = mesh.parts.iter().position(|name| *name == part.name) else { continue };
+        for kind in &part.elements {
+            if mesh.elements.change_kind(index as u32, *kind) == 0 {
+                let what =
+                    format_args!("part {:?}: the mesh has no elements of the shape of {}", part.name, kind.name());
+                return Err(model.error(part.place, format_args!("{what}. Leave it out of elements")));
+            }
+        }
+    }
+    Ok(())
 }

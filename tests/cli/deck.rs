@@ -1,7 +1,10 @@
 //! Decks of Abaqus and CalculiX on the command line.
 
 use serde_json::Value;
+use squeal::element::ElementKind;
+use squeal::mesh::Mesh;
 
+use crate::support::block::Block;
 use crate::support::program::{Place, assert_refused};
 
 /// The pad on a disc as a deck `brake.inp`, without its model file and mesh.
@@ -104,6 +107,40 @@ fn what_cannot_be_converted_or_analysed_is_refused() {
     let parts = "[[rotation]]\npart = \"disk\"\naxis = [0, 0, 1]\nspeed = 1\n[stability]\nband = [0, 9]\n";
     place.write("short.toml", format!("[mesh]\nfile = \"brake.inp\"\nunit = \"mm-t-s\"\n{parts}"));
     refused(&["check", "short.toml"], &["short.toml:4: there is no part \"disk\" to turn. Did you mean \"disc\"?"]);
+}
+
+/// Gmsh's file knows no kinds: the part names them.
+#[test]
+fn the_kinds_of_elements_stay_in_a_deck_and_back() {
+    let mut mesh = Mesh::default();
+    Block { part: "bar", cells: [2, 2, 2], wraps: false, map: &|x| x.map(|x| 0.01 * x) }
+        .add_solids_to(&mut mesh, ElementKind::C3D8I);
+    let place = Place::empty();
+    let mut file = Vec::new();
+    squeal::mesh::write(&mesh, 1e-3, "a test", &mut file).unwrap();
+    place.write("bar.msh", file);
+    let model = |kinds: &str| {
+        format!(
+            "[mesh]\nfile = \"bar.msh\"\nunit = \"mm\"\n[material.iron]\nyoung = 1e11\npoisson = 0.3\ndensity = 7000\n\
+             [part.bar]\nmaterial = \"iron\"\nelements = {kinds}\n[[fix]]\nnodes = \"bar_z0\"\naxes = \"xyz\"\n\
+             [stability]\nband = [0, 1e6]\n"
+        )
+    };
+    place.write("brake.toml", model("[\"C3D8R\"]"));
+    let check = |model: &str| {
+        let document: Value = serde_json::from_str(&place.run(&["check", model, "--json"]).out).unwrap();
+        document["warnings"].as_array().unwrap().len()
+    };
+    assert_eq!(check("brake.toml"), 0);
+    for (from, to) in [("brake.toml", "deck.inp"), ("deck.inp", "back.toml")] {
+        let said = place.run(&["convert", from, "-o", to]);
+        assert!(said.code == 0 && !said.out.contains("become"), "{} {}", said.out, said.err);
+    }
+    assert!(place.read("deck.inp").contains("TYPE=C3D8R,"));
+    assert!(place.read("back.toml").contains("elements = [\"C3D8R\"]"));
+    place.write("brake.toml", model("[\"C3D20R\"]"));
+    let said = place.run(&["check", "brake.toml"]);
+    assert_refused(&said, &["brake.toml:", "part \"bar\": the mesh has no elements of the shape of C3D20R"]);
 }
 
 /// A deck of statics alone needs no densities; modes are refused, also where a model file asks for them.

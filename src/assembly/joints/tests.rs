@@ -130,7 +130,7 @@ fn part(name: &str, young: f64) -> Part {
     let mut elasticity = [[0.0; 6]; 6];
     (0..6).for_each(|i| elasticity[i][i] = young);
     let material = Material { name: name.into(), density: 1.0, elasticity };
-    Part { name: name.into(), material, rayleigh: Rayleigh::default(), place: Place::default() }
+    Part { name: name.into(), material, rayleigh: Rayleigh::default(), elements: vec![], place: Place::default() }
 }
 
 #[test]

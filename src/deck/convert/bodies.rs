@@ -135,7 +135,7 @@ impl Bodies {
             }
         }
         let (material, rayleigh) = materials::material(assembly.deck, of, units)?;
-        self.parts.push(Part { name: of.name.clone(), material, rayleigh, place });
+        self.parts.push(Part { name: of.name.clone(), material, rayleigh, elements: Vec::new(), place });
         Ok(())
     }
 

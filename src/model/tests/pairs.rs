@@ -1,6 +1,7 @@
 //! Fixes, rotations, contacts and loads.
 
 use super::{GOOD, complains, parsed};
+use crate::element::ElementKind;
 use crate::model::LoadKind;
 use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 
@@ -24,6 +25,26 @@ fn fixes_and_rotations_are_checked() {
     complains("axis = [0, 3, 4]", "axis = [0, 0, 0]", 0, said);
     let said = "speed is 0, so that nothing turns (rotation of \"disc\"). Give rad/s, such as 5.0; its sign is the sense of rotation";
     complains("speed = -5", "speed = 0", 0, said);
+}
+
+#[test]
+fn parts_have_one_kind_of_element_for_each_shape() {
+    let of = |kinds: &str| {
+        parsed(&GOOD.replace(
+            "[part.a_pad]\nmaterial = \"lining\"\n",
+            &format!("[part.a_pad]\nmaterial = \"lining\"\nelements = {kinds}\n"),
+        ))
+    };
+    let model = of("[\"C3D8R\", \"C3D10\"]").unwrap();
+    assert_eq!(model.parts[1].elements, [ElementKind::C3D8R, ElementKind::C3D10]);
+    let again = parsed(&crate::model::write(&model, "brake.msh")).unwrap();
+    assert_eq!(again.parts[1].elements, model.parts[1].elements);
+    assert!(
+        of("[\"C3D8\", \"C3D8R\"]")
+            .unwrap_err()
+            .contains("C3D8R has the shape of C3D8 (part \"a_pad\"). Keep one kind for each shape")
+    );
+    assert!(of("[\"C3D9\"]").unwrap_err().contains("unknown kind of element \"C3D9\""));
 }
 
 #[test]
