@@ -184,7 +184,7 @@ struct Run {
 
 impl Run {
     fn structure_options(&self) -> StructureOptions {
-        StructureOptions { contacts: self.contacts, law: self.law, load_factor: self.pressure }
+        StructureOptions { contacts: self.contacts, law: self.law.clone(), load_factor: self.pressure }
     }
 
     fn friction_values(&self) -> Option<Vec<f64>> {

@@ -48,7 +48,7 @@ pub(super) fn add_pair(
         name: contact.name.clone(),
         slave: contact.slave.clone(),
         master: contact.master.clone(),
-        law: law.normal_law,
+        law: law.normal_law.clone(),
         friction: contact.friction,
         friction_law: contact.friction_curve.clone().map_or(FrictionLaw::Constant, FrictionLaw::Curve),
         kind: law.kind(),
@@ -96,7 +96,7 @@ impl PairLaw<'_> {
             correction: 0.0,
             touching: point.gap <= TOUCH * point.size,
             separation: self.separation,
-            normal_law: self.normal_law,
+            normal_law: self.normal_law.clone(),
             tangential,
         }
     }

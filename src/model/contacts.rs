@@ -53,14 +53,32 @@ fn clearance(item: &Item, raw: &keys::ContactTable, unit: f64) -> Result<Option<
 
 /// The law that the file gives; none where the program is to propose one.
 fn law(item: &Item, raw: &Spanned<keys::Law>) -> Result<Option<NormalLaw>> {
-    let example = "Give law = { linear = 2e13 } in N/m3, { cubic = [k1, k3] } in N/m3 and N/m5, or \"auto\"";
+    let example = "Give law = { linear = 2e13 } in N/m3, { cubic = [k1, k3] } in N/m3 and N/m5, \
+                   { table = [[0, 0], [1e-6, 2e7]] } in m and Pa, or \"auto\"";
     let keys::Law::Given(table) = raw.get_ref() else { return Ok(None) };
-    match (&table.linear, &table.cubic) {
-        (Some(k), None) => Ok(Some(NormalLaw::Linear { stiffness: item.positive(k, "linear", example)? })),
-        (None, Some(k)) => item
+    match (&table.linear, &table.cubic, &table.table) {
+        (Some(k), None, None) => Ok(Some(NormalLaw::Linear { stiffness: item.positive(k, "linear", example)? })),
+        (None, Some(k), None) => item
             .each(k, |x| x > 0.0, "cubic", "must be above 0", example)
             .map(|[k1, k3]| Some(NormalLaw::Cubic { k1, k3 })),
-        (None, None) => Err(item.error(&raw.span(), "the law is empty", example)),
-        (Some(_), Some(_)) => Err(item.error(&raw.span(), "there are two laws", example)),
+        (None, None, Some(rows)) => {
+            let what = "the table must have two rows or more, all rising, the first with pressure 0";
+            item.require_at(
+                &rows.span(),
+                is_pressure_table(rows.get_ref()),
+                what,
+                "Give rows of penetration (m) and pressure (Pa)",
+            )?;
+            Ok(Some(NormalLaw::Table { rows: rows.get_ref().clone() }))
+        }
+        (None, None, None) => Err(item.error(&raw.span(), "the law is empty", example)),
+        _ => Err(item.error(&raw.span(), "there are two laws", example)),
     }
+}
+
+/// Whether penetrations and pressures rise together from a pressure of 0.
+pub fn is_pressure_table(rows: &[[f64; 2]]) -> bool {
+    let rises = |pair: &[[f64; 2]]| pair[0][0] < pair[1][0] && pair[0][1] < pair[1][1];
+    let is_finite = rows.as_flattened().iter().all(|x| x.is_finite());
+    rows.len() > 1 && rows[0][1] == 0.0 && is_finite && rows.windows(2).all(rises)
 }

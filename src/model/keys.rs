@@ -203,6 +203,7 @@ tables! {
     pub struct LawTable {
         pub linear: Option<Number>,
         pub cubic: Option<Spanned<[f64; 2]>>,
+        pub table: Option<Spanned<Vec<[f64; 2]>>>,
     }
 
     pub struct ConnectorTable {

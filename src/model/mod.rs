@@ -47,6 +47,7 @@ mod units;
 mod write;
 
 pub use analysis::spaced;
+pub use contacts::is_pressure_table;
 pub use criterion::InstabilityCriterion;
 pub use friction::{LARGEST_FRICTION, ROUGH};
 pub use joints::PENALTY;

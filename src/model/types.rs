@@ -211,7 +211,7 @@ pub struct Contact {
 }
 
 /// Pressure as a function of penetration.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum NormalLaw {
     /// `p = w k_n d`, k_n in N/m3.
     Linear {
@@ -225,15 +225,47 @@ pub enum NormalLaw {
         /// Cubic coefficient, N/m5.
         k3: f64,
     },
+    /// `p = w P(d)`, linear between the rows of a table and beyond them.
+    Table {
+        /// Rising penetrations (m) with their rising pressures (Pa); the first pressure is 0.
+        rows: Vec<[f64; 2]>,
+    },
 }
 
 impl NormalLaw {
     /// A factor times the law: a law of forces (N/m, N/m3) divided by an area (m2) is one of pressures.
-    pub fn times(self, factor: f64) -> NormalLaw {
-        match self {
+    pub fn times(&self, factor: f64) -> NormalLaw {
+        match *self {
             NormalLaw::Linear { stiffness } => NormalLaw::Linear { stiffness: factor * stiffness },
             NormalLaw::Cubic { k1, k3 } => NormalLaw::Cubic { k1: factor * k1, k3: factor * k3 },
+            NormalLaw::Table { ref rows } => {
+                NormalLaw::Table { rows: rows.iter().map(|[d, p]| [*d, factor * p]).collect() }
+            }
         }
+    }
+
+    /// Pressure (Pa) and its slope (N/m3) at the penetration d (m), on both sides of the first contact.
+    pub fn at(&self, d: f64) -> [f64; 2] {
+        match *self {
+            NormalLaw::Linear { stiffness: k } => [k * d, k],
+            NormalLaw::Cubic { k1, k3 } => [k1 * d + k3 * d.powi(3), k1 + 3.0 * k3 * d.powi(2)],
+            NormalLaw::Table { ref rows } => {
+                let above = rows.partition_point(|row| row[0] <= d).clamp(1, rows.len() - 1);
+                let ([d0, p0], [d1, p1]) = (rows[above - 1], rows[above]);
+                let slope = (p1 - p0) / (d1 - d0);
+                [p0 + slope * (d - d0), slope]
+            }
+        }
+    }
+
+    /// The penetration (m) from which on there is pressure: 0, or that of a table's first row.
+    pub fn onset(&self) -> f64 {
+        if let NormalLaw::Table { rows } = self { rows[0][0] } else { 0.0 }
+    }
+
+    /// The slope where the pressure begins, N/m3.
+    pub fn initial_stiffness(&self) -> f64 {
+        self.at(self.onset())[1]
     }
 }
 

@@ -156,10 +156,14 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
     out.line("name", quoted(&contact.name));
     out.line("slave", quoted(&contact.slave));
     out.line("master", quoted(&contact.master));
-    match contact.law {
+    match &contact.law {
         None => out.line("law", quoted("auto")),
-        Some(NormalLaw::Linear { stiffness }) => out.line("law", format_args!("{{ linear = {} }}", number(stiffness))),
-        Some(NormalLaw::Cubic { k1, k3 }) => out.line("law", format_args!("{{ cubic = {} }}", list(&[k1, k3]))),
+        Some(NormalLaw::Linear { stiffness }) => out.line("law", format_args!("{{ linear = {} }}", number(*stiffness))),
+        Some(NormalLaw::Cubic { k1, k3 }) => out.line("law", format_args!("{{ cubic = {} }}", list(&[*k1, *k3]))),
+        Some(NormalLaw::Table { rows }) => {
+            let rows: Vec<String> = rows.iter().map(|row| list(row)).collect();
+            out.line("law", format_args!("{{ table = [{}] }}", rows.join(", ")));
+        }
     }
     match &contact.friction_curve {
         None if contact.friction == ROUGH => out.line("friction", quoted("rough")),

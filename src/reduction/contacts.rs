@@ -140,7 +140,7 @@ impl Site<'_> {
             gap: landing.gap,
             touching: cell.iter().any(|point| point.law.touching),
             tangential: sliding(rotation, x, landing.normal, weight.sqrt()),
-            ..cell[0].law
+            ..cell[0].law.clone()
         }
     }
 }

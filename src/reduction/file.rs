@@ -29,7 +29,7 @@ use crate::contact::interface::{ContactPair, Statistics, TangentialKind};
 use crate::contact::surface_points::Place;
 use crate::contact::{ContactPoint, FrictionLaw, PointLaw, Tangential};
 use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
-use crate::model::NormalLaw;
+use crate::model::{NormalLaw, is_pressure_table};
 
 use super::recovery::OuterSurface;
 use super::super_element::{NodeContact, Origin, SuperElement};
@@ -120,9 +120,10 @@ fn pair_texts(element: &SuperElement) -> Vec<PairText> {
         name: pair.name.clone(),
         slave: pair.slave.clone(),
         master: pair.master.clone(),
-        law: match pair.law {
-            NormalLaw::Linear { stiffness } => vec![stiffness],
-            NormalLaw::Cubic { k1, k3 } => vec![k1, k3],
+        law: match &pair.law {
+            NormalLaw::Linear { stiffness } => vec![*stiffness],
+            NormalLaw::Cubic { k1, k3 } => vec![*k1, *k3],
+            NormalLaw::Table { rows } => rows.concat(),
         },
         friction: pair.friction,
         separation: pair.separation,
@@ -205,7 +206,11 @@ fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
             master: text.master.clone(),
             law: match text.law[..] {
                 [k1, k3] => NormalLaw::Cubic { k1, k3 },
-                _ => NormalLaw::Linear { stiffness: text.law.first().copied().unwrap_or(f64::NAN) },
+                ref rows if is_pressure_table(rows.as_chunks().0) => {
+                    NormalLaw::Table { rows: rows.as_chunks().0.to_vec() }
+                }
+                [stiffness] => NormalLaw::Linear { stiffness },
+                _ => NormalLaw::Linear { stiffness: f64::NAN },
             },
             friction: text.friction,
             friction_law: text.friction_law.clone(),
@@ -239,7 +244,7 @@ fn read_contacts(group: &Group, pairs: &[ContactPair]) -> hdf5::Result<Vec<NodeC
             correction: 0.0,
             touching: touching[i] != 0,
             separation: own.separation,
-            normal_law: own.law,
+            normal_law: own.law.clone(),
             tangential: match speed[i] {
                 0.0 => Tangential::Frictionless,
                 speed => Tangential::Sliding { direction: direction[i], speed },

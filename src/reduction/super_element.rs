@@ -150,9 +150,16 @@ impl SuperElement {
         for i in 0..n {
             gap_operator.push(&[i, n + i], &[identity(1.0), identity(-1.0)]);
         }
-        let pairs =
-            self.pairs.iter().map(|pair| ContactPair { law: law.unwrap_or(pair.law), ..pair.clone() }).collect();
-        Interface { pairs, points: self.contacts.iter().map(|contact| contact.under(law)).collect(), gap_operator }
+        let pairs = self
+            .pairs
+            .iter()
+            .map(|pair| ContactPair { law: law.as_ref().unwrap_or(&pair.law).clone(), ..pair.clone() })
+            .collect();
+        Interface {
+            pairs,
+            points: self.contacts.iter().map(|contact| contact.under(law.as_ref())).collect(),
+            gap_operator,
+        }
     }
 
     /// The assembled system under `factor` times the loads. Collective.
@@ -196,7 +203,7 @@ impl SuperElement {
 
 impl NodeContact {
     /// The contact point under a law.
-    fn under(&self, law: Option<NormalLaw>) -> ContactPoint {
+    fn under(&self, law: Option<&NormalLaw>) -> ContactPoint {
         let mut point = self.point.clone();
         if let Some(law) = law {
             point.law.normal_law = law.times(1.0 / point.law.weight);

@@ -54,7 +54,7 @@ pub enum Structure {
 }
 
 /// How a structure differs from its file.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct StructureOptions {
     /// Of a model: so many reference pairs in place of the contact points of the sliding pairs.
     pub contacts: Option<usize>,

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::element::ElementKind;
 use crate::element::solid::MassProperties;
-use crate::model::{Material, NormalLaw, Rotation, softest_young};
+use crate::model::{Material, Rotation, softest_young};
 use crate::native::Comm;
 
 /// Young's moduli of solids, from rubber to above diamond, Pa.
@@ -157,7 +157,7 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     let with_mass = materials.iter().filter(|material| material.density != 0.0);
     let mass = with_mass.filter_map(|material| density(&material.name, material.density));
     let contacts = model.contacts.iter().zip(&full.interface.pairs).filter_map(|(contact, pair)| {
-        let (NormalLaw::Linear { stiffness } | NormalLaw::Cubic { k1: stiffness, .. }) = pair.law;
+        let stiffness = pair.law.initial_stiffness();
         let young = softest_young(&model.parts, &full.mesh, &[&contact.slave, &contact.master]);
         let neighbour = young / full.mesh.surfaces[&contact.slave].facet_size(pair.statistics.area);
         contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())

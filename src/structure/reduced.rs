@@ -39,7 +39,7 @@ impl ReducedModel {
         // The first rank alone draws the surface.
         let bare = || Ok((file::read_element(path)?, OuterSurface::default()));
         let (element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
-        Ok(ReducedModel::new(path, element, surface, options.law, options.load_factor))
+        Ok(ReducedModel::new(path, element, surface, options.law.clone(), options.load_factor))
     }
 
     /// A super-element under a law, its own if none is given, and a multiple of its loads.

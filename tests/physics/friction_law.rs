@@ -64,7 +64,7 @@ fn belt(friction_law: FrictionLaw) -> Interface {
         correction: 0.0,
         touching: true,
         separation: true,
-        normal_law,
+        normal_law: normal_law.clone(),
         tangential: Tangential::Sliding { direction: [1.0, 0.0, 0.0], speed: SPEED },
     };
     let pair = ContactPair {

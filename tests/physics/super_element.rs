@@ -349,8 +349,9 @@ fn every_contact_force_is_reproduced_under_any_law() {
     let pair = &full.brake.interface.pairs[0];
     let exact: Vec<[f64; 3]> = full.equilibrium.responses[pair.points.clone()].iter().map(|r| r.force).collect();
     let cubic = NormalLaw::Cubic { k1: 8e8, k3: 5e19 };
-    for law in [None, Some(NormalLaw::Linear { stiffness: 3e9 }), Some(cubic)] {
-        let (interface, equilibrium, _) = analyse(&comm, &element, law, FRICTION);
+    let table = NormalLaw::Table { rows: vec![[0.0, 0.0], [1e-8, 20.0], [1e-6, 4e3]] };
+    for law in [None, Some(NormalLaw::Linear { stiffness: 3e9 }), Some(cubic), Some(table)] {
+        let (interface, equilibrium, _) = analyse(&comm, &element, law.clone(), FRICTION);
         let xi = interface.points.iter().map(|point| point.law.correction.abs()).fold(0.0, f64::max);
         let error = equilibrium.responses.iter().zip(&exact).flat_map(|(found, exact)| {
             let size = exact.iter().fold(0.0, |m: f64, f| m.max(f.abs()));

@@ -16,14 +16,10 @@ pub(super) struct Normal {
 ///
 /// - linear: `p = w k d`
 /// - cubic: `p = w (k1 d + k3 d^3)`
+/// - table: `p = w P(d)`
 pub(super) fn two_sided(point: &PointLaw, d: f64) -> Normal {
-    let w = point.weight;
-    match point.normal_law {
-        NormalLaw::Linear { stiffness: k } => Normal { force: w * k * d, stiffness: w * k },
-        NormalLaw::Cubic { k1, k3 } => {
-            Normal { force: w * (k1 * d + k3 * d.powi(3)), stiffness: w * (k1 + 3.0 * k3 * d.powi(2)) }
-        }
-    }
+    let [pressure, slope] = point.normal_law.at(d);
+    Normal { force: point.weight * pressure, stiffness: point.weight * slope }
 }
 
 impl PointLaw {
@@ -32,8 +28,11 @@ impl PointLaw {
         two_sided(self, d).stiffness
     }
 
-    /// The penetration (m) at which the law gives the normal force `p` (N): the root of `w (k_1 d + k_3 d^3) = p`.
+    /// The penetration (m) at which the law gives the normal force `p` (N): the root of `w P(d) = p`.
     pub fn penetration_under(&self, p: f64) -> f64 {
+        if let NormalLaw::Table { rows } = &self.normal_law {
+            return inverse(rows, p / self.weight);
+        }
         let mut d = p / self.stiffness(0.0);
         // |p(d)| grows ever faster with |d|, so that Newton comes down on the root from one side.
         for _ in 0..100 {
@@ -48,9 +47,16 @@ impl PointLaw {
     }
 }
 
-/// The law as the point has it: none where it is open, that is where it may open and `d <= 0`.
+/// The penetration (m) at which a table has a pressure (Pa).
+fn inverse(rows: &[[f64; 2]], pressure: f64) -> f64 {
+    let above = rows.partition_point(|row| row[1] <= pressure).clamp(1, rows.len() - 1);
+    let ([d0, p0], [d1, p1]) = (rows[above - 1], rows[above]);
+    d0 + (pressure - p0) * (d1 - d0) / (p1 - p0)
+}
+
+/// The law as the point has it: none where it is open, that is where it may open and there is no pressure.
 pub(super) fn normal(point: &PointLaw, d: f64) -> Option<Normal> {
-    (d > 0.0 || !point.separation).then(|| two_sided(point, d))
+    (d > point.normal_law.onset() || !point.separation).then(|| two_sided(point, d))
 }
 
 #[cfg(test)]
@@ -79,6 +85,16 @@ mod tests {
         assert_eq!(normal(&point, 0.5), Some(cubic));
         point.separation = false;
         assert_eq!(normal(&point, -0.5).unwrap().force, -4.0);
+        // Linear between the rows and beyond them; open below the first.
+        point.normal_law = NormalLaw::Table { rows: vec![[-0.1, 0.0], [0.1, 4.0], [0.2, 10.0]] };
+        point.separation = true;
+        assert_eq!(normal(&point, -0.1), None);
+        for (d, force, stiffness) in [(0.0, 4.0, 40.0), (0.125, 11.0, 120.0), (0.3, 32.0, 120.0)] {
+            let found = normal(&point, d).unwrap();
+            assert!((found.force - force).abs() < 1e-13 && (found.stiffness - stiffness).abs() < 1e-12, "{found:?}");
+        }
+        point.separation = false;
+        assert!((normal(&point, -0.3).unwrap().force + 8.0).abs() < 1e-13);
     }
 
     proptest! {

@@ -8,7 +8,7 @@ use crate::Result;
 use crate::deck::types::{Behaviour, ContactPair, Dependence, Friction, Interaction};
 use crate::mesh::Mesh;
 use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay};
-use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, ROUGH, names};
+use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, Place, ROUGH, is_pressure_table, names};
 
 /// Tables of a contact law are straight to this relative difference.
 const STRAIGHT: f64 = 1e-6;
@@ -28,12 +28,11 @@ impl<'d> Conversion<'d> {
             if contacts.iter().any(|other| other.name == name) {
                 return Err(self.assembly.error(pair.place, format_args!("the contact pair {name} is there already")));
             }
-            let stiffness = self.stiffness(interaction)?;
             contacts.push(Contact {
                 name,
                 slave,
                 master,
-                law: stiffness.map(|stiffness| NormalLaw::Linear { stiffness }),
+                law: self.law(interaction)?,
                 friction: 0.0,
                 friction_curve: None,
                 stick: None,
@@ -67,20 +66,34 @@ impl<'d> Conversion<'d> {
         })
     }
 
-    /// The stiffness of the normal law, N/m3; none where the deck has none.
-    fn stiffness(&self, interaction: &Interaction) -> Result<Option<f64>> {
-        let unit = self.units.foundation();
+    /// The normal law; none where the deck has none.
+    fn law(&self, interaction: &Interaction) -> Result<Option<NormalLaw>> {
+        let linear = |k: f64| NormalLaw::Linear { stiffness: k * self.units.foundation() };
         match &interaction.behaviour {
-            Behaviour::Linear(stiffness, _) => Ok(Some(stiffness * unit)),
+            Behaviour::Linear(stiffness, _) => Ok(Some(linear(*stiffness))),
             Behaviour::Table(rows, place) => match slope(rows) {
-                Some(slope) => Ok(Some(slope * unit)),
-                None => {
-                    let what = "a table that is no straight line through the origin is not supported. Give LINEAR";
-                    Err(self.assembly.error(*place, what))
-                }
+                Some(slope) => Ok(Some(linear(slope))),
+                None => self.table(rows, *place).map(Some),
             },
             Behaviour::Hard | Behaviour::Tied(_) => Ok(None),
         }
+    }
+
+    /// A table of pressures over overlaps, in SI units.
+    fn table(&self, rows: &[[f64; 2]], place: Place) -> Result<NormalLaw> {
+        let without = rows.iter().take_while(|[pressure, _]| *pressure == 0.0).count();
+        let (length, stress) = (self.units.length, self.units.stress());
+        let pressed = rows.iter().skip(without.max(1) - 1);
+        let mut rows: Vec<[f64; 2]> =
+            pressed.map(|[pressure, overlap]| [overlap * length, pressure * stress]).collect();
+        if without == 0 {
+            rows.insert(0, [0.0; 2]);
+        }
+        if is_pressure_table(&rows) {
+            return Ok(NormalLaw::Table { rows });
+        }
+        let what = "pressures and overlaps of the table do not rise from a pressure of 0. Correct it, or give LINEAR";
+        Err(self.assembly.error(place, what))
     }
 
     /// The contacts with the friction of the last step.

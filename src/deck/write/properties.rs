@@ -58,7 +58,7 @@ impl DeckWriter<'_> {
         let unit = self.units.foundation();
         let separation = if contact.separation { "" } else { ",NO SEPARATION" };
         let mut out = format!("*SURFACE INTERACTION,NAME=LAW{}\n", i + 1);
-        match contact.law {
+        match &contact.law {
             None => out += &format!("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=HARD{separation}\n"),
             Some(NormalLaw::Linear { stiffness }) => {
                 let stiffness = number(stiffness / unit);
@@ -68,6 +68,13 @@ impl DeckWriter<'_> {
                 out += &format!("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR{separation}\n0.0,0.0\n");
                 for d in (1..=10).map(|i| f64::from(i) * MICROMETRE) {
                     let pressure = number((k1 * d + k3 * d.powi(3)) / self.units.stress());
+                    out += &format!("{pressure},{}\n", number(d / self.units.length));
+                }
+            }
+            Some(NormalLaw::Table { rows }) => {
+                out += &format!("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR{separation}\n");
+                for [d, pressure] in rows {
+                    let pressure = number(pressure / self.units.stress());
                     out += &format!("{pressure},{}\n", number(d / self.units.length));
                 }
             }

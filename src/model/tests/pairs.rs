@@ -59,6 +59,10 @@ fn contacts_are_checked() {
     let model = parsed(&rough).unwrap();
     assert_eq!(model.contacts[0].friction, crate::model::ROUGH);
     assert_eq!(parsed(&crate::model::write(&model, "brake.msh")).unwrap().contacts[0].friction, crate::model::ROUGH);
+    let refused = "the table must have two rows or more, all rising, the first with pressure 0 (contact \"pair\")";
+    for rows in ["[[0, 0]]", "[[0, 1], [1, 2]]", "[[0, 0], [0, 1]]", "[[0, 0], [1, 0]]"] {
+        wrong(&format!("law = {{ table = {rows} }}"), refused);
+    }
     wrong("law = {}", "the law is empty (contact \"pair\")");
     wrong("law = { linear = 1, cubic = [1, 1] }", "there are two laws (contact \"pair\")");
     wrong("law = { linar = 1 }", "unknown key \"linar\" ([[contact]]). Did you mean \"linear\"?");

@@ -51,7 +51,7 @@ const BROKEN: &[[&str; 3]] = &[
     ["0.4\n", "-0.4\n", "a.inp:50: the friction coefficient must be 0 or above"],
     ["0.4\n", "4.\n", "a.inp:50: a friction coefficient of 4 is above 2"],
     ["\n20000.\n", "\n-1.\n", "a.inp:48: the stiffness of the contact must be above 0"],
-    ["=LINEAR\n20000.", "=TABULAR\n0.,0.\n1.,1.\n4.,2.", "a.inp:48: a table that is no straight line"],
+    ["=LINEAR\n20000.", "=TABULAR\n0.,0.\n1.,1.\n1.,2.", "a.inp:48: pressures and overlaps of the table do not rise"],
     ["BACK, 3, -25.", "BACK, 4, -25.", "a.inp:58: a moment on nodes of solids"],
     ["BACK, 3, -25.", "BACK, 3, ", "a.inp:58: the force is missing"],
     ["TURNING, 5., 0,0,0, 0,0,1", "TURNING, 5., 0,0,0, 0,0,0", "a.inp:60: the two points of the axis of rotation"],

@@ -156,7 +156,7 @@ fn another_system_of_units_gives_the_same_model() {
     assert_eq!(two.summary.units, "mm-kg-ms");
     let numbers = |converted: &Converted| {
         let model = &converted.model;
-        let (part, Some(NormalLaw::Linear { stiffness })) = (&model.parts[0], model.contacts[0].law) else { panic!() };
+        let (part, Some(NormalLaw::Linear { stiffness })) = (&model.parts[0], &model.contacts[0].law) else { panic!() };
         let LoadKind::ForceByNode([_, _, force]) = model.loads[0].kind else { panic!() };
         let c = part.material.elasticity[0][0];
         [
@@ -164,7 +164,7 @@ fn another_system_of_units_gives_the_same_model() {
             part.material.density,
             part.rayleigh.alpha,
             part.rayleigh.beta,
-            stiffness,
+            *stiffness,
             force,
             model.rotations[0].speed,
             model.band[1],
@@ -257,6 +257,31 @@ fn friction_that_depends_on_slip_rate_and_pressure_comes_in_si_units() {
         let message = curve(rows).unwrap_err();
         assert!(message.contains(said), "{message}");
     }
+}
+
+#[test]
+fn a_table_of_pressures_begins_where_its_last_row_without_pressure_is() {
+    let rows = |table: &str| {
+        let text = good().replace("=LINEAR\n20000.\n", &format!("=TABULAR\n{table}"));
+        read(&text).map(|own| match own.model.contacts[0].law.clone() {
+            Some(NormalLaw::Table { rows }) => {
+                let mut deck = Vec::new();
+                crate::deck::write(&own.model, &own.mesh, UnitSystem::ALL[0], "a test", &mut deck).unwrap();
+                let again = read(&String::from_utf8(deck).unwrap()).unwrap();
+                assert_eq!(again.model.contacts[0].law, own.model.contacts[0].law);
+                let toml = crate::model::write(&own.model, "a.msh");
+                let again = crate::model::parse(&toml, std::path::Path::new("a.toml")).unwrap();
+                assert_eq!(again.contacts[0].law, own.model.contacts[0].law);
+                rows.as_flattened().to_vec()
+            }
+            law => panic!("{law:?}"),
+        })
+    };
+    let all_close = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || close(*a, *b));
+    let found = rows("0.,-0.2\n0.,-0.1\n1.,0.\n4.,0.5\n").unwrap();
+    assert!(all_close(&found, &[-1e-4, 0.0, 0.0, 1e6, 5e-4, 4e6]), "{found:?}");
+    let found = rows("2.,1.\n3.,2.\n").unwrap();
+    assert!(all_close(&found, &[0.0, 0.0, 1e-3, 2e6, 2e-3, 3e6]), "{found:?}");
 }
 
 #[test]
