@@ -93,6 +93,7 @@
 //! | symbol | name in signatures | meaning, unit |
 //! |---|---|---|
 //! | M, C, K | `m`, `c`, `k` | mass kg, damping N s/m, stiffness N/m |
+//! | G | `g` | structural damping N/m, `sum g_e K_e` with the loss factors g_e |
 //! | u | `u` | displacements of the equations, m |
 //! | B, g | `gap_operator`, `gap` | relative displacement at the contact points `g = B u`, m |
 //! | n, t | `normal`, `direction` | master's outward normal; direction of sliding |

@@ -8,11 +8,11 @@ use crate::contact::law::Tangential;
 use crate::element::facet;
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
-use crate::model::{Load, LoadKind, PointMass, Rayleigh, RigidSet, Rotation, Tie};
+use crate::model::{Connector, Load, LoadKind, PointMass, Rayleigh, RigidSet, Rotation, Tie};
 use crate::native::{Comm, Factor, FactorKind};
 use crate::output::model_summary::{
-    LayoutRow, LoadRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow, RotationRow,
-    TieRow,
+    LayoutRow, LoadRow, LossRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow,
+    RotationRow, TieRow,
 };
 use crate::structure::{FullModel, Ranked, plausibility};
 
@@ -40,6 +40,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
         layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
         constrained_dofs: full.held.as_flattened().iter().filter(|&&h| h).count(),
         connectors: full.joints.count(JointKind::Connector),
+        connector_loss_factors: full.model.connectors.iter().filter_map(loss_factor).collect(),
         ties: full.model.ties.iter().zip(&full.joints.ties).map(|(own, summary)| tie(own, summary)).collect(),
         rigid_sets: full.model.rigid_sets.iter().map(|own| rigid_set(full, own)).collect(),
         masses: masses.iter().map(mass).collect(),
@@ -73,7 +74,14 @@ fn part(comm: &Comm, full: &FullModel, i: usize) -> PartRow {
         quality_median: quality.nth(quality.n_numbers() / 2),
         alpha_per_s: rayleigh.alpha,
         beta_s: rayleigh.beta,
+        loss_factor: own.map_or(0.0, |own| own.material.loss_factor),
     }
+}
+
+/// The loss factor of a connector, where it has one.
+fn loss_factor(own: &Connector) -> Option<LossRow> {
+    let row = || LossRow { connector: own.name.clone(), loss_factor: own.loss_factor };
+    (own.loss_factor != 0.0).then(row)
 }
 
 fn rotation(own: &Rotation) -> RotationRow {

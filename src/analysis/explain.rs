@@ -66,7 +66,7 @@ impl Sweep<'_> {
             of_contacts(self.path.contacts(), equilibrium, &frictions, self.friction_damping, vectors)
         };
         let (one, none) = (at(1.0)?, at(0.0)?);
-        let difference = |(a, b): (&Forms, &Forms)| Forms { m: a.m - b.m, c: a.c - b.c, k: a.k - b.k };
+        let difference = |(a, b): (&Forms, &Forms)| Forms { m: a.m - b.m, c: a.c - b.c, k: a.k - b.k, g: None };
         Ok(one.iter().zip(&none).map(difference).collect())
     }
 }

@@ -1,4 +1,4 @@
-//! M, C, K and the contact tangent about an equilibrium as files for other programs.
+//! M, C, K, G and the contact tangent about an equilibrium as files for other programs.
 
 use crate::assembly::System;
 use crate::matrices::write::GatheredMatrix;
@@ -25,7 +25,7 @@ pub struct ExportOptions {
     /// The friction coefficient of the equilibrium. The structure's own, where it has one value, if there is none
     /// given.
     pub friction: Option<Vec<f64>>,
-    /// Whether the matrices are those about an equilibrium; else M, C and K of the structure itself, without contact.
+    /// Whether the matrices are those about an equilibrium; else those of the structure itself, without contact.
     pub with_contact: bool,
     /// What the files are to be.
     pub format: MatrixFormat,
@@ -59,6 +59,11 @@ const STIFFNESS: MatrixFile = MatrixFile {
     head: "K with the tangent of contact and friction, N/m",
 };
 const STIFFNESS_ALONE: MatrixFile = MatrixFile { name: "stiffness", what: "K, N/m", head: "K, N/m" };
+const STRUCTURAL: MatrixFile = MatrixFile {
+    name: "structural",
+    what: "G of loss factors, N/m",
+    head: "G, N/m, the imaginary part of the stiffness: structural damping by loss factors",
+};
 const CONTACT: MatrixFile = MatrixFile {
     name: "contact",
     what: "contact's tangent alone, which is in K",
@@ -90,6 +95,7 @@ pub fn export(
             export.matrix(&STIFFNESS_ALONE, &system.k)?;
         }
     }
+    system.g.iter().try_for_each(|g| export.matrix(&STRUCTURAL, g))?;
     export.rows(structure, &system)?;
     Ok(Exported { title: structure.title().to_owned(), friction, n_dofs: system.dofs.n_global(), files: export.files })
 }

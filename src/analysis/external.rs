@@ -29,7 +29,7 @@ pub struct ExternalOptions {
     pub shapes: bool,
 }
 
-/// Finds all modes of a band of `(lambda^2 M + lambda C + K) x = 0` at each value of the matrices' parameter, and
+/// Finds all modes of a band of `(lambda^2 M + lambda C + K + i G) x = 0` at each value of the matrices' parameter, and
 /// follows them over it where M is symmetric and positive definite. Where a value does not converge, the analysis ends
 /// there with a note. Shapes and names of rows are on the root alone. Collective.
 ///
@@ -104,6 +104,7 @@ fn empty(
         n_constrained: names.n_constrained,
         symmetry: matrices.symmetry,
         is_damped: matrices.is_damped(),
+        has_structural_damping: matrices.has_structural_damping(),
         band: options.band,
         criterion: options.criterion,
         evidence: sweep.evidence(),

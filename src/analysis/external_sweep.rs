@@ -68,7 +68,7 @@ impl<'a> ExternalSweep<'a> {
     /// An analysis of a band, Hz.
     pub fn new(given: &'a ExternalMatrices, band: [f64; 2]) -> ExternalSweep<'a> {
         let symmetry = given.symmetry;
-        let evidence = match (symmetry.mass, symmetry.damping && symmetry.stiffness) {
+        let evidence = match (symmetry.mass, symmetry.damping && symmetry.stiffness && symmetry.structural) {
             (true, true) => Evidence::SturmCount,
             (estimated, _) => Evidence::Repetition { estimated },
         };
@@ -100,10 +100,11 @@ impl<'a> ExternalSweep<'a> {
     }
 
     fn problem<'s>(&self, sums: &'s Sums) -> QuadraticProblem<'s> {
-        let Sums { m, c, k, k_symmetric } = sums;
-        let symmetric_mc = self.given.symmetry.mass && self.given.symmetry.damping;
+        let Sums { m, c, k, g, k_symmetric } = sums;
+        let symmetry = self.given.symmetry;
+        let symmetric_mc = symmetry.mass && symmetry.damping && symmetry.structural;
         let k_symmetric = k_symmetric.as_ref().unwrap_or(k);
-        QuadraticProblem { matrices: Mck { m, c, k }, k_symmetric, points: None, symmetric_mc }
+        QuadraticProblem { matrices: Mck { m, c, k, g: g.as_ref() }, k_symmetric, points: None, symmetric_mc }
     }
 
     /// The first shift at which `P(shift)` can be inverted, and the condition number there.

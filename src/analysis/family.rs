@@ -26,7 +26,7 @@ pub struct Snapshot {
 /// The eigenvalues of a snapshot.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Spectrum {
-    /// Modes as the eigensolver gave them, then the conjugates of low ones.
+    /// Modes as the eigensolver gave them, then the conjugates of low ones, where these are eigenvalues.
     pub lambdas: Vec<Complex64>,
     /// For each of them its place among the eigensolver's, and whether it is the conjugate.
     pub places: Vec<(usize, bool)>,
@@ -144,7 +144,10 @@ impl Snapshot {
     /// Those at the places `rigid` are left out: rounding alone moves rigid-body modes.
     pub(super) fn of(band: &Band, end: f64, rigid: &[usize], vectors: Vectors) -> Snapshot {
         let followed: Vec<usize> = (0..band.modes.len()).filter(|i| !rigid.contains(i)).collect();
-        let low = |i: &usize| band.modes[*i].lambda.im > 0.0 && band.modes[*i].lambda.im < BEYOND * TAU * end;
+        let low = |i: &usize| {
+            let omega = band.modes[*i].lambda.im;
+            band.has_conjugates && omega > 0.0 && omega < BEYOND * TAU * end
+        };
         let places: Vec<(usize, bool)> = followed
             .iter()
             .map(|&i| (i, false))

@@ -91,7 +91,7 @@ pub fn free_modes(
 /// All modes up to the band's end, rigid motions among them. Collective.
 fn solve(system: &System, band: [f64; 2], observer: &mut dyn Observer) -> Result<Band> {
     let undamped = system.c.zeros_like()?;
-    let problem = QuadraticProblem::symmetric(Mck { c: &undamped, ..system.matrices() });
+    let problem = QuadraticProblem::symmetric(Mck { c: &undamped, g: None, ..system.matrices() });
     let mut factor = LabelledFactor::new(Precision::Double);
     let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
     let request = BandRequest { band: [0.0, band[1]], shift: SHIFT_RATIO * TAU * band[1] };
@@ -181,7 +181,7 @@ mod tests {
         // Two unit masses with a spring along each axis.
         let spring = |i: usize, j: usize| if i == j { 40.0 } else { -40.0 };
         let k = DMatrix::from_fn(6, 6, |i, j| if i % 3 == j % 3 { spring(i, j) } else { 0.0 });
-        let matrices = Mck { m: DMatrix::identity(6, 6), c: DMatrix::zeros(6, 6), k };
+        let matrices = Mck::from([DMatrix::identity(6, 6), DMatrix::zeros(6, 6), k]);
         let system = testing::system(&comm, matrices, &GapOperator::new(), &[]);
         let found = solve(&system, [1.0, 2.0], &mut ()).unwrap();
         let elastic = found.modes.iter().filter(|mode| mode.frequency() > 1.0);

@@ -45,6 +45,7 @@ fn pressed_by(force: f64) -> Structure {
         mass: matrices.m,
         damping: matrices.c,
         stiffness: matrices.k,
+        structural_damping: matrices.g,
         load,
         preload: vec![0.0; 6 * N],
         pairs: belt.pairs.clone(),

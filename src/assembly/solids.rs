@@ -58,7 +58,12 @@ impl Elements for Solids<'_> {
         false
     }
 
-    /// `C = alpha M + beta K` with the part's own coefficients; the mass does not couple axes.
+    fn has_structural_damping(&self) -> bool {
+        self.parts.iter().any(|part| part.material.loss_factor != 0.0)
+    }
+
+    /// `C = alpha M + beta K` with the part's own coefficients, `G = g K` with its material's loss factor; the mass
+    /// does not couple axes.
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
         let (kind, x, part) = (self.mesh.elements.get(e).kind, self.mesh.element_nodes(e), self.part(e));
         let n = x.len();
@@ -66,6 +71,11 @@ impl Elements for Solids<'_> {
         out.m.resize(n * n, 0.0);
         solid::stiffness(kind, &x, &part.material.elasticity, &mut out.k);
         solid::scalar_mass(kind.shape(), &x, part.material.density, &mut out.m);
+        let loss_factor = part.material.loss_factor;
+        out.g.clear();
+        if loss_factor != 0.0 {
+            out.g.extend(out.k.iter().map(|k| loss_factor * k));
+        }
         let (alpha, beta) = (part.rayleigh.alpha, part.rayleigh.beta);
         out.c.clear();
         if alpha == 0.0 && beta == 0.0 {

@@ -1,4 +1,4 @@
-//! The assembled system: M, C, K and the numbering of its dofs.
+//! The assembled system: M, C, K, G and the numbering of its dofs.
 
 use std::borrow::Cow;
 use std::time::Instant;
@@ -28,6 +28,10 @@ pub trait Elements: Connectivity {
     fn mass_couples_axes(&self) -> bool {
         true
     }
+    /// Whether a member may have structural damping: the same on all ranks.
+    fn has_structural_damping(&self) -> bool {
+        false
+    }
     /// Overwrites `out` with member e's matrices. Rows are node-major: three displacements a node.
     fn matrices(&self, e: usize, out: &mut ElementMatrices);
 }
@@ -41,6 +45,8 @@ pub struct ElementMatrices {
     pub m: Vec<f64>,
     /// Damping, N s/m: `(3n)^2` entries, or none.
     pub c: Vec<f64>,
+    /// Structural damping, N/m, the imaginary part of the stiffness: `(3n)^2` entries, or none.
+    pub g: Vec<f64>,
 }
 
 impl ElementMatrices {
@@ -58,7 +64,7 @@ impl ElementMatrices {
     }
 }
 
-/// M, C and K of a structure without its contacts, on a pattern that has room for them.
+/// M, C, K and G of a structure without its contacts, on a pattern that has room for them.
 pub struct System {
     /// Numbers of the free dofs.
     pub dofs: DofMap,
@@ -68,6 +74,8 @@ pub struct System {
     pub m: Matrix,
     /// Damping, N s/m.
     pub c: Matrix,
+    /// Structural damping, N/m: `sum g_e K_e` of stiffnesses with loss factors `g_e`; none where all of these are 0.
+    pub g: Option<Matrix>,
     /// External forces, N.
     pub load: Vector,
     /// What it took to find which entries there are, s; the rest went into their values.
@@ -75,7 +83,7 @@ pub struct System {
 }
 
 impl System {
-    /// Numbers the free dofs, then assembles M, C and K of all families. `constrained` says which displacements of each
+    /// Numbers the free dofs, then assembles M, C, K and G of all families. `constrained` says which displacements of each
     /// node are zero; `contacts` take part in the pattern only. Collective.
     ///
     /// ```no_run
@@ -115,8 +123,9 @@ impl System {
         let m = mass.as_ref().map_or_else(|| k.zeros_like(), |mass| Matrix::zeros(comm, mass.rows()))?;
         let (c, pattern_seconds) = (k.zeros_like()?, start.elapsed().as_secs_f64());
         let [k, m, c] = sum([k, m, c], mass, &scatter, families)?;
+        let g = structural_damping(&k, &scatter, families)?;
         let load = Vector::zeros(comm, dofs.n_local())?;
-        Ok(System { dofs, k, m, c, load, pattern_seconds })
+        Ok(System { dofs, k, m, c, g, load, pattern_seconds })
     }
 
     /// Adds forces (N) at nodes to the load; those at constrained dofs go into the support.
@@ -136,9 +145,9 @@ impl System {
         })
     }
 
-    /// M, C and K.
+    /// M, C, K and G.
     pub fn matrices(&self) -> Mck<&Matrix> {
-        Mck { m: &self.m, c: &self.c, k: &self.k }
+        Mck { m: &self.m, c: &self.c, k: &self.k, g: self.g.as_ref() }
     }
 
     /// A vector of zeros in the system's layout.
@@ -190,6 +199,19 @@ fn sum(
     Ok([k, m, c])
 }
 
+/// `G`, on the pattern of K, by a pass of its own, which structures without loss factors do not take.
+fn structural_damping(k: &Matrix, scatter: &Scatter, families: &[&dyn Elements]) -> Result<Option<Matrix>> {
+    let damped: Vec<&dyn Elements> = families.iter().copied().filter(|own| own.has_structural_damping()).collect();
+    if damped.is_empty() {
+        return Ok(None);
+    }
+    let mut g = k.zeros_like()?;
+    Matrix::change_values(&mut [&mut g], |values| {
+        pass(scatter, &damped, |element, places| places.add(&element.g, &mut values[0]));
+    })?;
+    Ok(Some(g))
+}
+
 /// Visits the elements that touch this rank's rows.
 fn pass(scatter: &Scatter, families: &[&dyn Elements], mut visit: impl FnMut(&ElementMatrices, &Places)) {
     let (mut element, mut places) = (ElementMatrices::default(), Places::default());
@@ -214,6 +236,7 @@ mod tests {
     struct Chain {
         nodes: Vec<[u32; 2]>,
         mass_couples_axes: bool,
+        loss_factor: Option<f64>,
     }
 
     impl Connectivity for Chain {
@@ -229,10 +252,16 @@ mod tests {
         fn mass_couples_axes(&self) -> bool {
             self.mass_couples_axes
         }
+        fn has_structural_damping(&self) -> bool {
+            self.loss_factor.is_some()
+        }
         fn matrices(&self, e: usize, out: &mut ElementMatrices) {
             out.k = (0..36).map(|at| (1 + e + at) as f64).collect();
             out.m = vec![2.0, 1.0, 1.0, 2.0];
-            out.c = Vec::new();
+            (out.c, out.g) = (Vec::new(), Vec::new());
+            if let Some(loss_factor) = self.loss_factor {
+                out.g = out.k.iter().map(|k| loss_factor * k).collect();
+            }
             if self.mass_couples_axes {
                 out.m = out.mass_on_all_axes().into_owned();
             }
@@ -246,7 +275,7 @@ mod tests {
         let mut constrained = [[false; 3]; 4];
         constrained[1] = [false, true, false];
         let product = |mass_couples_axes: bool| {
-            let chain = Chain { nodes: vec![[2, 0], [0, 1], [1, 3]], mass_couples_axes };
+            let chain = Chain { nodes: vec![[2, 0], [0, 1], [1, 3]], mass_couples_axes, loss_factor: None };
             let system = System::assemble(&comm, &Numbering::even(4, 0, 1), &constrained, &[&chain], &[]).unwrap();
             let x: Vec<f64> = (0..11).map(f64::from).collect();
             let (x, mut y) = (Vector::from_local(&comm, &x).unwrap(), system.zeros().unwrap());
@@ -260,5 +289,27 @@ mod tests {
         assert_eq!((n_alone, n_coupled), (25.0, 73.0));
         // The row of node 3, axis x: node 1's dof 3 and its own, 8.
         assert_eq!(alone[8], 3.0 + 2.0 * 8.0);
+    }
+
+    /// Families without loss factors add nothing, and nothing is assembled where no family has any.
+    #[test]
+    fn structural_damping_is_assembled_where_a_family_has_it() {
+        let comm = Session::start(&[]).unwrap();
+        let chain = |loss_factor: Option<f64>| Chain {
+            nodes: vec![[2, 0], [0, 1], [1, 3]],
+            mass_couples_axes: false,
+            loss_factor,
+        };
+        let assemble = |families: &[&dyn Elements]| {
+            System::assemble(&comm, &Numbering::even(4, 0, 1), &[[false; 3]; 4], families, &[]).unwrap()
+        };
+        let (plain, damped) = (chain(None), chain(Some(0.2)));
+        assert!(assemble(&[&plain]).g.is_none());
+        let (alone, both) = (assemble(&[&damped]), assemble(&[&plain, &damped]));
+        for system in [&alone, &both] {
+            let mut rest = system.g.as_ref().unwrap().duplicate().unwrap();
+            rest.axpy(-0.2, &alone.k).unwrap();
+            assert!(rest.norm_inf().unwrap() < 1e-12 * alone.k.norm_inf().unwrap());
+        }
     }
 }

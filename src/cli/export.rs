@@ -1,4 +1,4 @@
-//! `squeal export`: M, C and K about an equilibrium, for other programs.
+//! `squeal export`: M, C, K and G about an equilibrium, for other programs.
 
 use std::path::Path;
 
@@ -75,9 +75,11 @@ fn text(exported: &Exported, place: &Path) -> String {
     let lines: String = exported.files.iter().map(|(name, what)| format!("  {name:20}{what}\n")).collect();
     let (title, n, folder) = (&exported.title, exported.n_dofs, place.display());
     let file = |i: usize| &exported.files[i].0;
+    let structural = exported.files.iter().find(|(name, _)| name.starts_with("structural."));
+    let structural = structural.map_or_else(String::new, |(name, _)| format!(" --structural {folder}/{name}"));
     format!(
         "{title}: M, C and K {about}, {n} dofs\n\nresults in {folder}:\n{lines}\nIts modes: squeal modes --mass {folder}/{} \
-         --damping {folder}/{} --stiffness {folder}/{} --band FROM:TO\n",
+         --damping {folder}/{} --stiffness {folder}/{}{structural} --band FROM:TO\n",
         file(0),
         file(1),
         file(2)

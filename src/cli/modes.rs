@@ -25,7 +25,7 @@ use super::watch::Watch;
 #[group(skip)]
 pub struct Modes {
     /// A family of matrices along a parameter (TOML), or with --part a model file
-    #[arg(required_unless_present = "mass", conflicts_with_all = ["mass", "stiffness", "damping"])]
+    #[arg(required_unless_present = "mass", conflicts_with_all = ["mass", "stiffness", "damping", "structural"])]
     subject: Option<PathBuf>,
     /// M, kg: Matrix Market, PETSc binary, or Abaqus's text, also gzipped
     #[arg(long, value_name = "FILE", requires = "stiffness")]
@@ -36,6 +36,9 @@ pub struct Modes {
     /// C, N s/m (default: none)
     #[arg(long, value_name = "FILE", requires = "mass")]
     damping: Option<PathBuf>,
+    /// G, N/m, the imaginary part of the stiffness: structural damping (default: none)
+    #[arg(long, value_name = "FILE", requires = "mass")]
+    structural: Option<PathBuf>,
     /// Frequency band in Hz (with --part default: the model file's)
     #[arg(long, value_name = "FROM:TO", value_parser = values::band, allow_hyphen_values = true)]
     band: Option<[f64; 2]>,
@@ -133,6 +136,7 @@ impl Modes {
         let mut terms = vec![term(Role::Mass, mass)];
         terms.extend(self.damping.iter().map(|file| term(Role::Damping, file)));
         terms.push(term(Role::Stiffness, stiffness));
+        terms.extend(self.structural.iter().map(|file| term(Role::Structural, file)));
         Ok(MatrixFamily { title: stem(stiffness), parameter: "parameter".into(), terms })
     }
 

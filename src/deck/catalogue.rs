@@ -92,7 +92,7 @@ const READ: &[(&str, Treatment)] = &[
     ("*MPC", Read(&[], &[])),
     ("*TRANSFORM", Read(&["NSET", "TYPE"], &[])),
     ("*CLEARANCE", Read(&["VALUE", "MASTER", "SLAVE"], &[])),
-    ("*SPRING", Read(&["ELSET"], &[])),
+    ("*SPRING", Read(&["ELSET", "COMPLEXSTIFFNESS"], &[])),
     ("*DASHPOT", Read(&["ELSET"], &[])),
     ("*MASS", Read(&["ELSET"], &[])),
     ("*ROTARY INERTIA", Read(&["ELSET"], &[])),

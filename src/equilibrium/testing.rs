@@ -29,9 +29,14 @@ impl Connectivity for Whole {
 }
 
 impl Elements for Whole {
+    fn has_structural_damping(&self) -> bool {
+        self.matrices.g.is_some()
+    }
+
     fn matrices(&self, _: usize, out: &mut ElementMatrices) {
         let [m, c, k] = self.matrices.as_ref().map(|a| a.transpose().as_slice().to_vec()).into_array();
-        *out = ElementMatrices { k, m, c };
+        let g = self.matrices.g.as_ref().map_or_else(Vec::new, |g| g.transpose().as_slice().to_vec());
+        *out = ElementMatrices { k, m, c, g };
     }
 }
 
@@ -67,7 +72,7 @@ pub fn blocks(n: usize) -> Mck<DMatrix<f64>> {
         }
     }
     let m = DMatrix::identity(3 * n, 3 * n);
-    Mck { c: 0.02 * &m + 1e-5 * &k, m, k }
+    Mck { c: 0.02 * &m + 1e-5 * &k, m, k, g: None }
 }
 
 /// The belt under the blocks: one point each against the ground, normal z, sliding along x.

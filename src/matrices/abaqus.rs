@@ -179,6 +179,7 @@ impl Element {
             Role::Mass => "TYPE=MASS",
             Role::Damping => "TYPE=VISCOUSDAMPING",
             Role::Stiffness => "TYPE=STIFFNESS",
+            Role::Structural => "TYPE=STRUCTURALDAMPING",
         };
         let is_wanted = options.contains(wanted);
         if is_wanted && !self.values.is_empty() {

@@ -101,7 +101,7 @@ fn common_numbering(terms: &[Term], files: &mut [Entries]) -> Result<(usize, Opt
         None => Ok((n, None)),
         Some(i) => {
             let what = format!("the {} has {} rows, the {} has {n}", of(i), at_least(&files[i]), of(largest));
-            Err(Error::input(format!("{what}. M, C and K must be of one size")))
+            Err(Error::input(format!("{what}. All matrices must be of one size")))
         }
     }
 }
@@ -188,7 +188,7 @@ fn require_filled(terms: &[Term], files: &[Entries], names: &Names) -> Result<()
 }
 
 /// Powers of two that bring the largest entries of all rows and columns of `sum |K| + omega |C| + omega^2 |M|` to one
-/// size.
+/// size; G counts as K does.
 ///
 /// One round divides by the square root of the largest: Ruiz, A scaling algorithm to equilibrate both rows and columns
 /// norms in matrices, RAL-TR-2001-034.
@@ -200,7 +200,7 @@ fn scaling(terms: &[Term], pattern: &SparsityPattern, values: &[Vec<f64>], omega
             let weight = match term.role {
                 Role::Mass => omega * omega,
                 Role::Damping => omega,
-                Role::Stiffness => 1.0,
+                Role::Stiffness | Role::Structural => 1.0,
             };
             for (i, j, at) in pattern.places() {
                 let entry = weight * values[at].abs() * d[i] * d[j];

@@ -19,10 +19,12 @@ pub struct Symmetry {
     pub damping: bool,
     /// K.
     pub stiffness: bool,
+    /// G; true where there is none.
+    pub structural: bool,
 }
 
-/// A quadratic eigenproblem of external matrices, scaled: `D (lambda^2 M + lambda C + K) D y = 0`, `x = D y`. All terms
-/// share one symmetric pattern.
+/// A quadratic eigenproblem of external matrices, scaled: `D (lambda^2 M + lambda C + K + i G) D y = 0`, `x = D y`.
+/// All terms share one symmetric pattern.
 pub struct ExternalMatrices {
     terms: Vec<Term>,
     matrices: Vec<Matrix>,
@@ -40,7 +42,7 @@ pub struct ExternalMatrices {
     pub names: Names,
 }
 
-/// M, C, K and the symmetric part of K at a value of the parameter.
+/// M, C, K, G and the symmetric part of K at a value of the parameter.
 pub struct Sums {
     /// M.
     pub m: Matrix,
@@ -48,6 +50,8 @@ pub struct Sums {
     pub c: Matrix,
     /// K.
     pub k: Matrix,
+    /// G, where it has any term.
+    pub g: Option<Matrix>,
     /// `(K + K^T) / 2`, where K is not symmetric.
     pub k_symmetric: Option<Matrix>,
 }
@@ -100,7 +104,12 @@ impl ExternalMatrices {
         };
         let matrices = piece.matrices(comm, &owned(comm.rank()))?;
         let all = |role: Role| terms.iter().zip(&flags).filter(|(term, _)| term.role == role).all(|(_, flag)| *flag);
-        let symmetry = Symmetry { mass: all(Role::Mass), damping: all(Role::Damping), stiffness: all(Role::Stiffness) };
+        let symmetry = Symmetry {
+            mass: all(Role::Mass),
+            damping: all(Role::Damping),
+            stiffness: all(Role::Stiffness),
+            structural: all(Role::Structural),
+        };
         let mut matrices = matrices.into_iter();
         let own: Vec<Matrix> = matrices.by_ref().take(terms.len()).collect();
         let has_part = |i: usize| terms[i].role == Role::Stiffness && !flags[i];
@@ -122,6 +131,7 @@ impl ExternalMatrices {
             m: self.sum(Role::Mass, &factors, own)?,
             c: self.sum(Role::Damping, &factors, own)?,
             k: self.sum(Role::Stiffness, &factors, own)?,
+            g: self.has_structural_damping().then(|| self.sum(Role::Structural, &factors, own)).transpose()?,
             k_symmetric: match self.symmetry.stiffness {
                 true => None,
                 false => Some(self.sum(Role::Stiffness, &factors, part)?),
@@ -153,9 +163,18 @@ impl ExternalMatrices {
         self.terms.iter().any(|term| term.factor.varies())
     }
 
-    /// Whether there is any damping.
+    /// Whether there is any C.
     pub fn is_damped(&self) -> bool {
-        self.terms.iter().any(|term| term.role == Role::Damping)
+        self.has(Role::Damping)
+    }
+
+    /// Whether there is any G.
+    pub fn has_structural_damping(&self) -> bool {
+        self.has(Role::Structural)
+    }
+
+    fn has(&self, role: Role) -> bool {
+        self.terms.iter().any(|term| term.role == role)
     }
 }
 

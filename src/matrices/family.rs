@@ -1,5 +1,5 @@
-//! Sums of matrices with expressions of a parameter: `K(p) = sum_i f_i(p) K_i`, and M and C alike, as a TOML file gives
-//! them.
+//! Sums of matrices with expressions of a parameter: `K(p) = sum_i f_i(p) K_i`, and M, C and G alike, as a TOML file
+//! gives them. `[[structural]]` has the terms of structural damping G, the imaginary part of the stiffness.
 //!
 //! ```toml
 //! parameter = "v"
@@ -113,6 +113,8 @@ struct Keys {
     #[serde(default)]
     damping: Vec<RawTerm>,
     stiffness: Vec<RawTerm>,
+    #[serde(default)]
+    structural: Vec<RawTerm>,
 }
 
 #[derive(Deserialize)]
@@ -149,11 +151,11 @@ pub fn read(path: &Path) -> Result<MatrixFamily> {
     let keys: Keys = toml::from_str(&text).map_err(|error| {
         let at = line(error.span().map_or(0, |span| span.start));
         let advice =
-            "A family has parameter = \"p\" and tables [[mass]], [[damping]], [[stiffness]] with file and factor";
+            "A family has parameter = \"p\" and tables [[mass]], [[damping]], [[stiffness]], [[structural]] with file and factor";
         Error::input(format!("{place}:{at}: {}. {advice}", error.message().trim_end()))
     })?;
     let mut terms = Vec::new();
-    for (role, list) in Role::ALL.into_iter().zip([&keys.mass, &keys.damping, &keys.stiffness]) {
+    for (role, list) in Role::ALL.into_iter().zip([&keys.mass, &keys.damping, &keys.stiffness, &keys.structural]) {
         for RawTerm { file, factor } in list {
             let factor = match factor {
                 None => Coefficient::one(),

@@ -67,7 +67,7 @@ fn header(lines: &Lines) -> Result<(bool, MarketSymmetry)> {
         "real" | "double" | "integer" => {}
         "complex" => {
             return Err(lines.error(
-                "the matrix is complex. M, C and K are real: a complex stiffness (structural damping) is not read",
+                "the matrix is complex. All matrices are real: give the imaginary part of the stiffness as a matrix of its own",
             ));
         }
         "pattern" => return Err(lines.error("the file has a pattern without values. Write it as real")),

@@ -1,7 +1,8 @@
-//! Matrices from files and into files: the quadratic eigenproblem `(lambda^2 M + lambda C + K) x = 0` of any program.
+//! Matrices from files and into files: the quadratic eigenproblem `(lambda^2 M + lambda C + K + i G) x = 0` of any
+//! program.
 //!
 //! ```text
-//! files --read--> Entries --CombinedTerms--> one numbering, pattern, scaling --distribute--> M, C, K on all ranks
+//! files --read--> Entries --CombinedTerms--> one numbering, pattern, scaling --distribute--> M, C, K, G on all ranks
 //! ```
 //!
 //! [`read`] recognises a format by its content: Matrix Market, PETSc binary, Abaqus's and CalculiX's text, each also
@@ -33,7 +34,7 @@ use std::path::Path;
 use crate::Result;
 use lines::{Lines, MatrixFile};
 
-/// Which of the three matrices.
+/// Which of the four matrices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// M.
@@ -42,11 +43,13 @@ pub enum Role {
     Damping,
     /// K.
     Stiffness,
+    /// G, the imaginary part of the stiffness.
+    Structural,
 }
 
 impl Role {
-    /// All of them, in the order M, C, K.
-    pub const ALL: [Role; 3] = [Role::Mass, Role::Damping, Role::Stiffness];
+    /// All of them, in the order M, C, K, G.
+    pub const ALL: [Role; 4] = [Role::Mass, Role::Damping, Role::Stiffness, Role::Structural];
 
     /// Its name in messages.
     pub fn name(self) -> &'static str {
@@ -54,6 +57,7 @@ impl Role {
             Role::Mass => "mass",
             Role::Damping => "damping",
             Role::Stiffness => "stiffness",
+            Role::Structural => "structural damping",
         }
     }
 }

@@ -120,6 +120,12 @@ impl<'a> Item<'a> {
         self.check(value, *value.get_ref() >= 0.0, key, "must be 0 or above", advice)
     }
 
+    /// The loss factor of a stiffness; 0 where it is not given.
+    pub fn loss_factor(&self, value: &Option<Number>) -> Result<f64> {
+        let advice = "Give the imaginary over the real part of the stiffness, such as 0.02";
+        value.as_ref().map_or(Ok(0.0), |value| self.not_negative(value, "loss_factor", advice))
+    }
+
     /// A number for which `holds` (and which is finite).
     pub fn check(&self, value: &Number, holds: bool, key: &str, must: &str, advice: &str) -> Result<f64> {
         let (at, number) = (value.span(), *value.get_ref());

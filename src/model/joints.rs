@@ -37,6 +37,7 @@ fn connector(item: &Item, name: String, raw: &keys::ConnectorTable, unit: f64) -
         stiffness: constants(&raw.stiffness, "stiffness", "Give [x, y, z] in N/m")?,
         rotational_stiffness: optional(&raw.rotational_stiffness, "rotational_stiffness", rotational)?,
         damping: optional(&raw.damping, "damping", "Give [x, y, z] in N s/m")?,
+        loss_factor: item.loss_factor(&raw.loss_factor)?,
         place: item.place(),
     };
     let all = [connector.stiffness, connector.rotational_stiffness, connector.damping];

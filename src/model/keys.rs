@@ -140,6 +140,7 @@ tables! {
         pub x_axis: Option<Vector>,
         pub y_axis: Option<Vector>,
         pub elasticity: Option<Spanned<[[f64; 6]; 6]>>,
+        pub loss_factor: Option<Number>,
     }
 
     pub struct PartTable {
@@ -213,6 +214,7 @@ tables! {
         pub stiffness: Vector,
         pub rotational_stiffness: Option<Vector>,
         pub damping: Option<Vector>,
+        pub loss_factor: Option<Number>,
     }
 
     pub struct TieTable {

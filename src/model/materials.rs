@@ -11,7 +11,7 @@ use crate::Result;
 use nalgebra::{Matrix3, Matrix6};
 use toml::Spanned;
 
-/// The kinds of material and the keys that belong to each, besides `kind` and `density`.
+/// The kinds of material and the keys that belong to each, besides `kind`, `density` and `loss_factor`.
 const KINDS: [(&str, &[&str]); 4] = [
     ("isotropic", &["young", "poisson"]),
     ("transverse", &["axis", "young", "young_axial", "poisson", "poisson_axial", "shear_axial"]),
@@ -53,7 +53,8 @@ impl<'a> MaterialReader<'a> {
             _ => self.isotropic()?,
         };
         let elasticity = std::array::from_fn(|i| std::array::from_fn(|j| elasticity[(i, j)]));
-        Ok(Material { name: self.name.to_owned(), density, elasticity })
+        let loss_factor = self.item.loss_factor(&self.raw.loss_factor)?;
+        Ok(Material { name: self.name.to_owned(), density, elasticity, loss_factor })
     }
 
     /// The material's kind, once all keys given belong to it.

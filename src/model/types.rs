@@ -79,6 +79,13 @@ impl Model {
         self.friction_damping
             || self.parts.iter().any(|part| part.rayleigh != Rayleigh::default())
             || self.connectors.iter().any(|connector| connector.damping != [0.0; 3])
+            || self.has_structural_damping()
+    }
+
+    /// Whether a material or a connector has a loss factor.
+    pub fn has_structural_damping(&self) -> bool {
+        self.parts.iter().any(|part| part.material.loss_factor != 0.0)
+            || self.connectors.iter().any(|connector| connector.loss_factor != 0.0)
     }
 
     /// The model of one part alone, which nothing constrains, touches or loads, so that there is nothing to sweep
@@ -126,7 +133,7 @@ pub struct Part {
 }
 
 /// A linear elastic material.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name in the model file.
     pub name: String,
@@ -134,6 +141,8 @@ pub struct Material {
     pub density: f64,
     /// Elasticity, Pa, row-major, in Voigt order xx yy zz xy yz zx with engineering shear strains, in global axes.
     pub elasticity: [[f64; 6]; 6],
+    /// Loss factor `g` of structural damping: the stiffness is `K (1 + i g)`.
+    pub loss_factor: f64,
 }
 
 impl Material {
@@ -287,6 +296,8 @@ pub struct Connector {
     pub rotational_stiffness: [f64; 3],
     /// Translational damping by axis, N s/m.
     pub damping: [f64; 3],
+    /// Loss factor `g` of both stiffnesses: structural damping.
+    pub loss_factor: f64,
     /// Where it stands.
     pub place: Place,
 }

@@ -92,7 +92,7 @@ fn parts(out: &mut Text, model: &Model) {
     let mut written: Vec<(String, &Material)> = Vec::new();
     let mut names = Vec::new();
     for part in &model.parts {
-        let same = |own: &Material| own.density == part.material.density && own.elasticity == part.material.elasticity;
+        let same = |own: &Material| Material { name: part.material.name.clone(), ..own.clone() } == part.material;
         if let Some((name, _)) = written.iter().find(|(_, own)| own.name == part.material.name && same(own)) {
             names.push(name.clone());
             continue;
@@ -132,6 +132,9 @@ fn material(out: &mut Text, name: &str, material: &Material) {
         }
     }
     out.line("density", number(material.density));
+    if material.loss_factor != 0.0 {
+        out.line("loss_factor", number(material.loss_factor));
+    }
 }
 
 /// Young's modulus (Pa) and Poisson's ratio of an isotropic material.
@@ -251,7 +254,9 @@ mod tests {
             let (a, b) = (one.material.elasticity.as_flattened(), two.material.elasticity.as_flattened());
             assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-12 * a.abs().max(1e9)), "{}", one.name);
             assert_eq!((one.rayleigh, one.material.density), (two.rayleigh, two.material.density));
+            assert_eq!(one.material.loss_factor, two.material.loss_factor);
         }
+        assert!(back.has_structural_damping() && back.connectors[0].loss_factor == 0.1);
         assert_eq!(back.contacts[1].law, model.contacts[1].law);
         assert_eq!((back.frictions, back.swept, back.reduction.is_some()), (model.frictions, model.swept, true));
         assert!(text.contains("young = 1.1e11"), "{text}");

@@ -51,11 +51,15 @@ fn matrices_text(results: &ExternalResults) -> String {
     let of = |is_symmetric: bool| if is_symmetric { "symmetric" } else { "unsymmetric" };
     let symmetry = results.symmetry;
     let damping = if results.is_damped { format!("C {}", of(symmetry.damping)) } else { "no C".into() };
+    let structural = match results.has_structural_damping {
+        true => format!(", structural damping G {}", of(symmetry.structural)),
+        false => String::new(),
+    };
     let constrained = match results.n_constrained {
         0 => String::new(),
         n => format!("; {n} constrained dofs (1e36 on the diagonal of K) are left out"),
     };
-    format!("M {}, {damping}, K {}{constrained}\n", of(symmetry.mass), of(symmetry.stiffness))
+    format!("M {}, {damping}, K {}{structural}{constrained}\n", of(symmetry.mass), of(symmetry.stiffness))
 }
 
 /// How many modes, and which of them grow.
@@ -98,7 +102,7 @@ fn modes_text(modes: &[ExternalMode]) -> String {
 fn count_text(count: &Count, results: &ExternalResults) -> String {
     let Count { below, expected, found } = *count;
     let how = match (results.evidence, count.agrees()) {
-        (Evidence::SturmCount, true) if !results.is_damped => {
+        (Evidence::SturmCount, true) if !results.is_damped && !results.has_structural_damping => {
             "as many as K - omega^2 M has negative eigenvalues by Sylvester's law of inertia: none is missing".into()
         }
         (Evidence::SturmCount, true) => {

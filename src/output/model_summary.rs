@@ -31,6 +31,8 @@ pub struct ModelSummary {
     pub constrained_dofs: usize,
     /// Connectors.
     pub connectors: usize,
+    /// Loss factors of connectors.
+    pub connector_loss_factors: Vec<LossRow>,
     /// One row a tie.
     pub ties: Vec<TieRow>,
     /// One row a rigid set.
@@ -84,6 +86,17 @@ pub struct PartRow {
     pub alpha_per_s: f64,
     /// Stiffness-proportional damping.
     pub beta_s: f64,
+    /// Loss factor of its material.
+    pub loss_factor: f64,
+}
+
+/// A connector with a loss factor.
+#[derive(Serialize)]
+pub struct LossRow {
+    /// Its name.
+    pub connector: String,
+    /// Its loss factor.
+    pub loss_factor: f64,
 }
 
 /// A tie.
@@ -169,8 +182,10 @@ impl ModelSummary {
         )
     }
 
-    /// Ties, rigid sets, equations and masses, a line each; nothing where there is none.
+    /// Connectors with loss factors, ties, rigid sets, equations and masses, a line each; nothing where there is none.
     fn joints_text(&self) -> String {
+        let loss = |row: &LossRow| format!("connector {:?}: loss factor {}\n", row.connector, row.loss_factor);
+        let losses = self.connector_loss_factors.iter().map(loss);
         let ties = self.ties.iter().map(TieRow::text);
         let rigid = self.rigid_sets.iter().map(|row| format!("rigid {:?}: {} nodes\n", row.rigid, row.nodes));
         let equations = (self.equations > 0).then(|| format!("{} equations\n", self.equations));
@@ -178,7 +193,7 @@ impl ModelSummary {
             self.masses.iter().map(|row| format!("mass {:?} on {}: {:.4} kg\n", row.mass, row.on, row.mass_kg));
         let total =
             (!self.masses.is_empty()).then(|| format!("mass of parts and point masses: {:.4} kg\n", self.mass_kg));
-        ties.chain(rigid).chain(equations).chain(masses).chain(total).collect()
+        losses.chain(ties).chain(rigid).chain(equations).chain(masses).chain(total).collect()
     }
 
     fn parts_text(&self) -> String {
@@ -187,12 +202,9 @@ impl ModelSummary {
             let of_mass = |text: String| if *mass_kg > 0.0 { text } else { "none".to_owned() };
             let centre = of_mass(joined(row.centre_m, 1e3, 2, " "));
             let inertia = of_mass(joined(row.inertia_kg_m2, 1e6, 2, " "));
-            let damping = match (row.alpha_per_s, row.beta_s) {
-                (0.0, 0.0) => "none".to_owned(),
-                (alpha, beta) => format!("{alpha} {beta:e}"),
-            };
             format!(
-                "{part}\t{elements}\t{mass_kg:.4}\t{centre}\t{inertia}\t{quality_min:.3} {quality_median:.3}\t{damping}"
+                "{part}\t{elements}\t{mass_kg:.4}\t{centre}\t{inertia}\t{quality_min:.3} {quality_median:.3}\t{}",
+                row.damping()
             )
         };
         let heading =
@@ -210,6 +222,19 @@ impl ModelSummary {
         let heading = "pair\tkind\tpoints\tdropped\ttouching\tarea mm2\tgap mm (min max; below 0: overlap)\tfriction";
         let notes: String = self.pairs.iter().map(PairRow::notes).collect();
         aligned(heading, self.pairs.iter().map(row)) + &notes
+    }
+}
+
+impl PartRow {
+    /// Rayleigh's coefficients and the loss factor, those that there are.
+    fn damping(&self) -> String {
+        let rayleigh = match (self.alpha_per_s, self.beta_s) {
+            (0.0, 0.0) => None,
+            (alpha, beta) => Some(format!("{alpha} {beta:e}")),
+        };
+        let loss = (self.loss_factor != 0.0).then(|| format!("loss factor {}", self.loss_factor));
+        let all: Vec<String> = rayleigh.into_iter().chain(loss).collect();
+        if all.is_empty() { "none".to_owned() } else { all.join(", ") }
     }
 }
 
@@ -256,6 +281,7 @@ pub(super) mod tests {
             quality_median: 0.75,
             alpha_per_s: 5.0,
             beta_s: 1e-7,
+            loss_factor: 0.0,
         };
         let pair = PairRow {
             pair: "disc / pad".into(),
@@ -307,6 +333,7 @@ pub(super) mod tests {
             layouts: Some(vec![layout]),
             constrained_dofs: 12,
             connectors: 0,
+            connector_loss_factors: vec![LossRow { connector: "pin".into(), loss_factor: 0.1 }],
             ties: vec![tie],
             rigid_sets: vec![RigidRow { rigid: "mount".into(), nodes: 12 }],
             masses: vec![MassRow { mass: "sensor".into(), on: "ear".into(), mass_kg: 0.05 }],

@@ -7,7 +7,8 @@ use crate::results::{ModeData, Results};
 pub fn stability(results: &Results, place: &str) -> String {
     let about = &results.about;
     let [from, to] = about.band;
-    let mut summary = format!("{}: complex modes {from}-{to} Hz\n\n", about.title);
+    let damping = if about.structural_damping { ", with structural damping" } else { "" };
+    let mut summary = format!("{}: complex modes {from}-{to} Hz{damping}\n\n", about.title);
     if results.asked().next().is_some() {
         summary += &format!("{}\n", sweep_text::sweep(results));
     }
@@ -73,6 +74,14 @@ mod tests {
     #[test]
     fn a_summary_has_the_sweep_the_verdict_and_the_files() {
         insta::assert_snapshot!(stability(&testing::results(), "run"));
+    }
+
+    #[test]
+    fn a_summary_says_that_there_are_loss_factors() {
+        let mut results = testing::results();
+        assert!(!stability(&results, "run").contains("structural damping"));
+        results.about.structural_damping = true;
+        assert!(stability(&results, "run").contains(" Hz, with structural damping\n"));
     }
 
     #[test]

@@ -110,7 +110,7 @@ pub struct Reduced {
     pub frequencies: Vec<f64>,
     /// The basis `[Psi Phi E]`.
     pub basis: Block,
-    /// `T^T M T`, `T^T C T` and `T^T K T`, K without the sliding contacts.
+    /// `T^T M T`, `T^T C T`, `T^T K T` and `T^T G T`, K without the sliding contacts.
     pub matrices: Mck<DMatrix<f64>>,
     /// `T^T F_ext`, N.
     pub load: Vec<f64>,
@@ -174,11 +174,12 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
     let [mass, stiffness] = coarse;
     let (mass, stiffness) = (project(mass, &basis, &system.m)?, project(stiffness, &basis, &linear.stiffness)?);
     let damping = project(none(), &basis, &system.c)?;
+    let structural = system.g.as_ref().map(|g| project(none(), &basis, g)).transpose()?;
     costs.projection_seconds = start.elapsed().as_secs_f64();
     let load = shadow(&basis, &system.load)?;
     let preload = shadow(&basis, &linear.preload)?;
     let frequencies = modes.frequencies;
-    let matrices = Mck { m: mass, c: damping, k: stiffness };
+    let matrices = Mck { m: mass, c: damping, k: stiffness, g: structural };
     Ok(Reduced { retained, contacts, frequencies, basis, matrices, load, preload, costs })
 }
 

@@ -1,12 +1,13 @@
 //! The file of a super-element, HDF5.
 //!
 //! ```text
-//! /                 attributes: format "squeal super-element", version 3
+//! /                 attributes: format "squeal super-element", version 4
 //! about             text, TOML: [origin] model, mesh with hash, friction, bands; [[pair]] the sliding pairs; parts
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
 //! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + residual modes; kg, N s/m, N/m at the retained
 //!                               points, unit modal mass
+//! structural_damping            n x n, as stiffness; only where a stiffness has a loss factor
 //! load, preload     n           generalised forces, N
 //! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:
 //!                   frictionless), weight (m2), gap (m), touching (0 or 1), displacement (m) and normal_force (N) at
@@ -35,7 +36,10 @@ use super::recovery::OuterSurface;
 use super::super_element::{NodeContact, Origin, SuperElement};
 
 const FORMAT: Format =
-    Format { name: "squeal super-element", version: 3, advice: "Make the super-element again with `squeal reduce`" };
+    Format { name: "squeal super-element", version: 4, advice: "Make the super-element again with `squeal reduce`" };
+
+/// The name of the matrix that only some have.
+const STRUCTURAL_DAMPING: &str = "structural_damping";
 
 /// What is told in words.
 #[derive(Serialize, Deserialize)]
@@ -86,6 +90,7 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
     table(file, "mass", n, &element.mass)?;
     table(file, "damping", n, &element.damping)?;
     table(file, "stiffness", n, &element.stiffness)?;
+    element.structural_damping.iter().try_for_each(|g| table(file, STRUCTURAL_DAMPING, n, g))?;
     list(file, "load", &element.load)?;
     list(file, "preload", &element.preload)?;
     write_contacts(&file.create_group("contacts")?, &element.contacts)?;
@@ -177,6 +182,10 @@ fn read_body(file: &File) -> hdf5::Result<SuperElement> {
         mass: values(file, "mass")?,
         damping: values(file, "damping")?,
         stiffness: values(file, "stiffness")?,
+        structural_damping: match file.link_exists(STRUCTURAL_DAMPING) {
+            true => Some(values(file, STRUCTURAL_DAMPING)?),
+            false => None,
+        },
         load: values(file, "load")?,
         preload: values(file, "preload")?,
         contacts: read_contacts(&file.group("contacts")?, &pairs)?,
@@ -269,8 +278,9 @@ fn inconsistency(element: &SuperElement) -> Option<String> {
         return Some(format!("{n} coordinates for {least} retained displacements and modes"));
     }
     let matrices = [("mass", &element.mass), ("damping", &element.damping), ("stiffness", &element.stiffness)];
+    let matrices = matrices.into_iter().chain(element.structural_damping.iter().map(|g| (STRUCTURAL_DAMPING, g)));
     let vectors = [("load", &element.load), ("preload", &element.preload)];
-    let sized = matrices.map(|(name, m)| (name, m, n * n)).into_iter().chain(vectors.map(|(name, v)| (name, v, n)));
+    let sized = matrices.map(|(name, m)| (name, m, n * n)).chain(vectors.map(|(name, v)| (name, v, n)));
     for (name, values, length) in sized {
         if values.len() != length {
             return Some(format!("{name} has {} values instead of {length}", values.len()));

@@ -81,6 +81,8 @@ pub struct SuperElement {
     pub damping: Vec<f64>,
     /// Stiffness without the contacts.
     pub stiffness: Vec<f64>,
+    /// Structural damping, where a stiffness has a loss factor.
+    pub structural_damping: Option<Vec<f64>>,
     /// Generalised forces of the loads.
     pub load: Vec<f64>,
     /// Generalised forces of the contacts that were linearised.
@@ -124,6 +126,7 @@ impl SuperElement {
             mass: reduced.matrices.m.as_slice().to_vec(),
             damping: reduced.matrices.c.as_slice().to_vec(),
             stiffness: reduced.matrices.k.as_slice().to_vec(),
+            structural_damping: reduced.matrices.g.as_ref().map(|g| g.as_slice().to_vec()),
             load: reduced.load.clone(),
             preload: reduced.preload.clone(),
             pairs,
@@ -176,7 +179,8 @@ impl SuperElement {
             System::assemble(comm, &nodes, &held, &[&Member::new(self)], &[&interface.gap_operator])?
         };
         // Every coordinate couples with every other.
-        [&mut system.k, &mut system.m, &mut system.c].into_iter().try_for_each(Matrix::store_dense)?;
+        let matrices = [&mut system.k, &mut system.m, &mut system.c].into_iter().chain(&mut system.g);
+        matrices.into_iter().try_for_each(Matrix::store_dense)?;
         let force = |i: usize| self.load.get(i).map_or(0.0, |load| factor * load + self.preload[i]);
         let forces: Vec<_> = (0..held.len()).map(|n| (n as u32, [0, 1, 2].map(|i| force(3 * n + i)))).collect();
         system.add_load(&forces)?;
@@ -241,10 +245,15 @@ impl Connectivity for Member<'_> {
 }
 
 impl Elements for Member<'_> {
+    fn has_structural_damping(&self) -> bool {
+        self.element.structural_damping.is_some()
+    }
+
     fn matrices(&self, _: usize, out: &mut ElementMatrices) {
         let (n, width) = (self.element.n_coordinates(), 3 * self.nodes.len());
-        let SuperElement { mass, damping, stiffness, .. } = self.element;
-        for (to, from) in [(&mut out.m, mass), (&mut out.c, damping), (&mut out.k, stiffness)] {
+        let SuperElement { mass, damping, stiffness, structural_damping, .. } = self.element;
+        let real = [(&mut out.m, mass), (&mut out.c, damping), (&mut out.k, stiffness)];
+        for (to, from) in real.into_iter().chain(structural_damping.as_ref().map(|from| (&mut out.g, from))) {
             to.clear();
             to.resize(width * width, 0.0);
             for (row, values) in to.chunks_exact_mut(width).zip(from.chunks_exact(n)) {

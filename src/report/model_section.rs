@@ -30,6 +30,9 @@ fn facts(about: &About) -> Markup {
             dt { "Size" } dd { (about.n_nodes) " nodes, " (about.n_elements) " elements" }
         }
         dt { "Solved" } dd { (about.n_dofs) " dofs on " (about.n_ranks) " rank" (plural(about.n_ranks)) }
+        @if about.structural_damping {
+            dt { "Damping" } dd { "structural, by loss factors g: stiffness K (1 + i g) at positive frequencies" }
+        }
         dt { "Command" } dd { code { "squeal " (about.command) } }
         dt { "Program" } dd { (about.program) }
         dt { "Libraries" } dd { (about.libraries) }

@@ -26,6 +26,8 @@ pub struct ExternalResults {
     pub symmetry: Symmetry,
     /// Whether there is a C.
     pub is_damped: bool,
+    /// Whether there is a G.
+    pub has_structural_damping: bool,
     /// Band analysed, Hz.
     pub band: [f64; 2],
     /// What counts as an unstable mode.

@@ -116,6 +116,9 @@ pub struct About {
     /// Whether nothing takes energy out of the motions.
     #[serde(default)]
     pub undamped: bool,
+    /// Whether a stiffness has a loss factor.
+    #[serde(default)]
+    pub structural_damping: bool,
     /// Doubtful properties of the model, a sentence each.
     pub warnings: Vec<String>,
     /// The parts, which `Surface::part` counts.

@@ -141,7 +141,7 @@ impl Display for Doubt {
             Doubt::Undamped => write!(
                 f,
                 "the model has no damping: stable modes do not decay, so that a stable verdict means nothing. \
-                 Give `rayleigh` to the parts, or `damping` to a connector"
+                 Give `loss_factor` to the materials, `rayleigh` to the parts, or `damping` to a connector"
             ),
             Doubt::Implausible(what) => write!(f, "{what}"),
             Doubt::NoModes([from, to]) => {

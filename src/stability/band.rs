@@ -1,6 +1,8 @@
 //! All modes of a frequency band, none missed: choose a solver, search, count, widen.
 
 #[cfg(test)]
+mod structural_tests;
+#[cfg(test)]
 mod tests;
 
 use std::f64::consts::TAU;
@@ -49,6 +51,8 @@ pub struct Band {
     pub count: Count,
     /// What was done.
     pub report: BandReport,
+    /// Whether the conjugate of an eigenvalue is one, too: not with structural damping.
+    pub has_conjugates: bool,
 }
 
 /// What was done for a band.
@@ -145,7 +149,7 @@ impl BandSolver {
             self.blocked.drop_start();
         }
         let (search, count, report) = last.ok_or_else(|| not_converged(band, expected))?;
-        Ok(Band { modes: modes_of(search, band)?, count, report })
+        Ok(Band { modes: modes_of(search, band)?, count, report, has_conjugates: problem.matrices.g.is_none() })
     }
 
     /// About how many modes there are; the factor that counts and the one that solves give way to one another where
@@ -182,14 +186,18 @@ impl BandSolver {
         Ok(None)
     }
 
-    /// The solvers for a request, the fastest first. TOAR is the last resort.
+    /// The solvers for a request, the fastest first. TOAR is the last resort, but for structural damping, which the
+    /// blocked search alone can take.
     fn choose(&mut self, problem: &QuadraticProblem, request: &SearchRequest) -> Result<Vec<SolverKind>> {
-        let mut kinds = Vec::new();
+        let (mut kinds, is_complex) = (Vec::new(), problem.matrices.g.is_some());
         if self.blocked.reach(problem, request).is_some() {
             let search_mb = self.blocked.needs_mb(request.n_modes, problem.n_dofs());
-            if self.memory.before_search(problem, &mut self.blocked, &mut self.counter.sturm, search_mb) {
+            if self.memory.before_search(problem, &mut self.blocked, &mut self.counter.sturm, search_mb) || is_complex {
                 kinds.push(SolverKind::Blocked);
             }
+        }
+        if is_complex {
+            return Ok(kinds);
         }
         if self.modal.suits(problem, request)? {
             kinds.push(SolverKind::Modal);

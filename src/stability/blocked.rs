@@ -1,12 +1,13 @@
 //! All modes within a radius by one growing subspace, with many right-hand sides at a time.
 //!
-//! With `P(lambda) = lambda^2 M + lambda C + K` and a factor of K:
+//! With `P(lambda) = lambda^2 M + lambda C + K + i G` and a factor of K:
 //!
 //! 1. *Krylov blocks.* `V = [V_1 V_2 ...]`, `V_{j+1} = orth(K^-1 M V_j)` from a few random columns, until V has about
 //!    twice as many columns as modes are expected: it nearly holds the shapes of the undamped problem, friction
 //!    included. Where a nearby problem was solved before, V begins with its modes instead, those of some way beyond the
 //!    radius included, and needs no solve for them.
-//! 2. *Rayleigh-Ritz.* `V^T P(lambda) V y = 0` is solved by TOAR like a full problem; `x = V y`.
+//! 2. *Rayleigh-Ritz.* `V^T P(lambda) V y = 0` is solved ([`super::projected`]); `x = V y`. V is real, with structural
+//!    damping, too: real and imaginary parts of vectors join it.
 //! 3. *Correction.* The residuals `R = [P(lambda_i) x_i]` of all wanted modes are what damping and a truncated Krylov
 //!    space leave. The directions `K^-1 R` that V lacks have few that count (singular values fall by three decades in
 //!    twenty), which random combinations find: `K^-1 (R Omega)` joins V. Steps 2 and 3 repeat until every eigenvalue is
@@ -24,22 +25,20 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
 use super::mode::backward_errors;
+use super::projected::{self, Target};
 use super::space::{Basis, FactoredProblem, Ritz, SKETCH, Side, Space, Start};
 use super::{EigenOptions, QuadraticProblem};
-use crate::native::petsc::eigen::{self, Found, Pair, Quadratic};
-use crate::native::{Factor, FactorKind, Matrix};
+use crate::native::petsc::eigen::Pair;
 use crate::{ErrorKind, Result};
 
 /// Pairs whose vectors are looked at together.
 const PAIRS_AT_ONCE: usize = 16;
-/// How many eigenpairs the projected problem is solved for beyond those expected within the radius, one after the
-/// other.
-const PROJECTED_MARGINS: [usize; 4] = [8, 24, 72, 216];
+/// Eigenvalues up to this share of the radius are the zeros of rigid motions, which rounding moves from round to round.
+const RIGID: f64 = 1e-5;
 /// Rounds that most searches take.
 const N_ROUNDS_EXPECTED: usize = 10;
 /// Rounds that the left vectors of a few unstable modes take.
@@ -54,13 +53,6 @@ pub(super) struct Blocked {
     start: Option<Start>,
     /// The space of the last search, which holds the vectors of its modes.
     basis: Option<Basis>,
-}
-
-/// What a search aims at.
-struct Target {
-    /// 1/s.
-    radius: f64,
-    n_expected: usize,
 }
 
 impl Blocked {
@@ -89,11 +81,16 @@ impl Blocked {
         self.basis.take()
     }
 
-    /// How far a search would go, Hz; none where it is not for such a problem, or not for such an attempt any more.
-    /// Collective.
+    /// How far a search would go, Hz; none where it is not for such a problem, or not for such an attempt any more. With
+    /// structural damping it is the only search that there is, and every attempt goes farther. Collective.
     pub fn reach(&self, problem: &QuadraticProblem, request: &SearchRequest) -> Option<f64> {
+        let margins = self.options.band_margins;
+        if problem.matrices.g.is_some() {
+            let margin = if request.attempt == 0 { margins[0] } else { margins[1].powi(request.attempt as i32) };
+            return Some(margin * request.end);
+        }
         let suits = problem.symmetric_mc && request.shift == 0.0 && problem.n_dofs() >= self.options.blocked_from;
-        self.options.band_margins.get(request.attempt).filter(|_| suits).map(|margin| margin * request.end)
+        margins.get(request.attempt).filter(|_| suits).map(|margin| margin * request.end)
     }
 
     /// Memory (MB) of a search for `n_modes` among `n_dofs`: the basis, its rounds, the vectors found, those that the
@@ -137,9 +134,11 @@ impl Blocked {
     ) -> Result<Option<SearchResult>> {
         let mut last: Vec<Complex64> = Vec::new();
         for _ in 0..self.options.blocked.max_rounds {
-            let Some(ritz) = ritz(&space, target)? else { return Ok(None) };
+            let Some(ritz) = projected::solve(&space, target)? else { return Ok(None) };
             let change = self.options.blocked.eigenvalue_change;
-            let is_converged = |r: &Ritz| last.iter().any(|z| (z - r.lambda).norm() <= change * z.norm());
+            let is_rigid = |r: &Ritz| r.lambda.norm() <= RIGID * target.radius;
+            let is_converged =
+                |r: &Ritz| is_rigid(r) || last.iter().any(|z| (z - r.lambda).norm() <= change * z.norm());
             let n_converged = ritz.iter().filter(|r| is_converged(r)).count();
             progress(EigenProgress { n_converged, n_wanted: ritz.len(), n_solves: space.n_solves });
             if n_converged == ritz.len() && last.len() == ritz.len() {
@@ -161,7 +160,8 @@ impl Blocked {
     /// The pairs within the radius, and those within a multiple of it as well as the space has them.
     fn with_far_ones(&self, space: &Space, within: &[Ritz], target: &Target) -> Result<Vec<Ritz>> {
         let radius = self.options.blocked.start_radius * target.radius;
-        let far = ritz(space, &Target { radius, n_expected: self.n_start(target.n_expected) / 2 })?.unwrap_or_default();
+        let wider = Target { radius, n_expected: self.n_start(target.n_expected) / 2, ..*target };
+        let far = projected::solve(space, &wider)?.unwrap_or_default();
         Ok(within.iter().cloned().chain(far.into_iter().filter(|r| r.lambda.norm() > target.radius)).collect())
     }
 }
@@ -172,7 +172,7 @@ impl Eigensolver for Blocked {
         let Some(reach) = self.reach(problem, &request) else { return Ok(None) };
         let (factor, labels) = (problem.factorise(request.shift, factor)?, self.labels.clone());
         let searched = FactoredProblem { problem, factor, labels: &labels };
-        let target = Target { radius: TAU * reach, n_expected: request.n_modes };
+        let target = Target { radius: TAU * reach, n_expected: request.n_modes, shift: request.shift };
         if let Some(start) = self.start.take() {
             let space = Space::started(searched, start, N_ROUNDS_EXPECTED * SKETCH)?;
             if let Some(result) = unless_not_converged(self.correct(space, &target, progress))? {
@@ -214,42 +214,4 @@ fn accurate(space: &Space, start: &Start, ritz: &[Ritz], largest: f64) -> Result
 fn worth_correcting(ritz: &[Ritz], is_converged: impl Fn(&Ritz) -> bool) -> Vec<&Ritz> {
     let open: Vec<&Ritz> = ritz.iter().filter(|r| !is_converged(r)).collect();
     if open.is_empty() || 2 * open.len() > SKETCH { ritz.iter().collect() } else { open }
-}
-
-/// The projected problem's pairs within the radius, by modulus; none where it has too many.
-fn ritz(space: &Space, target: &Target) -> Result<Option<Vec<Ritz>>> {
-    let comm = space.v.comm().alone();
-    let n = space.v.n_columns();
-    // The same numbers on every rank, to the last bit.
-    let small =
-        |a: &DMatrix<f64>| Matrix::dense(&comm, n, &space.v.comm().broadcast(0, a.transpose().as_slice().to_vec()));
-    let matrices = space.projected.as_ref().try_map(small)?;
-    let mut factor = Factor::new(FactorKind::Unsymmetric);
-    factor.factorise(&matrices.k)?;
-    for margin in PROJECTED_MARGINS {
-        let n_wanted = (2 * (target.n_expected + margin)).min(2 * n);
-        let options = eigen::Options { n_wanted, n_basis: 0, tolerance: 1e-13, max_restarts: 500, scale: 0.0 };
-        let problem = Quadratic { matrices: matrices.as_ref(), shift: 0.0, inverse: &|b, x| factor.solve(b, x) };
-        let Some(found) = eigen::solve(&problem, &options, &mut |_, _| ())? else { continue };
-        let reach = found.pairs.iter().map(|pair| pair.lambda.norm()).fold(0.0, f64::max);
-        if reach > target.radius || found.n_converged >= 2 * n {
-            return within(found, target.radius).map(Some);
-        }
-    }
-    Ok(None)
-}
-
-/// The pairs with `|lambda| <= radius` by modulus, vectors of length 1.
-fn within(found: Found, radius: f64) -> Result<Vec<Ritz>> {
-    let mut ritz = Vec::new();
-    for Pair { lambda, re, im } in found.pairs {
-        if lambda.norm() <= radius {
-            let (mut re, mut im) = (re.to_vec()?, im.to_vec()?);
-            let norm = re.iter().chain(&im).map(|x| x * x).sum::<f64>().sqrt();
-            re.iter_mut().chain(&mut im).for_each(|x| *x /= norm);
-            ritz.push(Ritz { lambda, re, im });
-        }
-    }
-    ritz.sort_by(|a, b| a.lambda.norm().total_cmp(&b.lambda.norm()));
-    Ok(ritz)
 }

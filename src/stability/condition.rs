@@ -92,7 +92,7 @@ mod tests {
         // A free chain of two unit masses.
         let [m, c, k] = [[1.0, 0.0, 0.0, 1.0], [0.0; 4], [1.0, -1.0, -1.0, 1.0]]
             .map(|values| Matrix::dense(&comm, 2, &values).unwrap());
-        let problem = QuadraticProblem::symmetric(Mck { m: &m, c: &c, k: &k });
+        let problem = QuadraticProblem::symmetric(Mck::from([&m, &c, &k]));
         let mut factor = LabelledFactor::new(Precision::Double);
         assert_eq!(condition_at(0.0, &problem, &mut factor).unwrap(), f64::INFINITY);
         assert_eq!(factor.shift(), None, "nothing is factorised");

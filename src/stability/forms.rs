@@ -1,4 +1,4 @@
-//! What each part, connector and contact pair has in `y^H M x`, `y^H C x` and `y^H K x`.
+//! What each part, connector and contact pair has in `y^H M x`, `y^H C x`, `y^H K x` and `y^H G x`.
 
 use num_complex::Complex64;
 
@@ -7,7 +7,7 @@ use crate::assembly::{ElementMatrices, Elements, System};
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::{Mck, Vector};
 
-/// The share of one source in the three forms of two vectors: `y^H M x`, `y^H C x`, `y^H K x`.
+/// The share of one source in the forms of two vectors: `y^H M x`, `y^H C x`, `y^H K x`, `y^H G x`.
 pub type Forms = Mck<Complex64>;
 
 /// A complex vector in two real ones.
@@ -49,6 +49,9 @@ pub fn of_elements(system: &System, families: &[Sources], n: usize, [y, x]: [Com
                 sum.m += hermitian(&element.mass_on_all_axes(), &y, &x);
                 sum.c += hermitian(&element.c, &y, &x);
                 sum.k += hermitian(&element.k, &y, &x);
+                if family.has_structural_damping() {
+                    *sum.g.get_or_insert_default() += hermitian(&element.g, &y, &x);
+                }
             }
         }
     }
@@ -62,10 +65,14 @@ fn hermitian(a: &[f64], y: &[Complex64], x: &[Complex64]) -> Complex64 {
 }
 
 fn summed(system: &System, sums: Vec<Forms>) -> Vec<Forms> {
-    let mut values: Vec<f64> = sums.into_iter().flat_map(Mck::into_array).flat_map(|z| [z.re, z.im]).collect();
+    let all = |sum: Forms| [sum.m, sum.c, sum.k, sum.g.unwrap_or_default()];
+    let mut values: Vec<f64> = sums.into_iter().flat_map(all).flat_map(|z| [z.re, z.im]).collect();
     system.k.comm().sum_all(&mut values);
-    let complex = |at: &[f64]| [0, 2, 4].map(|i| Complex64::new(at[i], at[i + 1]));
-    values.chunks(6).map(|at| complex(at).into()).collect()
+    let complex = |at: &[f64]| {
+        let [m, c, k, g] = [0, 2, 4, 6].map(|i| Complex64::new(at[i], at[i + 1]));
+        Forms { m, c, k, g: system.g.is_some().then_some(g) }
+    };
+    values.chunks(8).map(complex).collect()
 }
 
 /// The forms of the contact pairs, linearised about an equilibrium with a friction for each pair: `g_y^H D g_x`, and

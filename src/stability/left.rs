@@ -92,9 +92,8 @@ fn improve(space: &Space, vector: &mut Ritz) -> f64 {
 fn inverse_iterate(space: &Space, lambda: Complex64, start: &[Complex64]) -> Option<Vec<Complex64>> {
     let n = start.len();
     let mut matrix = DMatrix::from_element(n, n, Complex64::default());
-    let powers = [lambda * lambda, lambda, 1.0.into()];
-    for (power, projected) in powers.into_iter().zip(space.projected.as_ref().into_array()) {
-        matrix.zip_apply(projected, |z, x| *z += power * x);
+    for (factor, projected) in space.projected.as_ref().terms(lambda) {
+        matrix.zip_apply(projected, |z, x| *z += factor * x);
     }
     let mut x = start.to_vec();
     let is_solved = lapack::solve_complex(n, matrix.as_mut_slice(), &mut x);

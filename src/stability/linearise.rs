@@ -60,7 +60,7 @@ impl Linearised {
         contacts: &'a Contacts<'a>,
         k: &'a Matrix,
     ) -> QuadraticProblem<'a> {
-        let matrices = Mck { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k };
+        let matrices = Mck { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k, g: system.g.as_ref() };
         let points = Some(FrozenPoints { contacts, responses: &self.frozen, symmetric: &self.symmetric });
         QuadraticProblem { matrices, k_symmetric: &system.k, points, symmetric_mc: true }
     }

@@ -1,11 +1,12 @@
-//! Complex modes about an equilibrium: `(lambda^2 M + lambda C + K) x = 0`, all of a frequency band.
+//! Complex modes about an equilibrium: `(lambda^2 M + lambda C + K + i G) x = 0`, all of a frequency band.
 //!
-//! [`QuadraticProblem`] is the linearised problem, with friction's unsymmetric part in K. [`BandSolver::solve_band`]
+//! [`QuadraticProblem`] is the linearised problem, with friction's unsymmetric part in K, and with structural damping G
+//! where a stiffness has a loss factor. [`BandSolver::solve_band`]
 //! chooses an eigensolver, searches, counts, and widens the search until no mode is missing:
 //!
 //! | eigensolver | method | used for |
 //! |---|---|---|
-//! | `blocked` | a growing subspace, many right-hand sides at a time | large problems |
+//! | `blocked` | a growing subspace, many right-hand sides at a time | large problems; structural damping |
 //! | `modal` | TOAR in the modal coordinates of a reference | super-elements |
 //! | `toar` | SLEPc's TOAR about a real shift: one real factor serves the band | all others, the last resort |
 //!
@@ -26,6 +27,7 @@ mod modal;
 mod mode;
 mod options;
 mod problem;
+mod projected;
 mod shares;
 mod space;
 mod sturm;

@@ -68,12 +68,13 @@ impl Modal {
         Modal { options, coordinates: None, last: None }
     }
 
-    /// Whether the problem is densely stored and larger than the basis of a search. Not collective.
+    /// Whether the problem is real, densely stored and larger than the basis of a search. Not collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn suits(&self, problem: &QuadraticProblem, request: &SearchRequest) -> Result<bool> {
         let dense = request.shift == 0.0
+            && problem.matrices.g.is_none()
             && problem.symmetric_mc
             && problem.points.is_some()
             && problem.matrices.k.is_dense()?;
@@ -162,7 +163,7 @@ impl Coordinates {
         self.set_damping(problem)?;
         let Some((_, c)) = &self.damping else { return Ok(None) };
         let solve = |b: &Vector, x: &mut Vector| b.local(|b| x.local_mut(|x| inverse.solve(b, x)))?;
-        let quadratic = Quadratic { matrices: Mck { m: &self.m, c, k: &self.k }, shift: 0.0, inverse: &solve };
+        let quadratic = Quadratic { matrices: Mck::from([&self.m, c, &self.k]), shift: 0.0, inverse: &solve };
         let Some(found) = eigen::solve(&quadratic, options, progress)? else { return Ok(None) };
         let mut coordinates = Vec::new();
         for vector in found.pairs.iter().flat_map(|pair| [&pair.re, &pair.im]) {
@@ -230,7 +231,7 @@ impl Inverse {
 /// About the largest backward error of left vectors, at the price of one: of `sum_i P(lambda_i)^T v_i / s_i`,
 /// `s_i = (|lambda_i|^2 |M| + |lambda_i| |C| + |K|) |v_i|`, maximum norms. At most the sum of all errors. Collective.
 fn joint_error(problem: &QuadraticProblem, modes: &[Mode], v: &Block) -> Result<f64> {
-    let Mck { m, c, k } = problem.matrices;
+    let Mck { m, c, k, .. } = problem.matrices;
     let norms = problem.matrices.try_map(Matrix::norm_inf)?;
     let modulus = |x: &Block, i: usize| {
         let entries = x.column(2 * i).iter().zip(x.column(2 * i + 1));

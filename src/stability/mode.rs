@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use super::QuadraticProblem;
 use crate::Result;
 use crate::model::InstabilityCriterion;
-use crate::native::{Block, Matrix, Mck, Vector};
+use crate::native::{Block, Matrix, Vector};
 
 /// A real eigenvalue up to this (1/s) is no divergence: a rigid motion's double zero may come out as a real pair of
 /// some 1e-2/s.
@@ -15,7 +15,7 @@ pub const RIGID_RATE: f64 = 1.0;
 pub struct Mode {
     /// `a + i omega`, 1/s.
     pub lambda: Complex64,
-    /// `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)`, maximum norms.
+    /// `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K| + |G|) |x|)`, maximum norms.
     pub backward_error: f64,
     /// Real part of the vector.
     pub re: Vector,
@@ -80,29 +80,30 @@ fn largest(re: &Vector, im: &Vector) -> Result<(Complex64, f64)> {
 /// Columns of a block of products.
 const BLOCK: usize = 32;
 
-/// Backward errors `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)` of eigenpairs, maximum norms and
-/// moduli of complex entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i. Collective.
+/// Backward errors `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K| + |G|) |x|)` of eigenpairs, maximum norms
+/// and moduli of complex entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i. Collective.
 ///
 /// # Errors
 /// PETSc's.
 pub(super) fn backward_errors(problem: &QuadraticProblem, lambdas: &[Complex64], x: &Block) -> Result<Vec<f64>> {
-    let Mck { m, c, k } = problem.matrices;
+    let matrices: Vec<&Matrix> = problem.matrices.terms(Complex64::ONE).map(|(_, matrix)| matrix).collect();
     let norms = problem.matrices.try_map(Matrix::norm_inf)?;
     let mut errors = Vec::new();
     for (part, lambdas) in lambdas.chunks(BLOCK / 2).enumerate() {
         let x = x.columns(BLOCK * part..BLOCK * part + 2 * lambdas.len());
         let n = x.n_columns();
-        let mut images = Block::zeros(x.comm(), x.n_local(), 3 * n);
-        images.add_products(&[k, c, m], &x, 0..n)?;
+        let mut images = Block::zeros(x.comm(), x.n_local(), matrices.len() * n);
+        images.add_products(&matrices, &x, 0..n)?;
         for (i, lambda) in lambdas.iter().enumerate() {
-            let powers = [Complex64::ONE, *lambda, lambda * lambda];
+            let terms: Vec<(Complex64, f64)> = norms.terms(*lambda).collect();
             let residual = |row: usize| -> Complex64 {
-                powers.iter().enumerate().map(|(b, power)| power * entry(&images, b * lambdas.len() + i, row)).sum()
+                let image = |b: usize| entry(&images, b * lambdas.len() + i, row);
+                terms.iter().enumerate().map(|(b, (factor, _))| factor * image(b)).sum()
             };
             let largest = |value: &dyn Fn(usize) -> Complex64| {
                 (0..x.n_local()).map(|row| value(row).norm_sqr()).fold(0.0, f64::max).sqrt()
             };
-            let scale = norms.k + norms.c * lambda.norm() + norms.m * lambda.norm_sqr();
+            let scale: f64 = terms.iter().map(|(factor, norm)| factor.norm() * norm).sum();
             let comm = x.comm();
             errors.push(comm.max(largest(&residual)) / (scale * comm.max(largest(&|row| entry(&x, i, row)))));
         }

@@ -1,4 +1,4 @@
-//! The quadratic eigenproblem `(lambda^2 M + lambda C + K) x = 0` and its linear systems.
+//! The quadratic eigenproblem `(lambda^2 M + lambda C + K + i G) x = 0` and its linear systems.
 
 use std::array::from_fn;
 
@@ -8,15 +8,18 @@ use crate::contact::{Response, Tangent};
 use crate::equilibrium::{Contacts, Label, LabelledFactor};
 use crate::native::{Block, Comm, Factor, Matrix, Mck};
 
-/// The matrices of `P(lambda) = lambda^2 M + lambda C + K`.
+/// The matrices of `P(lambda) = lambda^2 M + lambda C + K + i G`.
+///
+/// Structural damping `i G` is meant for the half plane `Im lambda > 0`: with it eigenvalues do not come as conjugate
+/// pairs, and those of the other half plane mean nothing. What is factorised and counted is the real part.
 pub struct QuadraticProblem<'a> {
-    /// M, C and K, K with the tangent of contact and friction.
+    /// M, C, K and G, K with the tangent of contact and friction.
     pub matrices: Mck<&'a Matrix>,
     /// Symmetric stiffness, for counting: without friction, and without the points below.
     pub k_symmetric: &'a Matrix,
     /// Contact points that add to `k_symmetric`; the count follows their changes.
     pub points: Option<FrozenPoints<'a>>,
-    /// Whether M and C are symmetric, so that K alone has to be transposed for left vectors.
+    /// Whether M, C and G are symmetric, so that K alone has to be transposed for left vectors.
     pub symmetric_mc: bool,
 }
 
@@ -53,12 +56,12 @@ impl<'a> QuadraticProblem<'a> {
         self.comm().sum(self.n_local())
     }
 
-    /// The factor of `P(shift)` at a real shift (1/s): made now, unless `factor` is that. Collective.
+    /// The factor of `P(shift) - i G` at a real shift (1/s): made now, unless `factor` is that. Collective.
     ///
     /// # Errors
     /// PETSc's and MUMPS's.
     pub fn factorise<'f>(&self, shift: f64, factor: &'f mut LabelledFactor) -> Result<&'f Factor> {
-        let Mck { m, c, k } = self.matrices;
+        let Mck { m, c, k, .. } = self.matrices;
         let mut label = Label { shift, versions: vec![k.version()?] };
         if shift != 0.0 {
             label.versions.extend([m.version()?, c.version()?]);
@@ -72,7 +75,7 @@ impl<'a> QuadraticProblem<'a> {
         Ok(factor.factor())
     }
 
-    /// `P(shift)`. Collective.
+    /// `P(shift) - i G`: its real part. Collective.
     ///
     /// # Errors
     /// PETSc's.

@@ -1,15 +1,15 @@
 //! What explains a mode: shares of its energy, energy input, dissipation, and sensitivities.
 //!
-//! With `m = x^H M x`, `c = x^H C x`, `k = x^H K x` the mode's equation gives `lambda^2 m + lambda c + k = 0`. M, C and
-//! the symmetric part of K give real numbers; the imaginary part of k is friction's. So of the imaginary part of the
-//! equation, with `lambda = a + i omega`,
+//! With `m = x^H M x`, `c = x^H C x`, `k = x^H K x`, `g = x^H G x` the mode's equation gives
+//! `lambda^2 m + lambda c + k + i g = 0`. M, C, G and the symmetric part of K give real numbers; the imaginary part of k
+//! is friction's. So of the imaginary part of the equation, with `lambda = a + i omega`,
 //!
 //! ```text
-//! 2 a omega m + omega c + Im k = 0        a = -Im k / (2 omega m) - c / (2 m)
+//! 2 a omega m + omega c + Im k + g = 0        a = -Im k / (2 omega m) - c / (2 m) - g / (2 omega m)
 //! ```
 //!
 //! which is the balance of power: with the modal energy `E = omega^2 m / 2`, the energy input by friction is
-//! `-omega Im k / 2`, the dissipation by damping `omega^2 c / 2`, and what remains is `2 a E`. Both sums go over parts,
+//! `-omega Im k / 2`, the dissipation by damping `omega^2 c / 2 + omega g / 2`, and what remains is `2 a E`. Both sums go over parts,
 //! connectors and contact pairs, so that the growth rate is a sum over them, too.
 
 use num_complex::Complex64;
@@ -30,27 +30,30 @@ pub struct Share {
     /// times that.
     #[serde(rename = "energy_input_per_s")]
     pub energy_input: f64,
-    /// Dissipation by damping, as a contribution to the growth rate, 1/s: not positive.
+    /// Dissipation by damping and loss factors, as a contribution to the growth rate, 1/s: not positive.
     #[serde(rename = "dissipation_per_s")]
     pub dissipation: f64,
 }
 
 /// The shares of all sources in a mode with eigenvalue `lambda`, from their forms with `y = x`. Their `energy_input`
-/// and `dissipation` add up to the growth rate. For a real eigenvalue, which has no cycle, `energy_input` is 0.
+/// and `dissipation` add up to the growth rate. For a real eigenvalue, which has no cycle, `energy_input` is 0, and loss
+/// factors dissipate nothing.
 pub fn shares(lambda: Complex64, forms: &[Forms]) -> Vec<Share> {
     let m: f64 = forms.iter().map(|form| form.m.re).sum();
     let k: f64 = forms.iter().map(|form| form.k.re).sum();
-    let energy_input = |form: &Forms| if lambda.im > 0.0 { -form.k.im / (2.0 * lambda.im * m) } else { 0.0 };
+    // What the imaginary part of a stiffness contributes to the growth rate.
+    let imaginary = |k: f64| if lambda.im > 0.0 { -k / (2.0 * lambda.im * m) } else { 0.0 };
     let share = |form: &Forms| Share {
         kinetic: form.m.re / m,
         strain: form.k.re / k,
-        energy_input: energy_input(form),
-        dissipation: -form.c.re / (2.0 * m),
+        energy_input: imaginary(form.k.im),
+        dissipation: -form.c.re / (2.0 * m) + form.g.map_or(0.0, |g| imaginary(g.re)),
     };
     forms.iter().map(share).collect()
 }
 
-/// How an eigenvalue follows a source's matrices: `d lambda / d ln` of its mass, damping and stiffness, 1/s.
+/// How an eigenvalue follows a source's matrices: `d lambda / d ln` of its mass, damping and stiffness, 1/s. Damping is
+/// C and G alike.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
     /// To a factor on the mass.
@@ -70,7 +73,55 @@ pub fn self_product(lambda: Complex64, forms: &[Forms]) -> Complex64 {
 pub fn sensitivity(lambda: Complex64, form: &Forms, self_product: Complex64) -> Sensitivity {
     Sensitivity {
         mass: -lambda * lambda * form.m / self_product,
-        damping: -lambda * form.c / self_product,
+        damping: -(lambda * form.c + form.g.map_or(Complex64::ZERO, |g| Complex64::I * g)) / self_product,
         stiffness: -form.k / self_product,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mass on a damper and a spring with a loss factor: `lambda^2 m + lambda c + k (1 + i g) = 0`.
+    fn eigenvalue([m, c, k, g]: [f64; 4]) -> Complex64 {
+        let [c, k] = [Complex64::from(c), k * Complex64::new(1.0, g)];
+        // The principal root has a negative imaginary part here.
+        (-c - (c * c - 4.0 * m * k).sqrt()) / (2.0 * m)
+    }
+
+    /// The forms of the vector 1.
+    fn forms([m, c, k, g]: [f64; 4]) -> Forms {
+        let [m, c, k, g] = [m, c, k, g * k].map(Complex64::from);
+        Forms { m, c, k, g: Some(g) }
+    }
+
+    const OSCILLATOR: [f64; 4] = [2.0, 3.0, 5000.0, 0.1];
+
+    #[test]
+    fn damper_and_loss_factor_dissipate_all_that_a_mode_loses() {
+        let (lambda, all) = (eigenvalue(OSCILLATOR), forms(OSCILLATOR));
+        let share = shares(lambda, &[all])[0];
+        assert!(lambda.im > 0.0 && (share.dissipation - lambda.re).abs() < 1e-11 && share.energy_input == 0.0);
+        let without = shares(lambda, &[Forms { g: None, ..all }])[0].dissipation;
+        let loss = share.dissipation - without;
+        assert!((loss + 0.1 * 5000.0 / (2.0 * lambda.im * 2.0)).abs() < 1e-11, "{loss}");
+    }
+
+    #[test]
+    fn sensitivities_are_the_derivatives_of_the_eigenvalue() {
+        let (lambda, all) = (eigenvalue(OSCILLATOR), forms(OSCILLATOR));
+        let found = sensitivity(lambda, &all, self_product(lambda, &[all]));
+        let difference = |change: fn(f64, [f64; 4]) -> [f64; 4]| {
+            const STEP: f64 = 1e-5;
+            let [above, below] = [1.0 + STEP, 1.0 - STEP].map(|factor| eigenvalue(change(factor, OSCILLATOR)));
+            (above - below) / (2.0 * STEP)
+        };
+        let mass = difference(|factor, [m, c, k, g]| [factor * m, c, k, g]);
+        let damping = difference(|factor, [m, c, k, g]| [m, factor * c, k, factor * g]);
+        // The damping unchanged: g k is that before.
+        let stiffness = difference(|factor, [m, c, k, g]| [m, c, factor * k, g / factor]);
+        for (found, exact) in [(found.mass, mass), (found.damping, damping), (found.stiffness, stiffness)] {
+            assert!((found - exact).norm() < 1e-7 * lambda.norm(), "{found} {exact}");
+        }
     }
 }

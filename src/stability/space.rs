@@ -17,6 +17,8 @@ pub(super) const SKETCH: usize = 32;
 const NEGLIGIBLE_DIRECTION: f64 = 1e-7;
 /// Columns that keep at least this share of their length are projected off V but once.
 const KEPT_LENGTH: f64 = 1e-4;
+/// The place of K among the terms of the polynomial.
+const STIFFNESS: usize = 2;
 /// No residual counts for more than that of a mode this far down, relative to the highest.
 const MIN_MODULUS: f64 = 0.01;
 
@@ -24,7 +26,7 @@ const MIN_MODULUS: f64 = 0.01;
 #[derive(Clone, Copy)]
 pub(super) struct FactoredProblem<'a> {
     pub problem: &'a QuadraticProblem<'a>,
-    /// The factor of `P(sigma)` at a real shift, exact or not.
+    /// The factor of the real part of `P(sigma)` at a real shift, exact or not.
     pub factor: &'a Factor,
     /// A number for each of this rank's dofs, whatever the number of ranks.
     pub labels: &'a [u64],
@@ -39,7 +41,7 @@ pub(super) enum Side {
     Left,
 }
 
-/// Orthonormal columns V with the projections `V^T M V`, `V^T C V` and `V^T K V`.
+/// Orthonormal columns V with the projections `V^T M V`, `V^T C V`, `V^T K V` and `V^T G V`.
 pub(super) struct Basis {
     v: Block,
     projected: Mck<DMatrix<f64>>,
@@ -53,11 +55,11 @@ pub(super) struct Start {
     q: DMatrix<f64>,
     /// The tangents of its contact points.
     tangents: Vec<Tangent>,
-    /// Of M, C and the stiffness without contact.
+    /// Of M, C, G and the stiffness without contact.
     versions: Mck<[i64; 2]>,
 }
 
-/// Orthonormal columns V with the projections of M, C and K, or of their transposes for left vectors.
+/// Orthonormal columns V with the projections of M, C, K and G, or of their transposes for left vectors.
 pub(super) struct Space<'a> {
     searched: FactoredProblem<'a>,
     side: Side,
@@ -88,7 +90,7 @@ fn joined(old: &DMatrix<f64>, columns: &DMatrix<f64>, rows: &DMatrix<f64>) -> DM
     new
 }
 
-/// Of M, C and the stiffness without contact.
+/// Of M, C, G and the stiffness without contact.
 fn versions(problem: &QuadraticProblem) -> Result<Mck<[i64; 2]>> {
     Mck { k: problem.k_symmetric, ..problem.matrices }.try_map(Matrix::version)
 }
@@ -98,7 +100,7 @@ impl<'a> Space<'a> {
     pub fn with_capacity(searched: FactoredProblem<'a>, side: Side, n_columns: usize) -> Space<'a> {
         let problem = searched.problem;
         let v = Block::with_room(problem.comm(), problem.n_local(), n_columns);
-        let projected = Mck::from([(); 3]).map(|()| DMatrix::zeros(0, 0));
+        let projected = problem.matrices.map(|_| DMatrix::zeros(0, 0));
         let (noise, n_dofs) = (Noise::new(searched.labels), problem.n_dofs());
         Space { searched, side, v, projected, noise, n_dofs, n_solves: 0 }
     }
@@ -200,14 +202,18 @@ impl<'a> Space<'a> {
         let mut images = self.images(&w)?;
         // One pass over V for all images: it is the longest of the operands.
         let products = self.v.gram(&images);
-        let product = |i: usize| DMatrix::from_column_slice(n, p, &products[i * n * p..][..n * p]);
-        let direct = Mck::from([0, 1, 2]).map(product);
+        let mut numbers = 0..;
+        let mut next = || {
+            let first = numbers.next().unwrap_or_default() * n * p;
+            DMatrix::from_column_slice(n, p, &products[first..first + n * p])
+        };
+        let direct = self.problem().matrices.map(|_| next());
         // K and its transpose differ where contact points slide: a few rows tell the difference.
         let skew = self.v.gram_of_few_rows(&self.problem().skew_times(&w)?);
         let k_t = &direct.k + DMatrix::from_vec(n, p, skew);
         let transposed = match self.problem().symmetric_mc {
             true => Mck { k: k_t, ..direct.clone() },
-            false => Mck { m: product(3), c: product(4), k: k_t },
+            false => Mck { m: next(), c: next(), k: k_t, g: direct.g.as_ref().map(|_| next()) },
         };
         let (columns, rows) = match self.side {
             Side::Right => (direct, transposed),
@@ -219,15 +225,16 @@ impl<'a> Space<'a> {
         Ok(images)
     }
 
-    /// `M W`, `C W` and `K W` side by side; where M and C are not symmetric, `M^T W` and `C^T W`, too.
+    /// `M W`, `C W`, `K W` and `G W` side by side; where M, C and G are not symmetric, `M^T W`, `C^T W` and `G^T W`, too.
     fn images(&self, w: &Block) -> Result<Block> {
-        let (Mck { m, c, k }, p) = (self.problem().matrices, w.n_columns());
-        let n_images = if self.problem().symmetric_mc { 3 } else { 5 };
-        let mut images = Block::zeros(w.comm(), w.n_local(), n_images * p);
-        images.add_products(&[m, c, k], w, 0..p)?;
-        if n_images == 5 {
-            images.set_columns(3 * p, &w.multiplied_by_transpose(m)?);
-            images.set_columns(4 * p, &w.multiplied_by_transpose(c)?);
+        let (Mck { m, c, k, g }, p) = (self.problem().matrices, w.n_columns());
+        let direct: Vec<&Matrix> = [m, c, k].into_iter().chain(g).collect();
+        let transposed = [m, c].into_iter().chain(g).filter(|_| !self.problem().symmetric_mc);
+        let transposed: Vec<&Matrix> = transposed.collect();
+        let mut images = Block::zeros(w.comm(), w.n_local(), (direct.len() + transposed.len()) * p);
+        images.add_products(&direct, w, 0..p)?;
+        for (i, matrix) in (direct.len()..).zip(transposed) {
+            images.set_columns(i * p, &w.multiplied_by_transpose(matrix)?);
         }
         Ok(images)
     }
@@ -274,38 +281,38 @@ impl<'a> Space<'a> {
 
     /// Real and imaginary parts of the residuals where they are few, else random combinations of them, `sum_i Re(z_ij^*
     /// P(lambda_i) V y_i)`, `z_ij` normal with the deviation `|lambda_i|^-2`, which makes residuals count as they
-    /// change eigenvalues, relatively. Column j is `K V a_j + C V b_j + M V c_j`.
+    /// change eigenvalues, relatively. Column j is `M V a_j + C V b_j + K V c_j + G V d_j`.
     ///
     /// # Errors
     /// PETSc's.
     pub fn sketch(&mut self, ritz: &[&Ritz]) -> Result<Block> {
         let (n, problem) = (self.v.n_columns(), self.problem());
+        let matrices: Vec<&Matrix> = problem.matrices.terms(Complex64::ONE).map(|(_, matrix)| matrix).collect();
         let weights = self.sketch_weights(ritz);
         let n_columns = weights.ncols();
-        let mut coefficients = vec![0.0; 3 * n * n_columns];
+        let mut coefficients = vec![0.0; matrices.len() * n * n_columns];
         for (j, (i, r)) in (0..n_columns).flat_map(|j| ritz.iter().enumerate().map(move |pair| (j, pair))) {
             let z = weights[(i, j)];
-            for power in (0..3).filter(|_| z != Complex64::ZERO) {
-                let factor = z.conj() * r.lambda.powi(power as i32);
-                let column = &mut coefficients[(power * n_columns + j) * n..][..n];
+            for (term, (factor, _)) in problem.matrices.terms(r.lambda).enumerate().filter(|_| z != Complex64::ZERO) {
+                let factor = z.conj() * factor;
+                let column = &mut coefficients[(term * n_columns + j) * n..][..n];
                 let column = column.iter_mut().zip(r.re.iter().zip(&r.im));
                 column.for_each(|(a, (re, im))| *a += factor.re * re - factor.im * im);
             }
         }
-        let columns = self.v.combined(&coefficients, 3 * n_columns);
-        let of = |power: usize| power * n_columns..(power + 1) * n_columns;
+        let columns = self.v.combined(&coefficients, matrices.len() * n_columns);
+        let of = |term: usize| term * n_columns..(term + 1) * n_columns;
         let mut sum = Block::zeros(columns.comm(), columns.n_local(), n_columns);
-        sum.add_products(&[problem.matrices.k], &columns, of(0))?;
-        if self.side == Side::Left {
-            sum.axpy(1.0, &problem.skew_times(&columns.columns(of(0)))?);
-        }
-        for (matrix, power) in [(problem.matrices.c, 1), (problem.matrices.m, 2)] {
+        for (term, matrix) in matrices.into_iter().enumerate() {
             match self.side {
                 Side::Left if !problem.symmetric_mc => {
-                    sum.axpy(1.0, &columns.columns(of(power)).multiplied_by_transpose(matrix)?);
+                    sum.axpy(1.0, &columns.columns(of(term)).multiplied_by_transpose(matrix)?);
                 }
-                _ => sum.add_products(&[matrix], &columns, of(power))?,
+                _ => sum.add_products(&[matrix], &columns, of(term))?,
             }
+        }
+        if self.side == Side::Left && problem.symmetric_mc {
+            sum.axpy(1.0, &problem.skew_times(&columns.columns(of(STIFFNESS)))?);
         }
         Ok(sum)
     }

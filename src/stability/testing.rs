@@ -8,10 +8,10 @@ use num_complex::Complex64;
 use super::{Linearised, QuadraticProblem, SearchResult, SolverKind};
 use crate::assembly::System;
 use crate::contact::{Interface, Stage};
-use crate::equilibrium::testing::{ALONG_X, blocks_on_belt};
+use crate::equilibrium::testing::{ALONG_X, belt, blocks, blocks_on_belt, system};
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::petsc::eigen::Pair;
-use crate::native::{Comm, Matrix, Mck, Vector};
+use crate::native::{Comm, Matrix, Mck, Vector, lapack};
 
 /// A densely stored diagonal matrix.
 pub fn diagonal(comm: &Comm, values: &[f64]) -> Matrix {
@@ -26,7 +26,7 @@ pub fn dense(comm: &Comm, a: &DMatrix<f64>) -> Matrix {
 /// Unit masses on springs with these frequencies, Hz.
 pub fn masses(comm: &Comm, frequencies: &[f64]) -> Mck<Matrix> {
     let of = |value: fn(&f64) -> f64| diagonal(comm, &frequencies.iter().map(value).collect::<Vec<_>>());
-    Mck { m: of(|_| 1.0), c: of(|_| 0.0), k: of(|f| (TAU * f).powi(2)) }
+    Mck::from([of(|_| 1.0), of(|_| 0.0), of(|f| (TAU * f).powi(2))])
 }
 
 /// What a search has found: undamped modes (Hz) up to a frequency, with vectors of one row.
@@ -52,6 +52,16 @@ impl Blocks {
     /// Stored sparsely.
     pub fn new(comm: &Comm, n: usize) -> Blocks {
         let (system, interface) = blocks_on_belt(comm, n, 0, ALONG_X);
+        Blocks { system, interface }
+    }
+
+    /// With loss factors between 0.02 and 0.1, another one for each neighbouring dof.
+    pub fn with_structural_damping(comm: &Comm, n: usize) -> Blocks {
+        let (interface, real) = (belt(n, ALONG_X), blocks(n));
+        let loss = |i: usize| 0.02 * (1 + i % 5) as f64;
+        let own = |i: usize, j: usize| if i == j { loss(i) * real.k[(i, i)] } else { 0.0 };
+        let g = Some(DMatrix::from_fn(3 * n, 3 * n, own));
+        let system = system(comm, Mck { g, ..real }, &interface.gap_operator, &[]);
         Blocks { system, interface }
     }
 
@@ -90,13 +100,21 @@ pub fn entries(a: &Matrix) -> DMatrix<f64> {
 /// All eigenvalues of the closed upper half plane with a modulus up to a frequency (Hz), by the companion matrix: by
 /// frequency, then by growth.
 pub fn eigenvalues(problem: &QuadraticProblem, end: f64) -> Vec<Complex64> {
-    let Mck { m, c, k } = problem.matrices.map(entries);
+    let Mck { m, c, k, g } = problem.matrices.map(entries);
     let (n, inverse) = (m.nrows(), m.try_inverse().unwrap());
     let mut companion = DMatrix::zeros(2 * n, 2 * n);
     companion.view_mut((0, n), (n, n)).fill_with_identity();
     companion.view_mut((n, 0), (n, n)).copy_from(&(-&inverse * k));
     companion.view_mut((n, n), (n, n)).copy_from(&(-&inverse * c));
-    let all = companion.complex_eigenvalues();
+    let all = match g {
+        None => companion.complex_eigenvalues().as_slice().to_vec(),
+        Some(g) => {
+            let mut companion = companion.map(Complex64::from);
+            let imaginary = (-inverse * g).map(|x| Complex64::new(0.0, x));
+            companion.view_mut((n, 0), (n, n)).zip_apply(&imaginary, |z, x| *z += x);
+            lapack::eigen(companion).unwrap().values
+        }
+    };
     let mut within: Vec<Complex64> = all.iter().copied().filter(|z| z.im >= 0.0 && z.norm() <= TAU * end).collect();
     within.sort_by(|a, b| (a.im, a.re).partial_cmp(&(b.im, b.re)).unwrap());
     within

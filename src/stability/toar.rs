@@ -1,4 +1,4 @@
-//! TOAR by SLEPc's PEP: one right-hand side at a time, for any problem and shift.
+//! TOAR by SLEPc's PEP: one right-hand side at a time, for any real problem and shift.
 
 use std::f64::consts::TAU;
 

@@ -342,6 +342,7 @@ impl FullModel {
             parts,
             unloaded: self.is_unloaded(),
             undamped: !self.model.is_damped(),
+            structural_damping: self.model.has_structural_damping(),
             warnings: plausibility::warnings(self, comm),
             pairs: self.pairs(),
             ..About::default()

@@ -57,7 +57,9 @@ impl ReducedModel {
     pub(super) fn about(&self, comm: &Comm) -> Result<About> {
         let origin = &self.element.origin;
         let file = if comm.is_root() && self.place.is_file() { digest(&self.place) } else { Ok(String::new()) };
-        let is_damped = origin.friction_damping || self.element.damping.iter().any(|c| *c != 0.0);
+        let is_damped = origin.friction_damping
+            || self.element.structural_damping.is_some()
+            || self.element.damping.iter().any(|c| *c != 0.0);
         Ok(About {
             title: origin.title.clone(),
             model: self.place.display().to_string(),
@@ -67,6 +69,7 @@ impl ReducedModel {
             parts: self.surface.parts.iter().map(|name| Part { name: name.clone(), ..Part::default() }).collect(),
             pairs: pairs(&self.interface),
             undamped: !is_damped,
+            structural_damping: self.element.structural_damping.is_some(),
             ..About::default()
         })
     }

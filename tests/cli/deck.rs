@@ -159,3 +159,25 @@ fn a_deck_without_densities_has_an_equilibrium_and_no_modes() {
     let modes = ["stability", "static.inp", "--friction", "0.3"];
     assert_refused(&place.run(&modes), &["static.inp:", "has no density, so that there are no modes"]);
 }
+
+/// Loss factors of a material and of a spring, written as a deck and read from it.
+#[test]
+fn loss_factors_survive_a_deck() {
+    let place = Place::blocks();
+    let joint = "[[connector]]\nbetween = [\"pad_top\", \"ground\"]\nstiffness = [1e6, 2e6, 3e6]\nloss_factor = 0.2\n";
+    let text = place.read("brake.toml").replace("density = 7100", "density = 7100\nloss_factor = 0.05");
+    place.write("brake.toml", text.replace("[[load]]", &format!("{joint}[[load]]")));
+    let shown = |file: &str| {
+        let finished = place.run(&["check", file]);
+        assert_eq!(finished.code, 0, "{}", finished.err);
+        finished.out
+    };
+    let first = shown("brake.toml");
+    assert!(first.contains("loss factor 0.05\n") && first.contains("\": loss factor 0.2\n"), "{first}");
+    let converted = place.run(&["convert", "brake.toml", "-o", "brake.inp"]);
+    assert_eq!(converted.code, 0, "{}", converted.err);
+    let deck = place.read("brake.inp");
+    assert!(deck.contains("*DAMPING,STRUCTURAL=0.05\n") && deck.contains(",COMPLEX STIFFNESS\n"), "{deck}");
+    let second = shown("brake.inp");
+    assert!(second.contains("loss factor 0.05\n") && second.contains("\": loss factor 0.2\n"), "{second}");
+}

@@ -22,7 +22,7 @@ fn check_tells_what_a_model_is_on_two_ranks() {
     let check = document(&place.run(&["check", "brake.toml", "--json", "--contacts", "4"]));
     has_keys(
         &check,
-        "title mesh parts rotations pairs layouts constrained_dofs connectors ties rigid_sets masses equations mass_kg loads sum_of_loads_n warnings free_dofs entries factor_gb",
+        "title mesh parts rotations pairs layouts constrained_dofs connectors connector_loss_factors ties rigid_sets masses equations mass_kg loads sum_of_loads_n warnings free_dofs entries factor_gb",
     );
     assert_eq!(check["parts"][0]["part"], "disc");
     // 30 x 30 x 10 mm of 7100 kg/m3.

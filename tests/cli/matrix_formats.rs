@@ -231,3 +231,39 @@ fn a_zero_mass_matrix_is_refused() {
     let message = refusal(&modes(&place, "m", "k"));
     assert!(message.contains("the mass matrix is zero"), "{message}");
 }
+
+/// The blocks with loss factors: G is exported, and `modes --structural` finds the modes of `stability` with it.
+#[test]
+fn structural_damping_is_exported_and_read() {
+    let place = Place::blocks();
+    place.write("brake.toml", place.read("brake.toml").replace("density = 7100", "density = 7100\nloss_factor = 0.05"));
+    let band = ["--band", "0:90000"];
+    let run = |arguments: &[&str]| {
+        let finished = place.run(&[arguments, &band].concat());
+        assert_eq!(finished.code, 0, "{}", finished.err);
+        finished.out
+    };
+    run(&["stability", "brake.toml", "--friction", "0.3", "--no-branches", "-o", "ours"]);
+    let exported = place.run(&["export", "brake.toml", "--friction", "0.3", "-o", "ex"]);
+    assert!(exported.code == 0 && exported.out.contains("--structural ex/structural.mtx"), "{}", exported.out);
+    let [m, c, k, g] = ["mass", "damping", "stiffness", "structural"].map(|name| format!("ex/{name}.mtx"));
+    let matrices = ["modes", "--mass", &m, "--damping", &c, "--stiffness", &k, "--structural", &g, "-o", "theirs"];
+    let said = run(&matrices);
+    assert!(said.contains("structural damping G symmetric"), "{said}");
+    for name in ["frequency_hz", "growth_rate_per_s"] {
+        let [ours, theirs] = ["ours", "theirs"].map(|folder| column(&place.read(&format!("{folder}/modes.csv")), name));
+        assert!(!ours.is_empty() && ours.len() == theirs.len());
+        let worst = ours.iter().zip(&theirs).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        println!("{} modes, {name} off by {worst:.1e}", ours.len());
+        assert!(worst < 1e-7, "{worst}");
+    }
+    // A family of them, G with a factor: half the loss factor is half the decay, nearly.
+    let file = |role: &str, name: &str| format!("[[{role}]]\nfile = \"ex/{name}.mtx\"\n");
+    let terms = file("mass", "mass") + &file("stiffness", "stiffness") + &file("structural", "structural");
+    place.write("family.toml", format!("parameter = \"g\"\n{terms}factor = \"g\"\n"));
+    run(&["modes", "family.toml", "--parameter", "0.5,1", "-o", "both"]);
+    let decays = column(&place.read("both/modes.csv"), "growth_rate_per_s");
+    let (half, full) = decays.split_at(decays.len() / 2);
+    assert!(half.iter().zip(full).all(|(a, b)| (b / a - 2.0).abs() < 0.01), "{half:?} {full:?}");
+    assert!(place.read("both/branches.csv").lines().count() > 2);
+}

@@ -57,6 +57,28 @@ fn two_and_three_ranks_find_what_one_finds() {
     [2, 3].into_iter().for_each(|ranks| assert_same(&alone, &stability(&place, "0:1500", ranks)));
 }
 
+/// With loss factors, two values of the friction coefficient, and modes followed between them.
+#[test]
+fn loss_factors_give_the_same_on_two_ranks() {
+    let place = Place::blocks();
+    let text = place.read("brake.toml").replace("[part.pad]\nmaterial = \"iron\"", "[part.pad]\nmaterial = \"lining\"");
+    let lining = "[material.lining]\nyoung = 9e9\npoisson = 0.25\ndensity = 2600\nloss_factor = 0.1\n[material.iron]";
+    let text = text.replace("density = 7100", "density = 7100\nloss_factor = 0.002");
+    place.write("brake.toml", text.replace("[material.iron]", lining));
+    let mut found = Vec::new();
+    for ranks in [1, 2] {
+        let arguments =
+            ["stability", "brake.toml", "--friction", "0.3,0.4", "--band", "0:50000", "-o", "run", "--force"];
+        let run = if ranks == 1 { place.run(&arguments) } else { place.run_on(ranks, &arguments) };
+        assert_eq!(run.code, 0, "{}", run.err);
+        assert!(run.out.contains("with structural damping") && !run.out.contains("no damping"), "{}", run.out);
+        let modes = numbers(&place.read("run/modes.csv"));
+        assert!(modes.iter().all(|row| row[3].abs() > 1e-6 * row[2]), "every mode is damped: {modes:?}");
+        found.push(modes.iter().map(|row| [row[2], row[3]]).collect::<Vec<_>>());
+    }
+    assert_same_modes(&found[0], &found[1]);
+}
+
 /// Frequencies, Hz, of the model on 10-node tetrahedra of 5 mm.
 const OF_TETRAHEDRA: [f64; 3] = [32254.65, 32417.56, 45690.85];
 

@@ -11,6 +11,7 @@ mod factors;
 mod friction_law;
 mod joints;
 mod manufactured_solution;
+mod structural_damping;
 mod super_element;
 #[path = "../support/mod.rs"]
 mod support;

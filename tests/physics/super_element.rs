@@ -197,6 +197,31 @@ fn all_modes_kept_give_the_full_models_eigenvalues() {
     assert!(found.len() >= 5 && error < 1e-10, "{error}");
 }
 
+/// Loss factors of both materials are in the super-element, and in its file: eigenvalues to 1e-9 with all modes kept,
+/// to 1e-3 with those up to 100 kHz.
+#[test]
+fn loss_factors_are_in_the_super_element() {
+    let comm = Session::start(&[]).unwrap();
+    let text = MODEL.replace("density = 7100", "density = 7100\nloss_factor = 0.01");
+    let full = Full::new(&comm, &text.replace("density = 2600", "density = 2600\nloss_factor = 0.1"), FRICTION);
+    let undamped = Full::new(&comm, MODEL, FRICTION);
+    assert!(full.eigenvalues.iter().zip(&undamped.eigenvalues).all(|(z, w)| z.re < w.re - 1e-3 * w.norm()));
+    for (limit, allowed) in [(f64::INFINITY, 1e-9), (100e3, 1e-3)] {
+        let (reduced, element) = full.reduce(limit);
+        let place = tempfile::TempDir::new().unwrap();
+        let path = place.path().join("brake.se.h5");
+        let boundary = full.brake.boundary(&comm, &full.system);
+        let surface = OuterSurface::new(boundary, &full.brake.mesh.parts, &full.system, &reduced.basis).unwrap();
+        file::write(&path, &element, &surface).unwrap();
+        let (read, _) = file::read(&path).unwrap();
+        assert!(read.structural_damping.is_some() && read.structural_damping == element.structural_damping);
+        let (_, _, found) = analyse(&comm, &read, None, FRICTION);
+        let error = largest_error(&found, &full.eigenvalues);
+        println!("{} modes, largest error {error:.1e}", found.len());
+        assert!(error < allowed, "{error} up to {limit} Hz");
+    }
+}
+
 /// A tie, a rigid set, a mass, springs to the ground and an equation in place of the piston's contact and supports.
 fn with_joints() -> String {
     let (before, rest) = MODEL.split_once("[[fix]]\nnodes = \"piston_z1\"\naxes = \"xy\"\n").unwrap();

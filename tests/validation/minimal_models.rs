@@ -32,7 +32,7 @@ fn eigenvalues<const N: usize>(
     let mut factor = Factor::new(FactorKind::Unsymmetric);
     factor.factorise(&p).unwrap();
     let options = Options { n_wanted: 2 * N, n_basis: 0, tolerance: 1e-15, max_restarts: 100, scale: 0.0 };
-    let problem = Quadratic { matrices: Mck { m: &m, c: &c, k: &k }, shift, inverse: &|b, x| factor.solve(b, x) };
+    let problem = Quadratic { matrices: Mck::from([&m, &c, &k]), shift, inverse: &|b, x| factor.solve(b, x) };
     let found = eigen::solve(&problem, &options, &mut |_, _| ()).unwrap().unwrap();
     let mut lambdas: Vec<Complex64> = found.pairs.iter().map(|pair| pair.lambda).collect();
     let key = |z: &Complex64| ((z.im * 1e6).round(), z.re);

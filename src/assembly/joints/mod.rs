@@ -2,7 +2,7 @@
 //!
 //! | joint | rows of G | weights |
 //! |---|---|---|
-//! | connector | motion of one node set relative to another, or to the ground | its stiffness, its damping |
+//! | connector | motion of one node set relative to another, or to the ground | its stiffness, its damping, its loss factor |
 //! | tie | jumps between two surfaces, a facet of the slave at a time ([`tie`]) | penalty |
 //! | rigid set | what distorts the set ([`rigid`]) | penalty |
 //! | equation | `sum a_k u_k` | penalty |
@@ -75,6 +75,8 @@ pub struct JointElement {
     pub damping: Vec<f64>,
     /// `m`, one a row.
     pub mass: Vec<f64>,
+    /// Loss factor of its stiffness.
+    pub loss_factor: f64,
     /// Its joint, an index in [`Joints::names`].
     pub joint: usize,
 }
@@ -84,7 +86,7 @@ impl JointElement {
     fn springs(rows: Rows, stiffness: Vec<f64>) -> JointElement {
         let (nodes, rows) = rows.finish();
         let none = vec![0.0; rows.len()];
-        JointElement { nodes, rows, stiffness, damping: none.clone(), mass: none, joint: 0 }
+        JointElement { nodes, rows, stiffness, damping: none.clone(), mass: none, loss_factor: 0.0, joint: 0 }
     }
 
     /// The forces (N) that it exerts on what it stands on, `K u`, a force for each of its nodes.
@@ -204,12 +206,20 @@ impl Elements for Joints {
         self.elements.iter().any(|element| has_entry(&element.mass))
     }
 
+    fn has_structural_damping(&self) -> bool {
+        self.elements.iter().any(|element| element.loss_factor != 0.0)
+    }
+
     fn matrices(&self, e: usize, out: &mut ElementMatrices) {
-        let JointElement { rows, stiffness, damping, mass, .. } = &self.elements[e];
+        let JointElement { rows, stiffness, damping, mass, loss_factor, .. } = &self.elements[e];
         let product_or_none = |w: &[f64]| if has_entry(w) { weighted_product(rows, w) } else { Vec::new() };
         out.k = weighted_product(rows, stiffness);
         out.c = product_or_none(damping);
         out.m = product_or_none(mass);
+        out.g.clear();
+        if *loss_factor != 0.0 {
+            out.g.extend(out.k.iter().map(|k| loss_factor * k));
+        }
     }
 }
 
@@ -234,7 +244,8 @@ fn connector(sets: &Sets, connector: &Connector) -> std::result::Result<JointEle
         motion.require(end, acting)?;
         rows.add_motion(&motion, sign);
     }
-    Ok(JointElement { damping, ..JointElement::springs(rows, stiffness) })
+    let loss_factor = connector.loss_factor;
+    Ok(JointElement { damping, loss_factor, ..JointElement::springs(rows, stiffness) })
 }
 
 /// The nodes of an equation's terms, which the model's check has found to be one each.

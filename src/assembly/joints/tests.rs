@@ -129,7 +129,7 @@ fn a_tie_without_points_names_the_distance() {
 fn part(name: &str, young: f64) -> Part {
     let mut elasticity = [[0.0; 6]; 6];
     (0..6).for_each(|i| elasticity[i][i] = young);
-    let material = Material { name: name.into(), density: 1.0, elasticity };
+    let material = Material { name: name.into(), density: 1.0, elasticity, loss_factor: 0.0 };
     Part { name: name.into(), material, rayleigh: Rayleigh::default(), elements: vec![], place: Place::default() }
 }
 
@@ -261,6 +261,7 @@ fn spring(between: [&str; 2]) -> Connector {
         stiffness: [2.0, 3.0, 5.0],
         rotational_stiffness: [0.0; 3],
         damping: [0.0; 3],
+        loss_factor: 0.0,
         place: Place::default(),
     }
 }

@@ -44,9 +44,12 @@ const CONNECTOR_TYPES: [(&str, [bool; N_COMPONENTS], [bool; N_COMPONENTS]); 8] =
 };
 
 /// What an element does between its ends: stiffness (N/m, N m/rad) and damping (N s/m) of the six components.
+#[derive(Default)]
 struct Constants {
     stiffness: [f64; 6],
     damping: [f64; 6],
+    /// Of all its stiffnesses.
+    loss_factor: f64,
 }
 
 /// An end of an element.
@@ -118,9 +121,13 @@ impl<'d> Conversion<'d> {
                 return Err(self.assembly.error(property.place, what));
             }
         };
-        let mut constants = Constants { stiffness: [0.0; 6], damping: [0.0; 6] };
+        let mut constants = Constants::default();
         match property.kind {
-            PropertyKind::Spring => constants.stiffness[axis] = property.values[0] * self.unit_of_stiffness(axis),
+            PropertyKind::Spring => {
+                let [real, imaginary] = [property.values[0], property.values[1]];
+                constants.stiffness[axis] = real * self.unit_of_stiffness(axis);
+                constants.loss_factor = if imaginary > 0.0 { imaginary / real } else { 0.0 };
+            }
             _ => constants.damping[axis] = property.values[0] * self.units.damping(),
         }
         self.join(element, &nodes, &constants, references, model)
@@ -173,7 +180,8 @@ impl<'d> Conversion<'d> {
         }
         let [first, second] = if first.region == GROUND { [second, first] } else { [first, second] };
         let at = first.at;
-        let own = connector_between(model, [first.region, second.region], at, place);
+        let loss_factor = (constants.stiffness != [0.0; 6]).then_some(constants.loss_factor);
+        let own = connector_between(model, [first.region, second.region], (at, loss_factor), place);
         for i in 0..3 {
             own.stiffness[i] += constants.stiffness[i];
             own.rotational_stiffness[i] += constants.stiffness[3 + i];
@@ -259,7 +267,7 @@ impl<'d> Conversion<'d> {
     fn connector_constants(&self, section: &ConnectorSection, region: &str) -> Result<Constants> {
         let (behaviour, [free, rigid]) = (self.behaviour(section)?, self.components(section)?);
         let [along, about] = self.rigid_stiffness(region);
-        let mut constants = Constants { stiffness: [0.0; 6], damping: [0.0; 6] };
+        let mut constants = Constants::default();
         for i in 0..N_COMPONENTS {
             let has_constant = behaviour.is_some_and(|own| own.elasticity[i] != 0.0 || own.damping[i] != 0.0);
             if has_constant && !free[i] {
@@ -326,14 +334,26 @@ impl<'d> Conversion<'d> {
     }
 }
 
-/// The connector of a model between two regions at a point, which is added where there is none.
-fn connector_between(model: &mut Model, between: [String; 2], at: [f64; 3], place: Place) -> &mut Connector {
-    let known = model.connectors.iter().position(|own| own.between == between && own.at == Some(at));
+/// The connector of a model between two regions at a point, which is added where there is none: another one for a
+/// stiffness with another loss factor.
+fn connector_between(
+    model: &mut Model,
+    between: [String; 2],
+    (at, loss_factor): ([f64; 3], Option<f64>),
+    place: Place,
+) -> &mut Connector {
+    let is_stiff = |own: &Connector| [own.stiffness, own.rotational_stiffness] != [[0.0; 3]; 2];
+    let known = model.connectors.iter().position(|own| {
+        let fits = loss_factor.is_none_or(|wanted| wanted == own.loss_factor || !is_stiff(own));
+        own.between == between && own.at == Some(at) && fits
+    });
     let i = known.unwrap_or_else(|| {
         let name =
             unlike(&between.join(" / "), |name| model.connectors.iter().any(|own| own.name == name), "connector");
         model.connectors.push(connector(name, between, at, place));
         model.connectors.len() - 1
     });
-    &mut model.connectors[i]
+    let own = &mut model.connectors[i];
+    own.loss_factor = loss_factor.unwrap_or(own.loss_factor);
+    own
 }

@@ -85,7 +85,7 @@ pub fn material(deck: &Deck, section: &SectionOf, units: &UnitSystem) -> Result<
     let rows = [0, 1, 2, 3, 4, 5].map(|i| [0, 1, 2, 3, 4, 5].map(|j| elasticity[(i, j)]));
     let rayleigh = model::Rayleigh { alpha: material.alpha / units.time, beta: material.beta * units.time };
     let density = density.map_or(0.0, |density| density * units.density());
-    Ok((model::Material { name, density, elasticity: rows }, rayleigh))
+    Ok((model::Material { name, density, elasticity: rows, loss_factor: material.structural }, rayleigh))
 }
 
 /// The axes of an orientation, turned with its instance.

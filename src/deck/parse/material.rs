@@ -27,7 +27,8 @@ impl Parser {
             );
         }
         let (elastic, density) = (None, None);
-        self.deck.materials.push(Material { name, elastic, density, alpha: 0.0, beta: 0.0, place: card.place });
+        let [alpha, beta, structural] = [0.0; 3];
+        self.deck.materials.push(Material { name, elastic, density, alpha, beta, structural, place: card.place });
         Ok(())
     }
 
@@ -83,15 +84,16 @@ impl Parser {
     }
 
     fn damping(&mut self, card: &Card) -> Result<()> {
-        if card.number("STRUCTURAL")?.is_some_and(|s| s != 0.0) || card.number("COMPOSITE")?.is_some_and(|c| c != 0.0) {
-            return Err(card.error("structural and composite damping are not supported. Give ALPHA= and BETA="));
+        if card.number("COMPOSITE")?.is_some_and(|c| c != 0.0) {
+            return Err(card.error("composite damping is not supported. Give ALPHA=, BETA= or STRUCTURAL="));
         }
-        let (alpha, beta) = (card.number("ALPHA")?.unwrap_or(0.0), card.number("BETA")?.unwrap_or(0.0));
-        if alpha < 0.0 || beta < 0.0 {
-            return Err(card.error("ALPHA and BETA must be 0 or above"));
+        let constant = |key: &str| Ok(card.number(key)?.unwrap_or(0.0));
+        let (alpha, beta, structural) = (constant("ALPHA")?, constant("BETA")?, constant("STRUCTURAL")?);
+        if [alpha, beta, structural].iter().any(|&x| x < 0.0) {
+            return Err(card.error("ALPHA, BETA and STRUCTURAL must be 0 or above"));
         }
         let material = self.open_material(card)?;
-        (material.alpha, material.beta) = (alpha, beta);
+        (material.alpha, material.beta, material.structural) = (alpha, beta, structural);
         Ok(())
     }
 

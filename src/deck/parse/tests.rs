@@ -93,17 +93,19 @@ fn what_is_no_text_is_refused() {
 #[test]
 fn constants_of_materials_fill_lines() {
     let text = "*MATERIAL, NAME=m\n*ELASTIC, TYPE=ANISOTROPIC\n1,2,3,4,5,6,7,8\n9,10,11,12,13,14,15,16\n17,18,19,20,21\n\
-                *DENSITY\n7.85e-9\n*DAMPING, ALPHA=5., BETA=1e-7\n";
+                *DENSITY\n7.85e-9\n*DAMPING, ALPHA=5., BETA=1e-7, STRUCTURAL=0.02\n";
     let deck = read(text).unwrap();
     let material = &deck.materials[0];
     let elastic = material.elastic.as_ref().unwrap();
     assert_eq!((elastic.kind, elastic.constants.len(), elastic.constants[20]), (ElasticKind::Anisotropic, 21, 21.0));
     assert_eq!((material.density.unwrap().0, material.alpha, material.beta), (7.85e-9, 5.0, 1e-7));
+    assert_eq!(material.structural, 0.02);
     refused("*MATERIAL, NAME=m\n*ELASTIC\n2e5,.3,0.\n1e5,.3,100.\n", "a.inp:4: a second row of constants");
     refused("*MATERIAL, NAME=m\n*ELASTIC\n2e5\n", "a.inp:3: 1 elastic constants, but ISOTROPIC has 2");
     refused("*ELASTIC\n2e5,.3\n", "a.inp:1: *ELASTIC before any *MATERIAL");
     refused("*MATERIAL, NAME=m\n*DENSITY\n-1\n", "a.inp:3: the density must be above 0");
-    refused("*MATERIAL, NAME=m\n*DAMPING, STRUCTURAL=.1\n", "a.inp:2: structural and composite damping");
+    refused("*MATERIAL, NAME=m\n*DAMPING, COMPOSITE=.1\n", "a.inp:2: composite damping");
+    refused("*MATERIAL, NAME=m\n*DAMPING, STRUCTURAL=-.1\n", "a.inp:2: ALPHA, BETA and STRUCTURAL must be");
     refused("*MATERIAL, NAME=m\n*MATERIAL, NAME=M\n", "a.inp:2: the material M is there already, in line 1");
 }
 

@@ -16,6 +16,8 @@ pub struct Material {
     pub alpha: f64,
     /// Damping proportional to stiffness.
     pub beta: f64,
+    /// Loss factor of structural damping.
+    pub structural: f64,
     /// Where it begins.
     pub place: Place,
 }

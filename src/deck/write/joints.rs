@@ -99,7 +99,13 @@ impl DeckWriter<'_> {
             for (axis, value) in values.into_iter().enumerate().filter(|(_, value)| *value != 0.0) {
                 let (set, dof) =
                     (self.element(&format!("{kind}{}", ends.len()), kind, &ends, &mut out), first + axis + 1);
-                writeln!(out, "*{kind},ELSET={set}\n{dof},{dof}\n{}", number(value / unit))
+                let (option, imaginary) = match connector.loss_factor {
+                    g if kind == "SPRING" && g != 0.0 => {
+                        (",COMPLEX STIFFNESS", format!(",{}", number(g * value / unit)))
+                    }
+                    _ => ("", String::new()),
+                };
+                writeln!(out, "*{kind},ELSET={set}{option}\n{dof},{dof}\n{}{imaginary}", number(value / unit))
                     .expect("a string takes all");
             }
         }

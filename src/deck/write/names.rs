@@ -55,10 +55,7 @@ impl Names {
 
 /// The materials of the parts: parts of the same material and damping share one.
 fn materials(parts: &[Part]) -> HashMap<String, String> {
-    let is_same = |a: &Part, b: &Part| {
-        let (m, n) = (&a.material, &b.material);
-        m.name == n.name && m.density == n.density && m.elasticity == n.elasticity && a.rayleigh == b.rayleigh
-    };
+    let is_same = |a: &Part, b: &Part| a.material == b.material && a.rayleigh == b.rayleigh;
     let first = |part: &Part| parts.iter().position(|other| is_same(other, part)).expect("the part itself is there");
     let firsts: Vec<usize> = parts.iter().map(first).collect();
     let mut own: Vec<usize> = firsts.clone();

@@ -42,9 +42,11 @@ impl DeckWriter<'_> {
             }
         };
         let (alpha, beta) = (part.rayleigh.alpha * units.time, part.rayleigh.beta / units.time);
-        let damping = match alpha != 0.0 || beta != 0.0 {
-            true => format!("*DAMPING,ALPHA={},BETA={}\n", number(alpha), number(beta)),
-            false => String::new(),
+        let constants = [("ALPHA", alpha), ("BETA", beta), ("STRUCTURAL", material.loss_factor)];
+        let constants = constants.iter().filter(|(_, x)| *x != 0.0).map(|(key, x)| format!(",{key}={}", number(*x)));
+        let damping = match constants.collect::<String>() {
+            none if none.is_empty() => none,
+            constants => format!("*DAMPING{constants}\n"),
         };
         let density = number(material.density / units.density());
         format!("*MATERIAL,NAME={name}\n{elastic}*DENSITY\n{density}\n{damping}")

@@ -80,3 +80,28 @@ fn full_matrices_must_be_symmetric_and_positive_definite() {
     let said = with("[1,0,0,0,0,0]", "x_axis = [1,0,0]\ny_axis = [2,0,0]").unwrap_err();
     assert!(said.contains(":9: x_axis and y_axis are parallel"), "{said}");
 }
+
+#[test]
+fn loss_factors_belong_to_materials_of_any_kind_and_to_connectors() {
+    let with = |material: &str, connector: &str| {
+        let text = GOOD.replace("density = 2600", &format!("density = 2600\n{material}"));
+        parsed(&text.replace("stiffness = [1, 2, 3]", &format!("stiffness = [1, 2, 3]\n{connector}")))
+    };
+    let model = with("loss_factor = 0.05", "loss_factor = 0.2").unwrap();
+    let of_parts: Vec<f64> = model.parts.iter().map(|part| part.material.loss_factor).collect();
+    assert_eq!((of_parts, model.connectors[0].loss_factor), (vec![0.0, 0.05], 0.2));
+    for (material, connector) in [("loss_factor = 0.05", ""), ("", "loss_factor = 0.2")] {
+        assert!(with(material, connector).unwrap().has_structural_damping());
+    }
+    let said = "loss_factor must be 0 or above, not -0.1 (material \"lining\"). \
+                Give the imaginary over the real part of the stiffness, such as 0.02";
+    complains("density = 2600", "density = 2600\nloss_factor = -0.1", 1, said);
+}
+
+#[test]
+fn a_model_with_a_loss_factor_alone_is_damped() {
+    let text = GOOD.replace("rayleigh = { alpha = 10, beta = 1e-8 }\n", "");
+    let model = parsed(&text).unwrap();
+    assert!(!model.is_damped() && !model.has_structural_damping());
+    assert!(parsed(&text.replace("density = 2600", "density = 2600\nloss_factor = 0.01")).unwrap().is_damped());
+}

@@ -22,6 +22,9 @@ fn connector(out: &mut Text, connector: &Connector, unit: f64) {
     out.line("stiffness", list(&connector.stiffness));
     out.line("rotational_stiffness", list(&connector.rotational_stiffness));
     out.line("damping", list(&connector.damping));
+    if connector.loss_factor != 0.0 {
+        out.line("loss_factor", number(connector.loss_factor));
+    }
 }
 
 fn tie(out: &mut Text, tie: &Tie, unit: f64) {

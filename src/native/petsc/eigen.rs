@@ -89,7 +89,7 @@ pub struct Found {
 /// # Panics
 /// Where `progress` panicked.
 pub fn solve(problem: &Quadratic, options: &Options, progress: &mut dyn FnMut(usize, usize)) -> Result<Option<Found>> {
-    let Mck { m, c, k } = problem.matrices;
+    let Mck { m, c, k, .. } = problem.matrices;
     let comm = k.comm().clone();
     let mut context =
         Context { inverse: problem.inverse, comm: comm.clone(), n_solves: 0, progress, trap: Trap::default() };

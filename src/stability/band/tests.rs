@@ -38,7 +38,8 @@ fn scripted(comm: &Comm, shift: f64, results: Vec<Option<SearchResult>>) -> (Res
 fn a_search_that_misses_no_mode_is_the_only_one() {
     let comm = Session::start(&[]).unwrap();
     let (band, requests) = scripted(&comm, 0.0, vec![Some(found(&comm, &[1.0, 2.0, 3.0, 5.0], 5.0))]);
-    let Band { modes, count, report } = band.unwrap();
+    let Band { modes, count, report, has_conjugates } = band.unwrap();
+    assert!(has_conjugates);
     assert_eq!(modes.iter().map(|mode| mode.frequency().round()).collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
     assert_eq!(count, Count { below: 4.0, expected: 3, found: 3 });
     assert_eq!(report, BandReport { solver: SolverKind::Toar, n_attempts: 1, n_solves: 5, shift: 0.0 });
@@ -151,7 +152,7 @@ fn solved(blocks: &Blocks, options: EigenOptions, mu: f64) -> Band {
 }
 
 /// The same eigenvalues, to nine digits.
-fn compare(modes: &[Mode], expected: &[Complex64]) {
+pub(super) fn compare(modes: &[Mode], expected: &[Complex64]) {
     assert_eq!(modes.len(), expected.len());
     for expected in expected {
         let nearest = modes.iter().map(|mode| (mode.lambda - expected).norm()).fold(f64::INFINITY, f64::min);
@@ -228,7 +229,7 @@ fn real_and_double_eigenvalues_are_found() {
     let omega2 = |f: f64| (TAU * f).powi(2);
     let k = diagonal(&comm, &[omega2(1.0), omega2(1.0), 100.0, omega2(9.0)]);
     let (m, c) = (diagonal(&comm, &[1.0; 4]), diagonal(&comm, &[0.1, 0.1, 101.0, 0.1]));
-    let problem = QuadraticProblem::symmetric(Mck { m: &m, c: &c, k: &k });
+    let problem = QuadraticProblem::symmetric(Mck::from([&m, &c, &k]));
     let mut solver = BandSolver::new(EigenOptions::default(), vec![0, 1, 2, 3]);
     let mut factor = LabelledFactor::new(Precision::Double);
     let band = solver.solve_band(&problem, &mut factor, &[0.0, 5.0].into(), &mut |_| ()).unwrap();
@@ -242,13 +243,14 @@ fn real_and_double_eigenvalues_are_found() {
 }
 
 /// `|P(lambda)^T v| / sum |matrices|` of `v = conj(y)`, y of length 1 in M, is small for all modes.
-fn require_left(problem: &QuadraticProblem, modes: &[Mode], y: &Block, accuracy: f64) {
-    let [m, c, k] = problem.matrices.map(crate::stability::testing::entries).into_array();
+pub(super) fn require_left(problem: &QuadraticProblem, modes: &[Mode], y: &Block, accuracy: f64) {
+    let matrices = problem.matrices.map(crate::stability::testing::entries);
+    let m = &matrices.m;
     for (i, mode) in modes.iter().enumerate() {
         let v =
             DMatrix::from_fn(m.nrows(), 1, |row, _| Complex64::new(y.column(2 * i)[row], -y.column(2 * i + 1)[row]));
-        let complex = |a: &DMatrix<f64>| a.transpose().map(Complex64::from);
-        let p = complex(&m) * (mode.lambda * mode.lambda) + complex(&c) * mode.lambda + complex(&k);
+        let terms = matrices.as_ref().terms(mode.lambda);
+        let p: DMatrix<Complex64> = terms.map(|(factor, a)| a.transpose().map(Complex64::from) * factor).sum();
         let residual = (&p * &v).norm() / (p.norm() * v.norm());
         assert!(residual < accuracy, "mode {i}: {residual:e}");
         let size = (v.adjoint() * m.map(Complex64::from) * &v)[(0, 0)];
@@ -324,7 +326,7 @@ fn matrices_of_any_structure_are_searched_twice() {
         }
     });
     let [m, c, k] = [DMatrix::identity(n, n), c, k].map(|a| dense(&comm, &a));
-    let matrices = Mck { m: &m, c: &c, k: &k };
+    let matrices = Mck::from([&m, &c, &k]);
     let problem = QuadraticProblem { symmetric_mc: false, ..QuadraticProblem::symmetric(matrices) };
     let evidence = Evidence::Repetition { estimated: false };
     let mut solver = BandSolver::new(EigenOptions { evidence, ..EigenOptions::default() }, (0..n as u64).collect());

@@ -279,3 +279,30 @@ fn joints_are_the_same_in_a_deck_and_in_a_model_file_that_are_written_of_them() 
         }
     }
 }
+
+#[test]
+fn springs_between_couplings_are_a_connector() {
+    let Converted { model, .. } = with("*MATERIAL, NAME=Steel\n", COUPLINGS).unwrap();
+    let connector = &model.connectors[0];
+    assert_eq!(
+        (connector.between.clone(), connector.at.unwrap()),
+        (["Side".to_owned(), "Hub_nodes".to_owned()], [0.0, 0.0, 0.02])
+    );
+    assert!(close(connector.stiffness[1], 5e5) && close(connector.damping[2], 20.0));
+    assert_eq!((connector.stiffness[0], connector.rotational_stiffness), (0.0, [0.0; 3]));
+    let lossy =
+        COUPLINGS.replace("*SPRING, ELSET=S\n2, 2\n500.", "*SPRING, ELSET=S, COMPLEX STIFFNESS\n2, 2\n500., 50.");
+    let model = with("*MATERIAL, NAME=Steel\n", &lossy).unwrap().model;
+    assert!(model.connectors.len() == 1 && close(model.connectors[0].loss_factor, 0.1));
+    let second =
+        "*ELEMENT, TYPE=SPRING2, ELSET=S2\n903, 101, 102\n*SPRING, ELSET=S2\n1, 1\n200.\n*MATERIAL, NAME=Steel\n";
+    let model = with("*MATERIAL, NAME=Steel\n", &lossy.replace("*MATERIAL, NAME=Steel\n", second)).unwrap().model;
+    let of = |own: &crate::model::Connector| (own.stiffness.map(|k| k > 0.0), own.loss_factor > 0.0);
+    let both: Vec<_> = model.connectors.iter().map(of).collect();
+    assert_eq!(both, [([false, true, false], true), ([true, false, false], false)], "a loss factor each");
+    let message = with("*MATERIAL, NAME=Steel\n", &lossy.replace("500., 50.", "0., 50.")).unwrap_err();
+    assert!(message.contains("an imaginary stiffness must be 0 or above, beside a real one"), "{message}");
+    let far = COUPLINGS.replace("102, 0., 0., 20.", "102, 0., 0., 21.");
+    let message = with("*MATERIAL, NAME=Steel\n", &far).unwrap_err();
+    assert!(message.contains("the line between them is not along the axis of the spring"), "{message}");
+}

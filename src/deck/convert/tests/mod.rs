@@ -32,7 +32,7 @@ DISC, S1
 210000., 0.3
 *DENSITY
 7.85e-9
-*DAMPING, ALPHA=5., BETA=1e-7
+*DAMPING, ALPHA=5., BETA=1e-7, STRUCTURAL=0.02
 *SOLID SECTION, ELSET=DISC, MATERIAL=STEEL
 *SOLID SECTION, ELSET=PAD, MATERIAL=STEEL
 *SURFACE INTERACTION, NAME=I
@@ -119,6 +119,7 @@ fn a_deck_in_millimetres_and_tonnes_is_a_model_in_si_units() {
     assert_eq!(mesh.nodes[1], [0.0, 0.01, 0.0]);
     let material = &model.parts[0].material;
     assert!(close(material.density, 7850.0) && close(model.parts[0].rayleigh.beta, 1e-7));
+    assert_eq!(model.parts[0].material.loss_factor, 0.02);
     assert!(close(crate::model::isotropic(material).unwrap()[0], 210e9));
     let Contact { name, slave, master, law, friction, stick, separation, .. } = &model.contacts[0];
     assert_eq!((name.as_str(), slave.as_str(), master.as_str()), ("Pad_face / Disc_face", "Pad_face", "Disc_face"));
@@ -164,6 +165,7 @@ fn another_system_of_units_gives_the_same_model() {
             part.material.density,
             part.rayleigh.alpha,
             part.rayleigh.beta,
+            part.material.loss_factor,
             *stiffness,
             force,
             model.rotations[0].speed,
@@ -346,21 +348,6 @@ HUB
 0.02
 *MATERIAL, NAME=Steel
 ";
-
-#[test]
-fn springs_between_couplings_are_a_connector() {
-    let Converted { model, .. } = with("*MATERIAL, NAME=Steel\n", COUPLINGS).unwrap();
-    let connector = &model.connectors[0];
-    assert_eq!(
-        (connector.between.clone(), connector.at.unwrap()),
-        (["Side".to_owned(), "Hub_nodes".to_owned()], [0.0, 0.0, 0.02])
-    );
-    assert!(close(connector.stiffness[1], 5e5) && close(connector.damping[2], 20.0));
-    assert_eq!((connector.stiffness[0], connector.rotational_stiffness), (0.0, [0.0; 3]));
-    let far = COUPLINGS.replace("102, 0., 0., 20.", "102, 0., 0., 21.");
-    let message = with("*MATERIAL, NAME=Steel\n", &far).unwrap_err();
-    assert!(message.contains("the line between them is not along the axis of the spring"), "{message}");
-}
 
 #[test]
 fn a_held_kinematic_coupling_is_a_support_and_a_distributing_one_spreads_a_force() {
