@@ -1,6 +1,7 @@
 //! Decks that are wrong in one thing, and decks that are damaged.
 
 use super::broken_joints::BROKEN_JOINTS;
+use super::joints::COUPLINGS;
 use super::*;
 
 /// What is exchanged, what for, and how the message begins.

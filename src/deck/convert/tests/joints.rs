@@ -280,6 +280,32 @@ fn joints_are_the_same_in_a_deck_and_in_a_model_file_that_are_written_of_them() 
     }
 }
 
+/// A connector, a force and a support by couplings: the reference nodes 101 to 103.
+pub(super) const COUPLINGS: &str = "*NODE
+101, 0., 0., 20.
+102, 0., 0., 20.
+103, 3.3333333333, 3.3333333333, 5.
+*SURFACE, NAME=Side
+PAD, S4
+*SURFACE, NAME=Hub_nodes, TYPE=NODE
+HUB
+*COUPLING, REF NODE=101, SURFACE=SIDE, CONSTRAINT NAME=C1
+*DISTRIBUTING
+*COUPLING, REF NODE=102, SURFACE=HUB_NODES, CONSTRAINT NAME=C2
+*DISTRIBUTING
+*ELEMENT, TYPE=SPRING2, ELSET=S
+901, 101, 102
+*SPRING, ELSET=S
+2, 2
+500.
+*ELEMENT, TYPE=DASHPOT2, ELSET=D
+902, 101, 102
+*DASHPOT, ELSET=D
+3, 3
+0.02
+*MATERIAL, NAME=Steel
+";
+
 #[test]
 fn springs_between_couplings_are_a_connector() {
     let Converted { model, .. } = with("*MATERIAL, NAME=Steel\n", COUPLINGS).unwrap();

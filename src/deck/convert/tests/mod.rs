@@ -323,32 +323,6 @@ fn a_surface_of_nodes_is_the_facets_between_them() {
     assert!(summary.notes.iter().any(|note| note.contains("6 nodes is read as the 1 facets")), "{:?}", summary.notes);
 }
 
-/// A connector, a force and a support by couplings: the reference nodes 101 to 103.
-const COUPLINGS: &str = "*NODE
-101, 0., 0., 20.
-102, 0., 0., 20.
-103, 3.3333333333, 3.3333333333, 5.
-*SURFACE, NAME=Side
-PAD, S4
-*SURFACE, NAME=Hub_nodes, TYPE=NODE
-HUB
-*COUPLING, REF NODE=101, SURFACE=SIDE, CONSTRAINT NAME=C1
-*DISTRIBUTING
-*COUPLING, REF NODE=102, SURFACE=HUB_NODES, CONSTRAINT NAME=C2
-*DISTRIBUTING
-*ELEMENT, TYPE=SPRING2, ELSET=S
-901, 101, 102
-*SPRING, ELSET=S
-2, 2
-500.
-*ELEMENT, TYPE=DASHPOT2, ELSET=D
-902, 101, 102
-*DASHPOT, ELSET=D
-3, 3
-0.02
-*MATERIAL, NAME=Steel
-";
-
 #[test]
 fn a_held_kinematic_coupling_is_a_support_and_a_distributing_one_spreads_a_force() {
     let coupled = |kind: &str, action: &str| {
