@@ -120,6 +120,8 @@ enum Command {
     New(new::New),
     /// Print a model file that has every key, each explained (also: squeal help model)
     Example,
+    /// Print the JSON schema of model files, by which editors complete and check keys
+    Schema,
     /// Print what a model is: parts, masses, contact pairs, mesh quality, free parts, memory
     Check(check::Check),
     /// Write a deck of Abaqus or CalculiX as a model file with a Gmsh mesh, or a model as a deck
@@ -273,6 +275,7 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
     match command {
         Command::New(new) => new::run(shell, new),
         Command::Example => new::example(shell),
+        Command::Schema => new::schema(shell),
         Command::Check(check) => check::run(shell, check),
         Command::Convert(convert) => convert::run(shell, convert),
         Command::Static(run) => r#static::run(shell, run),

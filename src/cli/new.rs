@@ -8,7 +8,7 @@ use crate::analysis::propose_model;
 use crate::output::files::write_whole;
 use crate::{Error, Result, mesh, model};
 
-use super::Shell;
+use super::{Shell, print};
 
 /// What `new` takes.
 #[derive(Args)]
@@ -46,4 +46,9 @@ pub fn run(shell: &Shell, New { mesh, output }: &New) -> Result<()> {
 /// Prints a model file with every key, each explained.
 pub fn example(shell: &Shell) -> Result<()> {
     shell.print(model::EXAMPLE, &serde_json::json!({ "example": model::EXAMPLE }))
+}
+
+/// Prints the JSON schema of model files; it is a JSON document itself.
+pub fn schema(shell: &Shell) -> Result<()> {
+    if shell.comm.is_root() { print(model::SCHEMA) } else { Ok(()) }
 }

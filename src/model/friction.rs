@@ -66,7 +66,7 @@ pub fn contact_friction(item: &Item, raw: &Spanned<keys::Friction>) -> Result<(f
     match raw.get_ref() {
         keys::Friction::Constant(mu) => Ok((friction(item, &Spanned::new(raw.span(), *mu))?, None)),
         keys::Friction::Word(keys::FrictionWord::Rough) => Ok((ROUGH, None)),
-        &keys::Friction::Decay { at_rest, kinetic, decay } => {
+        &keys::Friction::Decay(keys::DecayTable { at_rest, kinetic, decay }) => {
             let holds = is_positive(at_rest) && is_coefficient(kinetic) && decay > 0.0 && decay.is_finite();
             let what = format_args!("friction has static = {at_rest}, kinetic = {kinetic}, decay = {decay}");
             let advice = "Give static above 0 and kinetic from 0, both up to 2, and a decay above 0 in s/m";

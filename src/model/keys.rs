@@ -1,5 +1,5 @@
 //! The keys of a model file as serde sees them; `example.toml` explains each. Values are unchecked, their places are
-//! kept.
+//! kept. `schema.json` has the same keys for editors.
 
 use super::InstabilityCriterion;
 use super::item::{Number, Vector};
@@ -34,12 +34,7 @@ pub enum OneOrThree {
 pub enum Friction {
     Constant(f64),
     Word(FrictionWord),
-    Decay {
-        #[serde(rename = "static")]
-        at_rest: f64,
-        kinetic: f64,
-        decay: f64,
-    },
+    Decay(DecayTable),
     Stribeck(StribeckTable),
     Table(FrictionRows),
 }
@@ -83,10 +78,17 @@ impl<'de> Deserialize<'de> for Law {
 
 /// Tables of the file, in which every key must be known.
 macro_rules! tables {
-    ($($table:item)*) => {
+    ($($(#[$attribute:meta])* pub struct $name:ident { $($keys:tt)* })*) => {
         $(#[derive(Deserialize)]
         #[serde(deny_unknown_fields, expecting = "a table")]
-        $table)*
+        $(#[$attribute])*
+        pub struct $name { $($keys)* })*
+
+        /// All tables and their keys.
+        #[cfg(test)]
+        pub fn tables() -> Vec<(&'static str, &'static [&'static str])> {
+            vec![$((stringify!($name), super::tests::schema::names::<$name>())),*]
+        }
     };
 }
 
@@ -181,6 +183,14 @@ tables! {
         pub search: Option<Number>,
         pub adjust: Option<Number>,
         pub clearance: Option<Number>,
+    }
+
+    #[derive(Clone, Copy)]
+    pub struct DecayTable {
+        #[serde(rename = "static")]
+        pub at_rest: f64,
+        pub kinetic: f64,
+        pub decay: f64,
     }
 
     #[derive(Clone, Copy)]

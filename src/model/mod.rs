@@ -65,3 +65,6 @@ pub use write::{isotropic, write};
 
 /// A model file that uses every key, with an explanation of each.
 pub const EXAMPLE: &str = include_str!("example.toml");
+
+/// The JSON schema (draft 2020-12) of model files: for editors, which complete and check keys by it.
+pub const SCHEMA: &str = include_str!("schema.json");

@@ -5,6 +5,7 @@ mod joints;
 mod keys;
 mod materials;
 mod pairs;
+pub mod schema;
 
 use super::*;
 use std::path::Path;
