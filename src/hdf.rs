@@ -5,6 +5,7 @@
 //! error. A text is an array of bytes, UTF-8; the mark of a file is a string of fixed length, as HDF5 keeps those of
 //! variable length in a heap without checksums.
 
+use std::os::fd::AsRawFd;
 use std::path::{Path, PathBuf};
 
 use hdf5::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
@@ -72,8 +73,32 @@ fn draft(path: &Path) -> Result<PathBuf> {
     Ok(path.with_file_name(format!(".{}.partial-{}", name.to_string_lossy(), std::process::id())))
 }
 
+/// A name by which HDF5, which takes UTF-8 only, finds a file: its path, or else the system's name of a file that is
+/// open.
+struct Reachable {
+    path: PathBuf,
+    _open: Option<std::fs::File>,
+}
+
+impl Reachable {
+    fn new(path: &Path, open: impl FnOnce(&Path) -> std::io::Result<std::fs::File>) -> std::io::Result<Reachable> {
+        if path.to_str().is_some() {
+            return Ok(Reachable { path: path.to_owned(), _open: None });
+        }
+        let file = open(path)?;
+        Ok(Reachable { path: format!("/proc/self/fd/{}", file.as_raw_fd()).into(), _open: Some(file) })
+    }
+}
+
+/// Opens any HDF5 file for reading.
+fn open_any(path: &Path) -> hdf5::Result<File> {
+    let name = Reachable::new(path, |path| std::fs::File::open(path)).map_err(|reason| reason.to_string())?;
+    File::open(&name.path)
+}
+
 fn write_draft(path: &Path, format: &Format, body: impl FnOnce(&File) -> hdf5::Result<()>) -> hdf5::Result<()> {
-    let file = File::with_options().with_fapl(|access| access.libver_v110()).create(path)?;
+    let name = Reachable::new(path, |path| std::fs::File::create(path)).map_err(|reason| reason.to_string())?;
+    let file = File::with_options().with_fapl(|access| access.libver_v110()).create(&name.path)?;
     file.new_attr::<Mark>().create("format")?.write_scalar(&mark(format.name)?)?;
     file.new_attr::<i32>().create("version")?.write_scalar(&format.version)?;
     body(&file)?;
@@ -101,7 +126,7 @@ pub fn open(path: &Path, format: &Format) -> Result<File> {
             format.name
         )));
     }
-    let file = File::open(path).map_err(|reason| damaged(path, format, reason))?;
+    let file = open_any(path).map_err(|reason| damaged(path, format, reason))?;
     let name = file.attr("format").and_then(|attribute| read_mark(&attribute));
     if name.map_or(true, |name| name != format.name) {
         return Err(Error::input(format!("{place} is an HDF5 file, but not of the kind \"{}\"", format.name)));
@@ -119,7 +144,7 @@ pub fn open(path: &Path, format: &Format) -> Result<File> {
 
 /// Whether a file is of a kind, of whatever version. Not collective.
 pub fn is_of(path: &Path, format: &Format) -> bool {
-    let name = || File::open(path).and_then(|file| read_mark(&file.attr("format")?));
+    let name = || open_any(path).and_then(|file| read_mark(&file.attr("format")?));
     is_hdf5(path) && name().is_ok_and(|name| name == format.name)
 }
 

@@ -7,7 +7,6 @@ use std::time::Instant;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use crate::Result;
 use crate::assembly::System;
 use crate::comparison::{groups_of_near, mac_with_span};
 use crate::equilibrium::LabelledFactor;
@@ -17,6 +16,7 @@ use crate::output::folder::Folder;
 use crate::results::{FreeMode, FreeModes, MeasuredComparison};
 use crate::stability::{Band, BandRequest, BandSolver, EigenOptions, Mode, QuadraticProblem};
 use crate::structure::{FullModel, RigidMotions};
+use crate::{Error, Result};
 
 use super::measured::{self, Measured};
 use super::observer::{Event, Observer, warn};
@@ -108,6 +108,7 @@ fn compare(
     computed: &[Mode],
 ) -> Result<MeasuredComparison> {
     let points = Points::new(part, comm, measured);
+    points.require_near(part, comm)?;
     let (n_points, n_modes) = (measured.points.len(), computed.len());
     let mut values = vec![0.0; n_points * n_modes];
     for (j, mode) in computed.iter().enumerate() {
@@ -165,6 +166,20 @@ impl Points {
         };
         let distance = closest.iter().fold(0.0, |largest: f64, closest| largest.max((-closest.value).sqrt()));
         Points { nodes: own.into_iter().zip(&closest).map(mine).collect(), distance }
+    }
+
+    /// Refuses points that are farther from the part than it is long: they are of another unit or another part.
+    /// Collective.
+    fn require_near(&self, part: &FullModel, comm: &Comm) -> Result<()> {
+        let (length, unit) = (part.extents(comm).into_iter().fold(0.0, f64::max), part.model.mesh_unit);
+        if self.distance <= length {
+            return Ok(());
+        }
+        let [distance, length] = [self.distance, length].map(|x| x / unit);
+        Err(Error::input(format!(
+            "a measured point is {distance:.1} from the nearest node, and the part is {length:.1} long (unit of the mesh). \
+             Give the points of this part in the unit of the mesh"
+        )))
     }
 }
 

@@ -35,6 +35,7 @@ use crate::model::NormalLaw;
 use crate::native::blas::restart_with_fitting_kernels;
 use crate::native::{Comm, Session, all_libraries};
 use crate::output::json::{self, Failed, Warned};
+use crate::output::text::printable;
 use crate::results::Results;
 use crate::structure::StructureOptions;
 use crate::{Error, Result};
@@ -82,7 +83,7 @@ impl Shell<'_> {
         match (self.comm.is_root(), self.json) {
             (false, _) => Ok(()),
             (true, true) => print(&json::text(document)),
-            (true, false) => print(text),
+            (true, false) => print(&printable(text)),
         }
     }
 }
@@ -111,7 +112,7 @@ impl Shell<'_> {
 
 /// A warning as text, or as JSON like errors.
 fn warning_line(warning: &str, as_json: bool) -> String {
-    if as_json { json::line(&Warned { warning }) } else { format!("warning: {warning}") }
+    if as_json { json::line(&Warned { warning }) } else { printable(&format!("warning: {warning}")).into_owned() }
 }
 
 #[derive(Subcommand)]
@@ -262,7 +263,9 @@ fn print_usage(usage: &clap::Error) -> i32 {
         // An error here has no place where it could be printed.
         let _ = match (usage.use_stderr(), env::args_os().any(|word| word == "--json")) {
             (true, true) => {
-                let failed = Failed { error: usage.to_string().trim().to_owned(), exit_code: usage.exit_code() };
+                let text = usage.to_string();
+                let error = text.trim().trim_start_matches("error: ").to_owned();
+                let failed = Failed { error, exit_code: usage.exit_code() };
                 writeln!(io::stderr(), "{}", json::line(&failed))
             }
             _ => usage.print(),
@@ -331,7 +334,7 @@ fn print_error(what: &str, error: &Error, as_json: bool) {
         (true, _) => json::line(&Failed { error: error.to_string(), exit_code: error.exit_code() }),
         // That a run was stopped is no error.
         (false, crate::ErrorKind::Interrupted { .. }) => error.to_string(),
-        (false, _) => format!("{what}: {error}"),
+        (false, _) => printable(&format!("{what}: {error}")).into_owned(),
     };
     let _ = writeln!(io::stderr(), "{text}");
 }

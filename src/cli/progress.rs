@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::native::Comm;
+use crate::output::text::printable;
 
 /// A line with stage, detail and elapsed time, and a bar over the values of a sweep.
 pub struct Progress {
@@ -63,7 +64,7 @@ impl Progress {
     /// Prints a line for everybody, on the first rank.
     pub fn print(&self, line: &str) {
         if self.is_root {
-            self.bar.suspend(|| eprintln!("{line}"));
+            self.bar.suspend(|| eprintln!("{}", printable(line)));
         }
     }
 

@@ -33,6 +33,7 @@ use toml::Spanned;
 
 use super::Role;
 use super::combined::Term;
+use crate::model::utf8;
 use crate::{Error, Result};
 
 /// The operators and functions of expressions, with `pi` by its usual name.
@@ -54,12 +55,14 @@ type Expression = FlatEx<f64, Operators>;
 pub struct Coefficient {
     expression: Expression,
     text: String,
+    /// `file:line: `, where it is of a file.
+    place: String,
 }
 
 impl Coefficient {
     /// The factor 1.
     pub fn one() -> Coefficient {
-        Coefficient { expression: Expression::parse("1").expect("a number"), text: "1".into() }
+        Coefficient { expression: Expression::parse("1").expect("a number"), text: "1".into(), place: String::new() }
     }
 
     /// Reads an expression in one parameter.
@@ -77,7 +80,7 @@ impl Coefficient {
         })?;
         match expression.var_names().iter().find(|name| *name != parameter) {
             Some(name) => Err(format!("{text:?} has the unknown name {name:?}: the parameter is {parameter:?}")),
-            None => Ok(Coefficient { expression, text: text.into() }),
+            None => Ok(Coefficient { expression, text: text.into(), place: String::new() }),
         }
     }
 
@@ -90,10 +93,12 @@ impl Coefficient {
         match self.expression.eval(&values) {
             Ok(value) if value.is_finite() => Ok(value),
             Ok(value) => Err(Error::input(format!(
-                "the factor {:?} is {value} at the value {parameter} of the parameter",
-                self.text
+                "{}the factor {:?} is {value} at the value {parameter} of the parameter. Give other values of it",
+                self.place, self.text
             ))),
-            Err(reason) => Err(Error::input(format!("the factor {:?} at {parameter}: {reason}", self.text))),
+            Err(reason) => {
+                Err(Error::input(format!("{}the factor {:?} at {parameter}: {reason}", self.place, self.text)))
+            }
         }
     }
 
@@ -141,8 +146,8 @@ pub struct MatrixFamily {
 /// [`Error::Input`] with file and line.
 pub fn read(path: &Path) -> Result<MatrixFamily> {
     let place = path.display();
-    let text =
-        std::fs::read_to_string(path).map_err(|reason| Error::input(format!("{place}: cannot be read: {reason}")))?;
+    let bytes = std::fs::read(path).map_err(|reason| Error::input(format!("{place}: cannot be read: {reason}")))?;
+    let text = utf8(path, &bytes)?;
     if text.contains("[mesh]") || text.trim_start().starts_with("mesh") {
         let what = "this is a model file, not a family of matrices";
         return Err(Error::input(format!("{place}: {what}. Give --part NAME for the modes of one of its parts")));
@@ -159,8 +164,12 @@ pub fn read(path: &Path) -> Result<MatrixFamily> {
         for RawTerm { file, factor } in list {
             let factor = match factor {
                 None => Coefficient::one(),
-                Some(factor) => Coefficient::parse(factor.get_ref(), &keys.parameter)
-                    .map_err(|what| Error::input(format!("{place}:{}: {what}", line(factor.span().start))))?,
+                Some(factor) => {
+                    let place = format!("{place}:{}: ", line(factor.span().start));
+                    let own = Coefficient::parse(factor.get_ref(), &keys.parameter)
+                        .map_err(|what| Error::input(format!("{place}{what}")))?;
+                    Coefficient { place, ..own }
+                }
             };
             terms.push(Term { role, file: path.parent().unwrap_or(Path::new("")).join(file), factor });
         }

@@ -34,6 +34,7 @@ mod loads;
 mod materials;
 mod merge;
 pub mod names;
+mod paths;
 mod place;
 mod proposed;
 mod read;
@@ -54,7 +55,7 @@ pub use joints::PENALTY;
 pub use place::Place;
 pub use proposed::ProposedStiffness;
 pub use read::{is_deck, parse, read};
-pub use source::located;
+pub use source::{located, utf8};
 pub use surfaces::softest_young;
 pub use types::{
     Connector, Contact, Equation, EquationTerm, Fix, GROUND, Load, LoadKind, Material, Model, NormalLaw, Part,

@@ -1,7 +1,7 @@
 //! From the file to the model: one step a table, in an order in which names are known before they are used.
 
 use super::item::Item;
-use super::source::{ModelText, located};
+use super::source::{ModelText, utf8};
 use super::{Model, Place, UnitSystem, analysis, bodies, contacts, joints, keys, loads, materials};
 use crate::hdf::is_hdf5;
 use crate::{Error, Result};
@@ -38,11 +38,7 @@ pub fn read(path: &Path) -> Result<Model> {
         let advice = "Super-elements are for squeal static, stability and export, results for report and compare";
         return Err(Error::input(format!("{place} {what}. {advice}")));
     }
-    let text = std::str::from_utf8(&bytes).map_err(|reason| {
-        let line = 1 + bytes[..reason.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
-        Error::input(located(path, line, "here is a byte that is not UTF-8. Save the model file as UTF-8 text"))
-    })?;
-    parse(text, path)
+    parse(utf8(path, &bytes)?, path)
 }
 
 /// Checks the text of a model file; `file` is what messages call it, and its folder is where the mesh is looked for.

@@ -24,6 +24,17 @@ pub fn located(file: &Path, line: usize, message: impl Display) -> String {
     format!("{}:{line}: {message}", file.display())
 }
 
+/// The bytes of a file as text.
+///
+/// # Errors
+/// [`Error::Input`] with the line of the first byte that is not UTF-8.
+pub fn utf8<'a>(file: &Path, bytes: &'a [u8]) -> Result<&'a str> {
+    std::str::from_utf8(bytes).map_err(|reason| {
+        let line = 1 + bytes[..reason.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
+        Error::input(located(file, line, "here is a byte that is not UTF-8. Save the file as UTF-8 text"))
+    })
+}
+
 impl ModelText<'_> {
     /// Line of an offset, from 1.
     pub fn line(&self, offset: usize) -> usize {
@@ -65,6 +76,9 @@ impl ModelText<'_> {
         } else if message.starts_with("duplicate key") {
             let key = self.text[span.clone()].trim_matches(['[', ']']);
             format!("{key:?} is given twice ({table}). Keep one of them")
+        } else if self.text_at(span).contains('\\') {
+            let advice = "In double quotes \\ begins an escape. Write a path with / or in single quotes";
+            format!("{} ({table}). {advice}", message.trim_end())
         } else {
             let message = message.replace("f64", "a number").replace("usize", "a whole number");
             format!("{} ({table}). Correct it; squeal example explains every key", message.trim_end())

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::{is_positive_semidefinite, youngs};
 use super::friction::FrictionCurve;
-use super::{InstabilityCriterion, Place, names};
+use super::{InstabilityCriterion, Place, names, paths};
 use crate::element::ElementKind;
 use crate::{Error, Result};
 
@@ -16,12 +16,15 @@ use crate::{Error, Result};
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Model {
     /// The model file itself; names in messages refer to it.
+    #[serde(with = "paths::one")]
     pub file: PathBuf,
     /// The files that places are in: the model file, and those of a deck.
+    #[serde(with = "paths::many")]
     pub files: Vec<PathBuf>,
     /// A line for titles.
     pub title: String,
     /// The mesh file (absolute, or relative to the current directory).
+    #[serde(with = "paths::one")]
     pub mesh_file: PathBuf,
     /// Metres per unit of the mesh file.
     pub mesh_unit: f64,

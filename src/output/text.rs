@@ -1,5 +1,7 @@
 //! Text for people: columns under headings, lists of files, small words.
 
+use std::borrow::Cow;
+
 /// Rows in columns under a heading of one or more lines, cells separated by tabs: words to the left, numbers to the
 /// right.
 pub fn aligned(heading: &str, rows: impl IntoIterator<Item = String>) -> String {
@@ -52,6 +54,16 @@ pub fn paragraph(lines: &str) -> String {
     if lines.is_empty() { String::new() } else { format!("\n{lines}") }
 }
 
+/// A text for a terminal: control characters, which a name in a mesh may have, are spelled out.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let acts = |c: char| c.is_control() && !"\n\t".contains(c);
+    if !text.contains(acts) {
+        return Cow::Borrowed(text);
+    }
+    let spelled = |c: char| if acts(c) { c.escape_unicode().to_string() } else { c.to_string() };
+    Cow::Owned(text.chars().map(spelled).collect())
+}
+
 /// A text inside XML or HTML, in elements and in attributes.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -73,6 +85,12 @@ pub fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn control_characters_are_spelled_out() {
+        assert_eq!(printable("disc\t1\n"), "disc\t1\n");
+        assert_eq!(printable("\u{1b}[2Jdisc\u{7}"), "\\u{1b}[2Jdisc\\u{7}");
+    }
 
     #[test]
     fn words_stand_to_the_left_and_numbers_to_the_right() {

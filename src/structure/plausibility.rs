@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::element::ElementKind;
 use crate::element::solid::MassProperties;
-use crate::model::{Material, Rotation, softest_young};
+use crate::model::{LoadKind, Material, Rotation, softest_young};
 use crate::native::Comm;
 
 /// Young's moduli of solids, from rubber to above diamond, Pa.
@@ -34,6 +34,8 @@ const AXIS_RATIO: f64 = 0.1;
 const QUALITY: f64 = 0.05;
 /// N/m3 in a N/mm3.
 const PER_CUBIC_MILLIMETRE: f64 = 1e9;
+/// Brakes have pressures of 1 to 200 bar, 1e5 to 2e7 Pa.
+const SMALLEST_PRESSURE: f64 = 1e3;
 
 /// Whether a number lies outside.
 fn is_outside(x: f64, [low, high]: [f64; 2]) -> bool {
@@ -73,6 +75,15 @@ pub fn size(extent: f64, unit: f64) -> Option<String> {
         _ => "Look at the unit of the mesh ([mesh] unit)",
     };
     Some(format!("the model is {extent:.3e} m large. {meant}"))
+}
+
+/// The pressure of a load, Pa.
+pub fn pressure(load: &str, pressure: f64) -> Option<String> {
+    (pressure != 0.0 && pressure.abs() < SMALLEST_PRESSURE).then(|| {
+        format!(
+            "the pressure of load {load:?} is {pressure:.3e} Pa. Was it given in MPa? 1 MPa is 1e6 Pa, 1 bar 1e5 Pa"
+        )
+    })
 }
 
 /// The normal stiffness of a contact beside E/h of its softer neighbour, both N/m3.
@@ -162,12 +173,17 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
         let neighbour = young / full.mesh.surfaces[&contact.slave].facet_size(pair.statistics.area);
         contact_stiffness(&contact.name, stiffness, neighbour).filter(|_| neighbour.is_finite())
     });
+    let pressures = model.loads.iter().filter_map(|load| match load.kind {
+        LoadKind::Pressure(p) => pressure(&load.name, p),
+        _ => None,
+    });
     let ties = model.ties.iter().zip(&full.joints.ties).filter_map(|(tie, own)| tie_sizes(&tie.name, own.sizes));
     let extent = full.extents(comm).into_iter().fold(0.0, f64::max);
     let size = size(extent, model.mesh_unit);
     stiffness
         .chain(mass)
         .chain(contacts)
+        .chain(pressures)
         .chain(ties)
         .chain(size)
         .chain(stiff_elements(full, comm))
@@ -294,6 +310,12 @@ mod tests {
         warns(young("iron", 110e3), "Was it given in MPa (N/mm2)?");
         warns(young("iron", 0.99e6), "MPa");
         warns(young("iron", 1.01e12), "factor of a thousand");
+    }
+
+    #[test]
+    fn pressures() {
+        assert_eq!([2e6, -2e6, 1e5, 0.0].map(|p| pressure("piston", p)), [None, None, None, None]);
+        warns(pressure("piston", 2.0), "is 2.000e0 Pa. Was it given in MPa?");
     }
 
     #[test]

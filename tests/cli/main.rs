@@ -13,6 +13,8 @@ mod parallel;
 mod reduced_brake;
 mod results_file;
 mod resume;
+mod strange_input;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;
+mod units;

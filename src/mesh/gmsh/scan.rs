@@ -6,6 +6,9 @@ use std::fmt::Display;
 use std::path::Path;
 use std::str::FromStr;
 
+/// Characters of a word in a message.
+const LONGEST_WORD: usize = 60;
+
 /// The cursor.
 pub struct Scan<'a> {
     file: &'a Path,
@@ -147,7 +150,9 @@ impl<'a> Scan<'a> {
         let word = String::from_utf8_lossy(&rest[..end]);
         let value = word.parse().map_err(|_| {
             let section = self.section;
-            self.error(format_args!("expected {expected} in ${section}, found {word:?}. Write the mesh again"))
+            // A binary file may be one word.
+            let found: String = word.chars().take(LONGEST_WORD).collect();
+            self.error(format_args!("expected {expected} in ${section}, found {found:?}. Write the mesh again"))
         })?;
         self.at += end;
         Ok(value)
