@@ -76,7 +76,7 @@ impl ModelText<'_> {
         } else if message.starts_with("duplicate key") {
             let key = self.text[span.clone()].trim_matches(['[', ']']);
             format!("{key:?} is given twice ({table}). Keep one of them")
-        } else if self.text_at(span).contains('\\') {
+        } else if message.contains("escape") || message.contains("unicode") {
             let advice = "In double quotes \\ begins an escape. Write a path with / or in single quotes";
             format!("{} ({table}). {advice}", message.trim_end())
         } else {

@@ -50,11 +50,11 @@ pub fn assert_same_contact(contact: &[f64], others: &[f64], tolerance: f64) {
 }
 
 #[test]
-fn two_and_three_ranks_find_what_one_finds() {
+fn two_three_and_four_ranks_find_what_one_finds() {
     let place = Place::pads();
     let alone = stability(&place, "0:1500", 1);
     assert!(alone.0.iter().any(|[_, growth]| *growth > 1.0), "a pair flutters: {:?}", alone.0);
-    [2, 3].into_iter().for_each(|ranks| assert_same(&alone, &stability(&place, "0:1500", ranks)));
+    [2, 3, 4].into_iter().for_each(|ranks| assert_same(&alone, &stability(&place, "0:1500", ranks)));
 }
 
 /// With loss factors, two values of the friction coefficient, and modes followed between them.

@@ -19,7 +19,7 @@ const DOUBTFUL: [(&str, &str, &str); 9] = [
 /// What is changed, and why it is refused.
 const REFUSED: [(&str, &str, &str); 3] = [
     ("poisson = 0.27", "poisson = 27", "poisson must be above -1 and below 0.5, not 27"),
-    ("friction = 0.4", "friction = 40", "friction must be 0 to 2, not 40"),
+    ("friction = 0.4", "friction = 40", "friction must be from 0 to 2, not 40"),
     ("young = 110e9", "young = 110 # GPa\nyoung = 110e9", "given twice"),
 ];
 
