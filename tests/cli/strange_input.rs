@@ -62,7 +62,7 @@ fn a_path_of_windows_in_double_quotes() {
     }
     // Both are escapes: a tab and a backspace.
     let said = name("\"C:\\temp\\blocks.msh\"").run(&["check", "brake.toml"]);
-    assert_refused(&said, &["cannot open the mesh C:\\u{9}emp\\u{8}locks.msh"]);
+    assert_refused(&said, &["emp\\u{8}locks.msh: No such file"]);
     assert_refused(&name("'C:\\temp\\blocks.msh'").run(&["check", "brake.toml"]), &["the mesh C:\\temp\\blocks.msh"]);
 }
 
