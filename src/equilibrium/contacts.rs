@@ -7,6 +7,8 @@ use crate::assembly::{DofMap, System};
 use crate::contact::{Interface, Response, Stage, Status};
 use crate::native::{Block, Comm, Gather, Matrix, Vector};
 
+use super::dense_gaps::DenseGaps;
+
 /// Evaluates all contact points of an interface, on every rank alike, so that the contact state is known everywhere.
 pub struct Contacts<'a> {
     interface: &'a Interface,
@@ -14,6 +16,8 @@ pub struct Contacts<'a> {
     gather: Gather,
     /// For each displacement of the gap operator's nodes its place in the gathered array, -1 where held.
     places: Vec<[i32; 3]>,
+    /// Of a densely stored system, where most entries of the gap operator are not zero.
+    dense: Option<DenseGaps>,
 }
 
 /// Points of a pair by status.
@@ -64,7 +68,9 @@ impl<'a> Contacts<'a> {
             }
         }
         let gather = Gather::new(&system.load, &indices)?;
-        Ok(Contacts { interface, dofs, gather, places })
+        let is_dense = system.k.is_dense()? && dofs.n_local() == dofs.n_global();
+        let dense = if is_dense { DenseGaps::new(&interface.gap_operator, dofs) } else { None };
+        Ok(Contacts { interface, dofs, gather, places, dense })
     }
 
     /// The interface.
@@ -77,6 +83,9 @@ impl<'a> Contacts<'a> {
     /// # Errors
     /// PETSc's.
     pub fn gaps(&self, u: &Vector) -> Result<Vec<[f64; 3]>> {
+        if let Some(dense) = &self.dense {
+            return u.local(|u| dense.gaps(u));
+        }
         let (gap_operator, places) = (&self.interface.gap_operator, &self.places);
         self.gather.run(u, |values| {
             let value = |place: i32| if place < 0 { 0.0 } else { values[place as usize] };
@@ -98,6 +107,10 @@ impl<'a> Contacts<'a> {
     /// # Errors
     /// PETSc's.
     pub fn add_forces(&self, responses: &[Response], factor: f64, r: &mut Vector) -> Result<()> {
+        if let Some(dense) = &self.dense {
+            let forces: Vec<[f64; 3]> = responses.iter().map(|response| response.force.map(|f| factor * f)).collect();
+            return r.local_mut(|r| dense.spread_all(&forces, r));
+        }
         r.local_mut(|r| {
             for (a, response) in responses.iter().enumerate().filter(|(_, response)| response.status != Status::Open) {
                 self.spread_into(a, response.force, factor, r);
@@ -107,6 +120,9 @@ impl<'a> Contacts<'a> {
 
     /// `r += factor B_a^T f` on this rank's rows. Not collective.
     pub fn spread_into(&self, a: usize, force: [f64; 3], factor: f64, r: &mut [f64]) {
+        if let Some(dense) = &self.dense {
+            return dense.spread(a, force.map(|f| factor * f), r);
+        }
         let owned = self.dofs.owned();
         self.interface.gap_operator.spread(a, force, |node, f| {
             for (equation, f) in self.dofs.node_dofs(node).into_iter().zip(f) {
@@ -131,6 +147,9 @@ impl<'a> Contacts<'a> {
     /// # Errors
     /// PETSc's.
     pub fn add_blocks(&self, blocks: impl Iterator<Item = [[f64; 3]; 3]>, matrix: &mut Matrix) -> Result<()> {
+        if let Some(dense) = &self.dense {
+            return matrix.change_dense_values(|values| dense.add_stiffness(blocks.collect(), values));
+        }
         let (mut dense, mut indices) = (Vec::new(), Vec::new());
         for (a, block) in blocks.enumerate() {
             if block.as_flattened().iter().all(|&x| x == 0.0) {

@@ -8,6 +8,7 @@
 mod balance;
 mod contacts;
 mod continuation;
+mod dense_gaps;
 mod labelled_factor;
 mod newton;
 mod path;

@@ -8,7 +8,8 @@
 //! Phi^T K Phi = I + sum Phi^T B_a^T (D_a - D_0a) B_a Phi = I + U V^T
 //! ```
 //!
-//! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s. A step of a Krylov method then
+//! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s, or from a factor of the sum where
+//! the rank is large. A step of a Krylov method then
 //! goes through C, U and V, where it went through M, C and a factor of K, and no coordinate is left out. That K_0
 //! becomes the identity, and not M, keeps the low modes' digits: rounding is relative to each mode's energy, and not to
 //! the highest mode's.
@@ -22,11 +23,11 @@ use super::eigensolver::{Eigensolver, Search, SearchRequest, SearchResult, Solve
 use super::space::Side;
 use super::toar::{complete, pep_options, with_wanted};
 use super::{EigenOptions, FrozenPoints, Mode, QuadraticProblem};
-use crate::Result;
 use crate::contact::{Dyad, Tangent, TangentChange};
 use crate::equilibrium::Woodbury;
 use crate::native::petsc::eigen::{self, Found, Options, Pair, Quadratic};
-use crate::native::{Block, Matrix, Mck, Vector, lapack};
+use crate::native::{Block, Comm, Factor, FactorKind, Matrix, Mck, Vector, lapack};
+use crate::{Error, Result};
 
 /// An eigenvalue found twice differs by no more, relatively.
 const EIGENVALUE_ROUNDING: f64 = 1e-9;
@@ -56,11 +57,16 @@ struct Coordinates {
     damping: Option<(Vec<f64>, Matrix)>,
 }
 
+/// Rank of a change, relative to the coordinates, from which the sum is factorised: a solve goes through `n^2` numbers
+/// then, in place of `2 n rank + rank^2`.
+const FACTORISED_FROM: f64 = 0.3;
+
 /// `(I + U V^T)^-1`
-struct Inverse {
-    v: Vec<f64>,
-    rank: usize,
-    woodbury: Woodbury,
+enum Inverse {
+    /// Of a low rank.
+    Updated { v: Vec<f64>, rank: usize, woodbury: Woodbury },
+    /// Of a large rank.
+    Factorised(Factor),
 }
 
 impl Modal {
@@ -159,10 +165,11 @@ impl Coordinates {
         options: &Options,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Option<Found>> {
-        let Some(inverse) = problem.points.and_then(|points| self.inverse(&points, side)) else { return Ok(None) };
+        let Some(points) = problem.points else { return Ok(None) };
+        let Some(inverse) = self.inverse(&points, side)? else { return Ok(None) };
         self.set_damping(problem)?;
         let Some((_, c)) = &self.damping else { return Ok(None) };
-        let solve = |b: &Vector, x: &mut Vector| b.local(|b| x.local_mut(|x| inverse.solve(b, x)))?;
+        let solve = |b: &Vector, x: &mut Vector| inverse.solve(b, x);
         let quadratic = Quadratic { matrices: Mck::from([&self.m, c, &self.k]), shift: 0.0, inverse: &solve };
         let Some(found) = eigen::solve(&quadratic, options, progress)? else { return Ok(None) };
         let mut coordinates = Vec::new();
@@ -192,7 +199,7 @@ impl Coordinates {
     }
 
     /// The inverse of I with what the tangents, or the transposed ones, add; none where the sum is singular.
-    fn inverse(&self, points: &FrozenPoints, side: Side) -> Option<Inverse> {
+    fn inverse(&self, points: &FrozenPoints, side: Side) -> Result<Option<Inverse>> {
         let pairs = self.tangents.iter().zip(points.responses).enumerate();
         let change = pairs.map(|(a, (old, new))| (a, old, &new.tangent));
         let change = TangentChange::between(change, TangentChange::ROUNDING);
@@ -204,11 +211,14 @@ impl Coordinates {
         if side == Side::Left {
             std::mem::swap(&mut u, &mut v);
         }
+        if rank as f64 > FACTORISED_FROM * n as f64 {
+            return factorised(self.phi.comm(), n, &u, &v);
+        }
         let mut projected = vec![0.0; rank * rank];
         lapack::multiply(true, [rank, n, rank], &v, &u, &mut projected);
         let w = Block::from_columns(self.phi.comm(), n, u);
-        let woodbury = Woodbury::new(w, DMatrix::from_vec(rank, rank, projected))?;
-        Some(Inverse { v, rank, woodbury })
+        let woodbury = Woodbury::new(w, DMatrix::from_vec(rank, rank, projected));
+        Ok(woodbury.map(|woodbury| Inverse::Updated { v, rank, woodbury }))
     }
 
     /// `Phi^T B_a^T f`
@@ -218,13 +228,31 @@ impl Coordinates {
     }
 }
 
+/// The factor of `I + U V^T`; none where that is singular.
+fn factorised(comm: &Comm, n: usize, u: &[f64], v: &[f64]) -> Result<Option<Inverse>> {
+    let mut transposed = DMatrix::<f64>::identity(n, n);
+    lapack::add_product_with_transpose([n, u.len() / n, n], v, u, transposed.as_mut_slice());
+    let mut factor = Factor::new(FactorKind::Unsymmetric);
+    match factor.factorise(&Matrix::dense(comm, n, transposed.as_slice())?) {
+        Err(Error::Singular { .. }) => Ok(None),
+        outcome => outcome.map(|()| Some(Inverse::Factorised(factor))),
+    }
+}
+
 impl Inverse {
     /// `x = (I + U V^T)^-1 b`
-    fn solve(&self, b: &[f64], x: &mut [f64]) {
-        let mut projected = vec![0.0; self.rank];
-        lapack::multiply(true, [self.rank, b.len(), 1], &self.v, b, &mut projected);
-        x.copy_from_slice(b);
-        self.woodbury.correct(&projected, x);
+    fn solve(&self, b: &Vector, x: &mut Vector) -> Result<()> {
+        match self {
+            Inverse::Factorised(factor) => factor.solve(b, x),
+            Inverse::Updated { v, rank, woodbury } => b.local(|b| {
+                x.local_mut(|x| {
+                    let mut projected = vec![0.0; *rank];
+                    lapack::multiply(true, [*rank, b.len(), 1], v, b, &mut projected);
+                    x.copy_from_slice(b);
+                    woodbury.correct(&projected, x);
+                })
+            })?,
+        }
     }
 }
 

@@ -8,4 +8,4 @@ mod product;
 pub use eigen::{Eigen, eigen, generalised_eigen, symmetric_eigen};
 pub(in crate::native) use factor::DenseFactor;
 pub use factor::solve_complex;
-pub use product::{add_product, multiply, subtract_product};
+pub use product::{add_product, add_product_with_transpose, multiply, subtract_product};

@@ -35,6 +35,23 @@ pub fn subtract_product(sizes: [usize; 3], a: &[f64], b: &[f64], c: &mut [f64]) 
     update(false, sizes, [-1.0, 1.0], a, b, c);
 }
 
+/// `C += A B^T` with A of `rows x inner`, B of `columns x inner`. Not collective.
+///
+/// # Panics
+/// Where the slices do not have those sizes.
+pub fn add_product_with_transpose([rows, inner, columns]: [usize; 3], a: &[f64], b: &[f64], c: &mut [f64]) {
+    assert_eq!((a.len(), b.len(), c.len()), (rows * inner, columns * inner, rows * columns));
+    if a.is_empty() || b.is_empty() {
+        return;
+    }
+    let ([m, k, n], [one, a, b]) = ([rows as i32, inner as i32, columns as i32], [&[1.0], a, b].map(<[f64]>::as_ptr));
+    let (no, yes) = (c"N".as_ptr(), c"T".as_ptr());
+    // SAFETY: the leading dimensions and sizes are those of the slices, checked above.
+    unsafe {
+        sys::dgemm_(no, yes, &m, &n, &k, one, a, &m, b, &n, one, c.as_mut_ptr(), &m);
+    }
+}
+
 /// `C = alpha op(A) B + beta C`
 fn update(
     transposed: bool,
@@ -95,5 +112,13 @@ mod tests {
         let mut d = [0.0; 2];
         multiply(true, [2, 3, 1], &a, &[1.0, 1.0, 1.0], &mut d);
         assert_eq!(d, [8.0, 13.0]);
+    }
+
+    #[test]
+    fn a_product_with_a_transpose_is_added() {
+        // A = [1 3; 2 4; 5 6], B = [1 2; 0 1]: A B^T = [7 3; 10 4; 17 6]
+        let mut c = [1.0; 6];
+        add_product_with_transpose([3, 2, 2], &[1.0, 2.0, 5.0, 3.0, 4.0, 6.0], &[1.0, 0.0, 2.0, 1.0], &mut c);
+        assert_eq!(c, [8.0, 11.0, 18.0, 4.0, 5.0, 7.0]);
     }
 }

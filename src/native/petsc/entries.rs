@@ -157,6 +157,20 @@ impl Matrix {
         self.with_dense_values(<[f64]>::to_vec)
     }
 
+    /// Changes the entries by columns of a matrix that is stored densely. Not collective.
+    ///
+    /// # Errors
+    /// PETSc's, where it is not.
+    pub fn change_dense_values(&mut self, change: impl FnOnce(&mut [f64])) -> Result<()> {
+        let mut pointer = ptr::null_mut();
+        // SAFETY: the array is valid between Get and Restore, for `n_local` columns of as many rows.
+        unsafe {
+            check(sys::MatDenseGetArray(self.raw(), &mut pointer))?;
+            change(std::slice::from_raw_parts_mut(pointer, self.n_local() * self.n_local()));
+            check(sys::MatDenseRestoreArray(self.raw(), &mut pointer))
+        }
+    }
+
     /// Lends the entries by columns where they are stored densely. Not collective.
     pub(in crate::native) fn with_dense_values<T>(&self, look: impl FnOnce(&[f64]) -> T) -> Result<Option<T>> {
         if !self.is_dense()? {
