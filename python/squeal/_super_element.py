@@ -6,15 +6,15 @@ import numpy as np
 
 from ._file import opened, table
 
-FORMAT, VERSION = "squeal super-element", 3
+FORMAT, VERSION = "squeal super-element", 4
 
 
 @dataclass(frozen=True)
 class SuperElement:
-    """A super-element. Its n coordinates: 3 a retained point, fixed-interface modes, residual modes."""
+    """A super-element. Its n coordinates: 3 a retained point, fixed-interface modes, residual modes; or basis vectors."""
 
     about: dict
-    """Its origin (model, mesh, friction, band), the sliding pairs, the parts."""
+    """Its origin (model, mesh, friction, band, samples), its contact pairs, the parts."""
     points: np.ndarray
     """Retained points, n_p x 3, m."""
     frequencies: np.ndarray
@@ -30,7 +30,9 @@ class SuperElement:
     preload: np.ndarray
     """Generalised forces of the equilibrium it was made about, n."""
     contacts: dict
-    """One array a quantity, one row a contact: pair, position, normal, direction, speed, weight, gap, ..."""
+    """One array a quantity, one row a contact: pair, position, normal, direction, speed, weight, gap, ...
+
+    Of a Galerkin super-element also motion, 3 n_c x n: displacements of the contacts for a unit of each coordinate."""
     nodes: np.ndarray
     """Corners of the outer surface, n_s x 3, m."""
     triangles: np.ndarray

@@ -16,6 +16,7 @@
 //! plain [`crate::results::Results`]. With [`Output`] the same call writes a results folder and can go on where an
 //! earlier run has ended.
 
+mod certificate;
 mod check;
 mod checkpoint;
 mod explain;
@@ -24,6 +25,7 @@ mod external;
 mod external_sweep;
 mod family;
 mod free_modes;
+mod galerkin;
 mod measured;
 mod mode_data;
 mod observer;
@@ -44,6 +46,7 @@ pub use external::{ExternalOptions, external_modes};
 pub use external_sweep::{ExternalModes, ExternalSweep};
 pub use family::{FrictionFamily, Snapshot, Solutions, Spectrum, Vectors, tracking_options, widened};
 pub use free_modes::{FreeModesOptions, free_modes};
+pub use galerkin::{GalerkinOptions, GalerkinReduction, reduce_galerkin};
 pub use observer::{Event, Observer};
 pub use proposal::propose_model;
 pub use reduce::{ReduceOptions, Reduction, reduce, with_reference_contacts};

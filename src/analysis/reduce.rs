@@ -14,8 +14,9 @@ use crate::{Error, Result};
 use super::observer::{Event, Observer, warn};
 use super::sweep::Sweep;
 
-/// What [`reduce`] writes.
-const SUPER_ELEMENT: FileKind = FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
+/// What a reduction writes.
+pub(super) const SUPER_ELEMENT: FileKind =
+    FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
 
 /// What [`reduce`] is asked for.
 #[derive(Debug, Clone)]

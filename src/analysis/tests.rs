@@ -13,7 +13,7 @@ use crate::model::InstabilityCriterion;
 use crate::native::{Comm, Session};
 use crate::output::folder::{RESUME, unfinished};
 use crate::reduction::recovery::OuterSurface;
-use crate::reduction::super_element::{NodeContact, Origin, SuperElement};
+use crate::reduction::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
 use crate::structure::{ReducedModel, Structure};
 use crate::{Error, ErrorKind, Results};
 
@@ -38,6 +38,7 @@ fn pressed_by(force: f64) -> Structure {
             band: [0.0, 10.0],
             limit: 100.0,
             friction_damping: false,
+            samples: Vec::new(),
             criterion: InstabilityCriterion::default(),
         },
         points: vec![[0.0; 3]; 2 * N],
@@ -50,6 +51,7 @@ fn pressed_by(force: f64) -> Structure {
         preload: vec![0.0; 6 * N],
         pairs: belt.pairs.clone(),
         contacts: belt.points.iter().map(contact).collect(),
+        motion: ContactMotion::Nodes,
     };
     let surface = OuterSurface {
         nodes: (0..N).map(|i| [i as f64, (i % 2) as f64, 0.0]).collect(),

@@ -173,6 +173,9 @@ struct Run {
     /// Of a super-element: the loads as a multiple of the model's
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::pressure, allow_hyphen_values = true)]
     pressure: f64,
+    /// The normal stiffness of the swept contacts as a multiple of the model's
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::pressure, allow_hyphen_values = true)]
+    contact_stiffness: f64,
     /// Folder of the results (default: the model file's name with the command's)
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -187,7 +190,12 @@ struct Run {
 
 impl Run {
     fn structure_options(&self) -> StructureOptions {
-        StructureOptions { contacts: self.contacts, law: self.law.clone(), load_factor: self.pressure }
+        StructureOptions {
+            contacts: self.contacts,
+            law: self.law.clone(),
+            load_factor: self.pressure,
+            contact_stiffness: self.contact_stiffness,
+        }
     }
 
     fn friction_values(&self) -> Option<Vec<f64>> {

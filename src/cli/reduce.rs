@@ -5,10 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::Result;
-use crate::analysis::{ReduceOptions, Reduction, reduce, with_reference_contacts};
-use crate::output::super_element::ReductionDocument;
+use crate::analysis::{
+    GalerkinOptions, GalerkinReduction, ReduceOptions, Reduction, reduce, reduce_galerkin, with_reference_contacts,
+};
+use crate::output::super_element::{GalerkinDocument, ReductionDocument};
 use crate::structure::FullModel;
 
+use super::values::Values;
 use super::watch::Watch;
 use super::{Shell, values};
 
@@ -27,6 +30,14 @@ pub struct Reduce {
     /// Keep fixed-interface modes up to this frequency in Hz (default: the model file's reduction, else twice its band)
     #[arg(long, value_name = "HZ", value_parser = values::frequency, allow_hyphen_values = true)]
     limit: Option<f64>,
+    /// Keep all contacts with their laws and status, and reduce the brake to a basis of its own equilibria and modes:
+    /// one super-element for all friction coefficients, pressures and contact stiffnesses
+    #[arg(long, conflicts_with_all = ["contacts", "friction", "limit"])]
+    galerkin: bool,
+    /// With --galerkin: friction coefficients at which the full model's modes are found, a list 0.1,0.5,0.9 (default:
+    /// the first, the middle and the last of the model file's sweep)
+    #[arg(long, value_name = "MU", value_parser = values::parse, requires = "galerkin")]
+    samples: Option<Values>,
     /// The super-element's file (default: the model file's name with .se.h5)
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -37,6 +48,9 @@ pub struct Reduce {
 
 pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let comm = shell.comm;
+    if arguments.galerkin {
+        return run_galerkin(shell, arguments);
+    }
     let model = with_reference_contacts(FullModel::read(comm, &arguments.model)?, arguments.contacts)?;
     let options = ReduceOptions {
         friction: arguments.friction,
@@ -51,9 +65,42 @@ pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
     shell.print(&document.text(), &document)
 }
 
+fn run_galerkin(shell: &Shell, arguments: &Reduce) -> Result<()> {
+    let comm = shell.comm;
+    let model = FullModel::read(comm, &arguments.model)?;
+    let all = model.friction_values(arguments.samples.as_ref().map(|values| &values.0[..]))?;
+    let samples = if arguments.samples.is_some() { all } else { first_middle_last(&all) };
+    let options = GalerkinOptions { force: arguments.force, ..GalerkinOptions::over(&samples, arguments.file()) };
+    let mut watch = Watch::new(shell, false);
+    let GalerkinReduction { element, report, certificates } = reduce_galerkin(comm, &model, &options, &mut watch)?;
+    watch.finish();
+    let document = GalerkinDocument::new(&element, &report, &certificates, &options.file);
+    shell.print(&document.text(), &document)
+}
+
+/// The first, the middle and the last value of a list, each once.
+fn first_middle_last(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let mut places = vec![0, n / 2, n.saturating_sub(1)];
+    places.dedup();
+    places.into_iter().filter_map(|at| values.get(at).copied()).collect()
+}
+
 impl Reduce {
     fn file(&self) -> PathBuf {
         let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
         self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.se.h5")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_the_ends_and_the_middle_of_a_sweep() {
+        assert_eq!(first_middle_last(&[0.1, 0.2, 0.3, 0.4, 0.5]), [0.1, 0.3, 0.5]);
+        assert_eq!(first_middle_last(&[0.1, 0.5]), [0.1, 0.5]);
+        assert_eq!(first_middle_last(&[0.4]), [0.4]);
     }
 }

@@ -171,6 +171,15 @@ impl Interface {
         Err(Error::input(format!("no contact pair is called {pair:?}. {advice}")))
     }
 
+    /// Multiplies the normal laws of the swept pairs.
+    pub fn scale_contact_stiffness(&mut self, factor: f64) {
+        for pair in self.pairs.iter_mut().filter(|pair| pair.swept) {
+            pair.law = pair.law.times(factor);
+            let laws = self.points[pair.points.clone()].iter_mut().map(|point| &mut point.law.normal_law);
+            laws.for_each(|law| *law = law.times(factor));
+        }
+    }
+
     /// Refuses a pair of a super-element whose friction law is in no file.
     ///
     /// # Errors

@@ -5,7 +5,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::reduction::craig_bampton::Costs;
+use crate::reduction::galerkin::BasisReport;
 use crate::reduction::super_element::{Origin, SuperElement};
+use crate::results::Certificate;
 
 /// What was made, and the seconds that its steps took.
 #[derive(Serialize)]
@@ -76,6 +78,75 @@ impl<'a> ReductionDocument<'a> {
             self.costs.n_solves,
             self.costs.projection_seconds,
             self.seconds,
+        )
+    }
+}
+
+/// A Galerkin super-element just made: where its coordinates come from, and the seconds that its steps took.
+#[derive(Serialize)]
+pub struct GalerkinDocument<'a> {
+    #[serde(flatten)]
+    origin: &'a Origin,
+    contacts: usize,
+    coordinates: usize,
+    #[serde(flatten)]
+    report: &'a BasisReport,
+    /// Between the samples.
+    tests: &'a [Certificate],
+    file: String,
+}
+
+impl<'a> GalerkinDocument<'a> {
+    /// The reduction to a file.
+    pub fn new(
+        element: &'a SuperElement,
+        report: &'a BasisReport,
+        tests: &'a [Certificate],
+        file: &Path,
+    ) -> GalerkinDocument<'a> {
+        GalerkinDocument {
+            origin: &element.origin,
+            contacts: element.contacts.len(),
+            coordinates: element.n_coordinates(),
+            report,
+            tests,
+            file: file.display().to_string(),
+        }
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        let (report, file) = (self.report, &self.file);
+        let test = |test: &Certificate| test.text(self.origin.criterion) + "\n";
+        let tests: String = match self.tests {
+            [] => "none: one sample\n".to_owned(),
+            tests => Certificate::HEAD.to_owned() + &tests.iter().map(test).collect::<String>(),
+        };
+        let values: Vec<String> = self.origin.samples.iter().map(|sample| sample.friction.to_string()).collect();
+        format!(
+            "{}: Galerkin super-element, modes of the full model at friction {}\n\n\
+             all {} contact points, {} coordinates instead of {}\n\n\
+             {:4} of {} equilibria\n\
+             {:4} of the right and left modes below {} Hz at {} samples\n\
+             {:4} of static answers at {} points that open or close\n\n\
+             between the samples, estimated by the full model's residuals:\n{tests}\n\
+             equilibria and modes   {:8.1} s\n\
+             in all                 {:8.1} s\n\n\
+             results in {file}\n",
+            self.origin.title,
+            values.join(", "),
+            self.contacts,
+            self.coordinates,
+            self.origin.n_dofs,
+            report.coordinates_of_equilibria,
+            report.equilibria,
+            report.coordinates_of_modes,
+            self.origin.limit,
+            report.mode_samples,
+            report.coordinates_of_static_answers,
+            report.switching_points,
+            report.sample_seconds,
+            report.seconds,
         )
     }
 }

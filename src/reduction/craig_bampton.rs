@@ -56,6 +56,9 @@ const PANEL: usize = 64;
 /// used, and a margin, as the brake without residual modes is too stiff.
 const REACH: f64 = 0.6;
 
+/// Residual modes that add less than this part of themselves are left out.
+const NEGLIGIBLE_ADDITION: f64 = 1e-6;
+
 /// A structure to be reduced.
 pub struct Structure<'a> {
     /// M, C, K and the load.
@@ -244,7 +247,7 @@ impl Interior<'_> {
         let moved = psi.leading_combined(self.functionals.len(), motions.as_slice(), motions.ncols());
         let mut answer = self.answer(psi, &moved.multiplied_by(&self.system.m)?)?;
         let room = self.n_dimensions() - modes.frequencies.len();
-        fixed_interface::make_orthonormal(&modes.shapes, &mut answer, &self.system.m, room)?;
+        fixed_interface::make_orthonormal(&modes.shapes, &mut answer, &self.system.m, NEGLIGIBLE_ADDITION, room)?;
         self.hold(psi, &mut answer);
         Ok(answer)
     }
@@ -309,7 +312,7 @@ fn motions(
 }
 
 /// Extends `known = T^T A T` of the first columns of T to all of them, A symmetric, panel by panel.
-fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix<f64>> {
+pub(super) fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix<f64>> {
     let (n, done) = (basis.n_columns(), known.nrows());
     let mut product = known.resize(n, n, 0.0);
     for first in (done..n).step_by(PANEL) {
@@ -325,7 +328,7 @@ fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix<f64
 }
 
 /// `T^T f`
-fn shadow(basis: &Block, f: &Vector) -> Result<Vec<f64>> {
+pub(super) fn shadow(basis: &Block, f: &Vector) -> Result<Vec<f64>> {
     let mut column = Block::zeros(f.comm(), f.n_local(), 1);
     f.local(|values| column.column_mut(0).copy_from_slice(values))?;
     Ok(basis.gram(&column))

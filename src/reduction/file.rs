@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! /                 attributes: format "squeal super-element", version 4
-//! about             text, TOML: [origin] model, mesh with hash, friction, bands; [[pair]] the sliding pairs; parts
+//! about             text, TOML: [origin] model, mesh with hash, friction, bands, samples; [[pair]] the pairs kept; parts
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
 //! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + residual modes; kg, N s/m, N/m at the retained
@@ -12,6 +12,8 @@
 //! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:
 //!                   frictionless), weight (m2), gap (m), touching (0 or 1), displacement (m) and normal_force (N) at
 //!                   the equilibrium that it was made about
+//! contacts/motion   3 n_c x n   of a Galerkin super-element alone: displacements of the contacts for a unit of each
+//!                   coordinate; it has no points and no frequencies
 //! surface/nodes     n_s x 3     corners of the outer surface, m
 //! surface/triangles n_t x 3
 //! surface/part      n_t         index into the parts
@@ -33,7 +35,7 @@ use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
 use crate::model::{NormalLaw, is_pressure_table};
 
 use super::recovery::OuterSurface;
-use super::super_element::{NodeContact, Origin, SuperElement};
+use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
 
 const FORMAT: Format =
     Format { name: "squeal super-element", version: 4, advice: "Make the super-element again with `squeal reduce`" };
@@ -49,12 +51,14 @@ struct About {
     pair: Vec<PairText>,
 }
 
-/// A sliding pair.
+/// A pair.
 #[derive(Serialize, Deserialize)]
 struct PairText {
     name: String,
     slave: String,
     master: String,
+    #[serde(default)]
+    kind: KindText,
     /// One number: linear, N/m3; two: cubic, N/m3 and N/m5.
     law: Vec<f64>,
     friction: f64,
@@ -65,6 +69,48 @@ struct PairText {
     /// Without a user's own function.
     #[serde(default)]
     friction_law: FrictionLaw,
+}
+
+/// What acts in the tangent plane of a pair.
+#[derive(Serialize, Deserialize, Clone, Copy, Default)]
+#[serde(rename_all = "snake_case")]
+enum KindText {
+    #[default]
+    Sliding,
+    Frictionless,
+    /// With this stiffness while it sticks, N/m3.
+    StickSlip(f64),
+}
+
+impl KindText {
+    fn of(pair: &ContactPair, contacts: &[NodeContact]) -> KindText {
+        let stick = |contact: &NodeContact| match contact.point.law.tangential {
+            Tangential::StickSlip { stick } => Some(stick),
+            _ => None,
+        };
+        match (pair.kind, contacts[pair.points.clone()].iter().find_map(stick)) {
+            (TangentialKind::Sliding, _) => KindText::Sliding,
+            (_, Some(stick)) => KindText::StickSlip(stick),
+            (_, None) => KindText::Frictionless,
+        }
+    }
+
+    fn kind(self) -> TangentialKind {
+        match self {
+            KindText::Sliding => TangentialKind::Sliding,
+            KindText::Frictionless => TangentialKind::Frictionless,
+            KindText::StickSlip(_) => TangentialKind::StickSlip,
+        }
+    }
+
+    /// What acts at a point under which the master slides along a direction with a speed.
+    fn tangential(self, direction: [f64; 3], speed: f64) -> Tangential {
+        match self {
+            KindText::StickSlip(stick) => Tangential::StickSlip { stick },
+            KindText::Sliding if speed != 0.0 => Tangential::Sliding { direction, speed },
+            _ => Tangential::Frictionless,
+        }
+    }
 }
 
 /// Whether a file is a super-element, of whatever version. Not collective.
@@ -93,7 +139,11 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
     element.structural_damping.iter().try_for_each(|g| table(file, STRUCTURAL_DAMPING, n, g))?;
     list(file, "load", &element.load)?;
     list(file, "preload", &element.preload)?;
-    write_contacts(&file.create_group("contacts")?, &element.contacts)?;
+    let group = file.create_group("contacts")?;
+    write_contacts(&group, &element.contacts)?;
+    if let ContactMotion::Rows(rows) = &element.motion {
+        table(&group, "motion", n, rows)?;
+    }
     let group = file.create_group("surface")?;
     table(&group, "nodes", 3, surface.nodes.as_flattened())?;
     table(&group, "triangles", 3, surface.triangles.as_flattened())?;
@@ -125,6 +175,7 @@ fn pair_texts(element: &SuperElement) -> Vec<PairText> {
         name: pair.name.clone(),
         slave: pair.slave.clone(),
         master: pair.master.clone(),
+        kind: KindText::of(pair, &element.contacts),
         law: match &pair.law {
             NormalLaw::Linear { stiffness } => vec![*stiffness],
             NormalLaw::Cubic { k1, k3 } => vec![*k1, *k3],
@@ -175,6 +226,11 @@ fn read_about(file: &File) -> hdf5::Result<About> {
 fn read_body(file: &File) -> hdf5::Result<SuperElement> {
     let about = read_about(file)?;
     let pairs = pairs(&about.pair);
+    let group = file.group("contacts")?;
+    let motion = match group.link_exists("motion") {
+        true => ContactMotion::Rows(values(&group, "motion")?),
+        false => ContactMotion::Nodes,
+    };
     Ok(SuperElement {
         origin: about.origin,
         points: triples(file, "points")?,
@@ -188,8 +244,9 @@ fn read_body(file: &File) -> hdf5::Result<SuperElement> {
         },
         load: values(file, "load")?,
         preload: values(file, "preload")?,
-        contacts: read_contacts(&file.group("contacts")?, &pairs)?,
+        contacts: read_contacts(&group, &pairs, &about.pair)?,
         pairs,
+        motion,
     })
 }
 
@@ -223,7 +280,7 @@ fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
             },
             friction: text.friction,
             friction_law: text.friction_law.clone(),
-            kind: TangentialKind::Sliding,
+            kind: text.kind.kind(),
             separation: text.separation,
             swept: text.swept,
             points,
@@ -233,7 +290,7 @@ fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
     texts.iter().map(of).collect()
 }
 
-fn read_contacts(group: &Group, pairs: &[ContactPair]) -> hdf5::Result<Vec<NodeContact>> {
+fn read_contacts(group: &Group, pairs: &[ContactPair], texts: &[PairText]) -> hdf5::Result<Vec<NodeContact>> {
     let pair: Vec<u32> = values(group, "pair")?;
     let [position, normal, direction, displacement] =
         ["position", "normal", "direction", "displacement"].map(|name| triples::<f64>(group, name));
@@ -254,10 +311,7 @@ fn read_contacts(group: &Group, pairs: &[ContactPair]) -> hdf5::Result<Vec<NodeC
             touching: touching[i] != 0,
             separation: own.separation,
             normal_law: own.law.clone(),
-            tangential: match speed[i] {
-                0.0 => Tangential::Frictionless,
-                speed => Tangential::Sliding { direction: direction[i], speed },
-            },
+            tangential: texts[pair[i] as usize].kind.tangential(direction[i], speed[i]),
         };
         let point = ContactPoint {
             pair: pair[i] as usize,
@@ -298,6 +352,10 @@ fn inconsistency(element: &SuperElement) -> Option<String> {
         return Some("points or contacts hold values that are not finite".into());
     }
     let n_contacts: usize = element.pairs.iter().map(|pair| pair.points.len()).sum();
-    let differ = n_contacts != element.contacts.len() || 2 * n_contacts > element.points.len();
+    let has_places = match &element.motion {
+        ContactMotion::Nodes => 2 * n_contacts <= element.points.len(),
+        ContactMotion::Rows(rows) => rows.len() == 3 * n_contacts * n && rows.iter().all(|x| x.is_finite()),
+    };
+    let differ = n_contacts != element.contacts.len() || !has_places;
     differ.then(|| format!("{} contacts, {n_contacts} in its pairs", element.contacts.len()))
 }

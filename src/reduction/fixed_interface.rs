@@ -187,17 +187,17 @@ fn remove(v: &Block, w: &mut Block, mass: &Matrix) -> Result<DMatrix<f64>> {
 }
 
 /// Makes the columns of w M-orthonormal to each other and to those of v, which are M-orthonormal; at most `max_columns`
-/// of them stay, and none that adds less than a millionth of itself. Collective.
+/// of them stay, and none that adds less than `shortest` of itself (1e-7 at least: rounding). Collective.
 ///
 /// # Errors
 /// PETSc's.
-pub fn make_orthonormal(v: &Block, w: &mut Block, mass: &Matrix, max_columns: usize) -> Result<()> {
+pub fn make_orthonormal(v: &Block, w: &mut Block, mass: &Matrix, shortest: f64, max_columns: usize) -> Result<()> {
     if w.n_columns() == 0 {
         return Ok(());
     }
     let lengths = squares(w, mass)?.diagonal().map(|square| square.sqrt().max(f64::MIN_POSITIVE));
     *w = w.combined(DMatrix::from_diagonal(&lengths.map(f64::recip)).as_slice(), w.n_columns());
-    for shortest in [1e-6, 0.5] {
+    for shortest in [shortest, 0.5] {
         remove(v, w, mass)?;
         normalise(w, mass, shortest, max_columns)?;
         if w.n_columns() == 0 {

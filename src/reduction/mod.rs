@@ -11,6 +11,7 @@ pub mod craig_bampton;
 pub mod file;
 pub mod fixed_interface;
 pub mod functionals;
+pub mod galerkin;
 pub mod layout;
 mod linear;
 pub mod recovery;

@@ -8,6 +8,9 @@
 //! contact      g_i = q_slave,i - q_master,i                                                   B = [I -I 0 0]
 //! ```
 //!
+//! A Galerkin super-element ([`super::galerkin`]) has none of these coordinates, but those of a basis V: `u = V q`, and
+//! every contact point of the full model moves with all of them, `B_r = B V`.
+//!
 //! It enters the assembly as an element among elements and its contacts are an [`Interface`], so everything above is
 //! the full model's. Where the law of the contacts is another one than the full model's, the penetration of each gets a
 //! correction xi so that at the full model's equilibrium it gives the full model's force: `p(d + xi) = p_full` (Fazio,
@@ -50,9 +53,39 @@ pub struct Origin {
     pub limit: f64,
     /// Whether friction that turns with the velocity damps the modes.
     pub friction_damping: bool,
+    /// Where modes of the full model were taken, of a Galerkin super-element.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub samples: Vec<Sample>,
     /// What counts as an unstable mode.
     #[serde(rename = "unstable", default)]
     pub criterion: InstabilityCriterion,
+}
+
+/// A state of the full model at which a Galerkin super-element has its equilibrium and modes.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Sample {
+    /// Friction coefficient of the swept pairs.
+    pub friction: f64,
+    /// Factor on the loads.
+    pub pressure: f64,
+    /// Factor on the normal stiffness of the swept pairs.
+    pub contact_stiffness: f64,
+}
+
+impl Sample {
+    /// At a friction value, under the model's own loads and contact stiffness.
+    pub fn at(friction: f64) -> Sample {
+        Sample { friction, pressure: 1.0, contact_stiffness: 1.0 }
+    }
+}
+
+/// How the relative displacements `g = B_r q` at the contacts follow from the coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ContactMotion {
+    /// Slave points against master points, which are the first coordinates: `B_r = [I -I 0 0]`.
+    Nodes,
+    /// The entries of `B_r` by rows: three rows a contact, one entry a coordinate.
+    Rows(Vec<f64>),
 }
 
 /// A contact between a slave point and a master point, with the full model's equilibrium there.
@@ -87,10 +120,12 @@ pub struct SuperElement {
     pub load: Vec<f64>,
     /// Generalised forces of the contacts that were linearised.
     pub preload: Vec<f64>,
-    /// The sliding pairs.
+    /// The pairs whose contacts are kept: the sliding ones, or all.
     pub pairs: Vec<ContactPair>,
     /// Their contacts, pair by pair.
     pub contacts: Vec<NodeContact>,
+    /// How the contacts move.
+    pub motion: ContactMotion,
 }
 
 impl SuperElement {
@@ -131,7 +166,13 @@ impl SuperElement {
             preload: reduced.preload.clone(),
             pairs,
             contacts,
+            motion: ContactMotion::Nodes,
         })
+    }
+
+    /// Whether the coordinates are those of a Galerkin basis.
+    pub fn is_galerkin(&self) -> bool {
+        matches!(self.motion, ContactMotion::Rows(_))
     }
 
     /// Number of coordinates.
@@ -147,12 +188,7 @@ impl SuperElement {
     /// The contacts, under the full model's law or another one (of node-to-node elements: N/m and N/m3), corrected to
     /// the full model's forces.
     pub fn interface(&self, law: Option<NormalLaw>) -> Interface {
-        let n = self.contacts.len() as u32;
-        let mut gap_operator = GapOperator::new();
-        let identity = |s: f64| [[s, 0.0, 0.0], [0.0, s, 0.0], [0.0, 0.0, s]];
-        for i in 0..n {
-            gap_operator.push(&[i, n + i], &[identity(1.0), identity(-1.0)]);
-        }
+        let gap_operator = self.gap_operator();
         let pairs = self
             .pairs
             .iter()
@@ -163,6 +199,27 @@ impl SuperElement {
             points: self.contacts.iter().map(|contact| contact.under(law.as_ref())).collect(),
             gap_operator,
         }
+    }
+
+    fn gap_operator(&self) -> GapOperator {
+        let mut gap_operator = GapOperator::new();
+        match &self.motion {
+            ContactMotion::Nodes => {
+                let (n, identity) =
+                    (self.contacts.len() as u32, |s: f64| [[s, 0.0, 0.0], [0.0, s, 0.0], [0.0, 0.0, s]]);
+                (0..n).for_each(|i| gap_operator.push(&[i, n + i], &[identity(1.0), identity(-1.0)]));
+            }
+            ContactMotion::Rows(rows) => {
+                let n = self.n_coordinates();
+                let nodes: Vec<u32> = (0..n.div_ceil(3) as u32).collect();
+                for rows in rows.chunks_exact(3 * n) {
+                    let entry = |i: usize, at: usize| if at < n { rows[i * n + at] } else { 0.0 };
+                    let block = |&node: &u32| [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, 3 * node as usize + j)));
+                    gap_operator.push(&nodes, &nodes.iter().map(block).collect::<Vec<_>>());
+                }
+            }
+        }
+        gap_operator
     }
 
     /// The assembled system under `factor` times the loads. Collective.
@@ -176,7 +233,8 @@ impl SuperElement {
         let held: Vec<[bool; 3]> = (0..n.div_ceil(3)).map(|node| [0, 1, 2].map(|i| is_held(3 * node + i))).collect();
         let mut system = {
             let nodes = Numbering::even(held.len(), comm.rank(), comm.size());
-            System::assemble(comm, &nodes, &held, &[&Member::new(self)], &[&interface.gap_operator])?
+            // The element couples all coordinates already.
+            System::assemble(comm, &nodes, &held, &[&Member::new(self)], &[])?
         };
         // Every coordinate couples with every other.
         let matrices = [&mut system.k, &mut system.m, &mut system.c].into_iter().chain(&mut system.g);
@@ -193,6 +251,15 @@ impl SuperElement {
     /// [`Error::Input`] from the limit of the fixed-interface modes on.
     pub fn require_band(&self, band: [f64; 2]) -> Result<Option<String>> {
         let (end, limit) = (band[1], self.origin.limit);
+        if self.is_galerkin() {
+            let what =
+                format!("the super-element has modes up to {limit} Hz only, and modes up to {end} Hz are asked for");
+            return if end > limit {
+                Err(Error::input(format!("{what}. Make one of a model with a wider band")))
+            } else {
+                Ok(None)
+            };
+        }
         let advice = "Make one with a higher [reduction] band";
         if end > limit {
             return Err(Error::input(format!(

@@ -2,6 +2,7 @@
 //! file keeps it between runs, and everything that a user sees (tables, plots, report, comparisons) is made of it
 //! alone.
 
+mod certificate;
 mod external;
 pub mod file;
 mod free_modes;
@@ -12,6 +13,7 @@ mod source;
 pub mod testing;
 mod verdict;
 
+pub use certificate::{Certificate, CertifiedMode};
 pub use external::{ExternalMode, ExternalResults, ExternalValue};
 pub use free_modes::{FreeMode, FreeModes, MeasuredComparison};
 pub use samples::spread;

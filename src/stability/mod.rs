@@ -17,6 +17,7 @@
 mod band;
 mod blocked;
 mod condition;
+mod correction;
 mod count;
 mod eigensolver;
 mod forms;
@@ -37,6 +38,7 @@ mod toar;
 
 pub use band::{Band, BandReport, BandRequest, BandSolver};
 pub use condition::{condition, condition_at};
+pub use correction::{Approximation, Correction, corrections};
 pub use count::Count;
 pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};

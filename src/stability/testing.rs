@@ -100,7 +100,11 @@ pub fn entries(a: &Matrix) -> DMatrix<f64> {
 /// All eigenvalues of the closed upper half plane with a modulus up to a frequency (Hz), by the companion matrix: by
 /// frequency, then by growth.
 pub fn eigenvalues(problem: &QuadraticProblem, end: f64) -> Vec<Complex64> {
-    let Mck { m, c, k, g } = problem.matrices.map(entries);
+    eigenvalues_of(problem.matrices.map(entries), end)
+}
+
+/// The same of dense matrices.
+pub fn eigenvalues_of(Mck { m, c, k, g }: Mck<DMatrix<f64>>, end: f64) -> Vec<Complex64> {
     let (n, inverse) = (m.nrows(), m.try_inverse().unwrap());
     let mut companion = DMatrix::zeros(2 * n, 2 * n);
     companion.view_mut((0, n), (n, n)).fill_with_identity();

@@ -62,12 +62,14 @@ pub struct StructureOptions {
     pub law: Option<NormalLaw>,
     /// Of a super-element: a factor on its loads.
     pub load_factor: f64,
+    /// A factor on the normal stiffness of the swept pairs.
+    pub contact_stiffness: f64,
 }
 
 impl Default for StructureOptions {
     /// The structure as its file has it.
     fn default() -> Self {
-        StructureOptions { contacts: None, law: None, load_factor: 1.0 }
+        StructureOptions { contacts: None, law: None, load_factor: 1.0, contact_stiffness: 1.0 }
     }
 }
 
@@ -96,7 +98,8 @@ impl Structure {
             let what = "--law and --pressure are for super-elements";
             return Err(Error::input(format!("{what}; {} is a model, which has both in its file", path.display())));
         }
-        let full = FullModel::read_with_contacts(comm, path, options.contacts)?;
+        let mut full = FullModel::read_with_contacts(comm, path, options.contacts)?;
+        full.interface.scale_contact_stiffness(options.contact_stiffness);
         full.require_constrained(comm)?;
         Ok(Structure::Full(Box::new(full)))
     }

@@ -39,7 +39,9 @@ impl ReducedModel {
         // The first rank alone draws the surface.
         let bare = || Ok((file::read_element(path)?, OuterSurface::default()));
         let (element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
-        Ok(ReducedModel::new(path, element, surface, options.law.clone(), options.load_factor))
+        let mut reduced = ReducedModel::new(path, element, surface, options.law.clone(), options.load_factor);
+        reduced.interface.scale_contact_stiffness(options.contact_stiffness);
+        Ok(reduced)
     }
 
     /// A super-element under a law, its own if none is given, and a multiple of its loads.
@@ -110,6 +112,7 @@ impl ReducedModel {
         let n_interface = points.len() * 3 + self.element.frequencies.len();
         let coordinate = |i: usize| match points.get(i / 3) {
             Some([x, y, z]) => format!("point,{},{},{x:e},{y:e},{z:e}", i / 3 + 1, ["x", "y", "z"][i % 3]),
+            None if self.element.is_galerkin() => format!("basis vector,{},,,,", i + 1),
             None if i < n_interface => format!("fixed-interface mode,{},,,,", i + 1 - 3 * points.len()),
             None => format!("residual mode,{},,,,", i + 1 - n_interface),
         };

@@ -9,6 +9,7 @@ mod eigensolvers;
 mod explain;
 mod factors;
 mod friction_law;
+mod galerkin;
 mod joints;
 mod manufactured_solution;
 mod structural_damping;

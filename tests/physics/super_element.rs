@@ -146,6 +146,7 @@ impl Full {
             band: BAND,
             limit,
             friction_damping: brake.model.friction_damping,
+            samples: Vec::new(),
             criterion: brake.model.criterion,
         };
         let element = SuperElement::new(origin, &structure, &reduced, &[[0.0; 3]]).unwrap();

@@ -1,0 +1,290 @@
+//! From a model to a Galerkin super-element: equilibria and modes of the full model at samples, a basis of them, the
+//! projection.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use crate::Result;
+use crate::assembly::System;
+use crate::contact::Response;
+use crate::equilibrium::{Contacts, Equilibrium};
+use crate::native::{Block, Comm, Factor, FactorKind, Matrix, Vector};
+use crate::output::overwrite::may_write_file;
+use crate::reduction::file;
+use crate::reduction::galerkin::{self, Basis, BasisReport};
+use crate::reduction::recovery::OuterSurface;
+use crate::reduction::super_element::{Sample, SuperElement};
+use crate::results::Certificate;
+use crate::structure::{FullModel, ReducedModel, Structure};
+
+use super::certificate::Whole;
+use super::family::widened;
+use super::observer::{Event, Observer, warn};
+use super::reduce::SUPER_ELEMENT;
+use super::sweep::Sweep;
+
+/// Accuracy of left vectors that join the basis.
+const LEFT_ACCURACY: f64 = 1e-5;
+/// Friction values of equilibria are no farther apart.
+const EQUILIBRIUM_STEP: f64 = 0.05;
+/// Equilibria under these factors on the loads and on the contact stiffness join the basis, too.
+const PRESSURES: [f64; 2] = [0.5, 1.5];
+const CONTACT_STIFFNESSES: [f64; 2] = [0.5, 2.0];
+/// What adds less than this part of itself to the span is left out: of equilibria, modes and static answers. Eigenvalues
+/// at the samples have the square of that of modes as their error.
+const NEGLIGIBLE_OF_EQUILIBRIA: f64 = 1e-6;
+const NEGLIGIBLE_OF_MODES: f64 = 1e-3;
+const NEGLIGIBLE_OF_ANSWERS: f64 = 0.03;
+
+/// What [`reduce_galerkin`] is asked for.
+#[derive(Debug, Clone)]
+pub struct GalerkinOptions {
+    /// Where the basis takes equilibrium and modes.
+    pub modes: Vec<Sample>,
+    /// Where it takes the equilibrium alone.
+    pub equilibria: Vec<Sample>,
+    /// Coordinates at most.
+    pub max_coordinates: usize,
+    /// The super-element's file.
+    pub file: PathBuf,
+    /// Whether an earlier super-element may be replaced.
+    pub force: bool,
+}
+
+impl GalerkinOptions {
+    /// Modes at some friction values; equilibria in between, and at these values under other loads and contact
+    /// stiffnesses.
+    pub fn over(friction_values: &[f64], file: PathBuf) -> GalerkinOptions {
+        let modes: Vec<Sample> = friction_values.iter().map(|&mu| Sample::at(mu)).collect();
+        let pressed = |sample: Sample| PRESSURES.map(|pressure| Sample { pressure, ..sample });
+        let stiffened =
+            |sample: Sample| CONTACT_STIFFNESSES.map(|contact_stiffness| Sample { contact_stiffness, ..sample });
+        let varied = modes.iter().flat_map(|&sample| pressed(sample).into_iter().chain(stiffened(sample)));
+        let between = values_between(friction_values).into_iter().map(Sample::at);
+        let equilibria = between.chain(varied).collect();
+        GalerkinOptions { modes, equilibria, max_coordinates: 1500, file, force: false }
+    }
+}
+
+/// Values between neighbours of a list, evenly spaced and no farther apart than [`EQUILIBRIUM_STEP`].
+fn values_between(values: &[f64]) -> Vec<f64> {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    let within = |ends: &[f64]| {
+        let (first, width) = (ends[0], ends[1] - ends[0]);
+        let n = (width / EQUILIBRIUM_STEP * (1.0 - 1e-9)).ceil() as usize;
+        (1..n).map(move |i| first + width * i as f64 / n as f64).collect::<Vec<_>>()
+    };
+    values.windows(2).flat_map(within).collect()
+}
+
+/// A Galerkin super-element, and where its coordinates come from.
+pub struct GalerkinReduction {
+    /// The super-element.
+    pub element: SuperElement,
+    /// What it is made of.
+    pub report: BasisReport,
+    /// How it does at friction values without a sample.
+    pub certificates: Vec<Certificate>,
+}
+
+/// An equilibrium of the full model.
+struct State {
+    sample: Sample,
+    u: Vector,
+    responses: Vec<Response>,
+}
+
+/// What the basis is made of.
+#[derive(Default)]
+struct Snapshots {
+    states: Vec<State>,
+    /// Right and left vectors, real and imaginary parts, of the modes at a sample.
+    modes: Vec<Block>,
+}
+
+/// Reduces a model with all of its contacts to a Galerkin super-element ([`galerkin`]), and writes its file. Collective.
+///
+/// # Errors
+/// [`crate::Error::Input`] where the file may not be replaced or a part can move freely;
+/// [`crate::Error::NotConverged`]; PETSc's, MUMPS's, the system's.
+///
+/// # Panics
+/// Without a sample of modes.
+pub fn reduce_galerkin(
+    comm: &Comm,
+    model: &FullModel,
+    options: &GalerkinOptions,
+    observer: &mut dyn Observer,
+) -> Result<GalerkinReduction> {
+    let start = Instant::now();
+    warn(comm, model, observer);
+    model.require_constrained(comm)?;
+    model.require_mass()?;
+    let may_write = || may_write_file(&options.file, &SUPER_ELEMENT, options.force);
+    comm.agree(if comm.is_root() { may_write() } else { Ok(()) })?;
+    observer.event(Event::Stage("assembling"));
+    let mut system = model.assemble(comm, &model.families()?)?;
+    let end = widened(model.model.band)[1];
+    let snapshots = Snapshots::take(model, &mut system, options, end, observer)?;
+    let sample_seconds = start.elapsed().as_secs_f64();
+
+    observer.event(Event::Stage("making the basis"));
+    let k_ref = snapshots.reference_stiffness(model, &system, options.modes[options.modes.len() / 2])?;
+    let mut factor = Factor::new(FactorKind::Symmetric);
+    factor.factorise(&k_ref)?;
+    let mut basis = Basis::new(&k_ref, &snapshots.modes[0], options.max_coordinates);
+    let report = snapshots.span(model, &system, &factor, &mut basis)?;
+
+    observer.event(Event::Stage("projecting the matrices"));
+    let (element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
+    // Something may have come to that place since.
+    let write = || may_write().and_then(|()| file::write(&options.file, &element, &surface));
+    comm.agree(if comm.is_root() { write() } else { Ok(()) })?;
+
+    observer.event(Event::Stage("comparing with the full model between the samples"));
+    let reduced = ReducedModel::new(&options.file, element.clone(), OuterSurface::default(), None, 1.0);
+    let reduced = Structure::Reduced(Box::new(reduced));
+    let whole = Whole { system: &system, interface: &model.interface, basis: basis.vectors(), factor: &factor };
+    let certify = |friction: f64| whole.certify(&reduced, friction, model.model.band);
+    let certificates = snapshots.test_values(options).into_iter().map(certify).collect::<Result<_>>()?;
+    let report = BasisReport { sample_seconds, seconds: start.elapsed().as_secs_f64(), ..report };
+    Ok(GalerkinReduction { element, report, certificates })
+}
+
+impl Snapshots {
+    /// Solves the full model at all samples, one path for each load and contact stiffness.
+    fn take(
+        model: &FullModel,
+        system: &mut System,
+        options: &GalerkinOptions,
+        end: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<Snapshots> {
+        let modes = options.modes.iter().map(|&sample| (sample, Some(end)));
+        let mut all: Vec<(Sample, Option<f64>)> =
+            modes.chain(options.equilibria.iter().map(|&sample| (sample, None))).collect();
+        let rank = |sample: &Sample| (sample.pressure, sample.contact_stiffness, sample.friction);
+        all.sort_by(|(a, _), (b, _)| rank(a).partial_cmp(&rank(b)).expect("samples are finite"));
+        let mut snapshots = Snapshots::default();
+        let is_one_path =
+            |a: &Sample, b: &Sample| (a.pressure, a.contact_stiffness) == (b.pressure, b.contact_stiffness);
+        for path in all.chunk_by(|(a, _), (b, _)| is_one_path(a, b)) {
+            let pressure = path[0].0.pressure;
+            system.load.scale(pressure)?;
+            snapshots.follow(model, system, path, observer)?;
+            system.load.scale(1.0 / pressure)?;
+        }
+        Ok(snapshots)
+    }
+
+    /// Solves at the friction values of a path, for modes below a frequency (Hz) where there is one.
+    fn follow(
+        &mut self,
+        model: &FullModel,
+        system: &System,
+        path: &[(Sample, Option<f64>)],
+        observer: &mut dyn Observer,
+    ) -> Result<()> {
+        let mut interface = model.interface.clone();
+        interface.scale_contact_stiffness(path[0].0.contact_stiffness);
+        let mut sweep = Sweep::new(system, &interface, model.model.friction_damping)?;
+        for &(sample, end) in path {
+            let equilibrium = sweep.equilibrium(sample.friction, observer)?;
+            if let Some(end) = end {
+                let band = sweep.modes(&equilibrium, [0.0, end], observer)?;
+                let mut vectors = sweep.right_vectors(&band.modes)?;
+                vectors.append(&sweep.left_vectors(&band.modes, |_| LEFT_ACCURACY)?);
+                self.modes.push(vectors);
+            }
+            let Equilibrium { u, responses, .. } = equilibrium;
+            self.states.push(State { sample, u, responses });
+        }
+        Ok(())
+    }
+
+    /// The stiffness at a state with contact and without friction's coupling. Collective.
+    fn reference_stiffness(&self, model: &FullModel, system: &System, sample: Sample) -> Result<Matrix> {
+        let state = self.states.iter().find(|state| state.sample == sample).expect("every sample has a state");
+        let State { u, responses, .. } = state;
+        let equilibrium = Equilibrium {
+            u: u.duplicate()?,
+            responses: responses.clone(),
+            friction: sample.friction,
+            steps: Vec::new(),
+        };
+        let mut sweep = Sweep::new(system, &model.interface, false)?;
+        let mut stiffness = sweep.linearise(&equilibrium, |problem| problem.symmetric_stiffness())?;
+        stiffness.declare_symmetric()?;
+        Ok(stiffness)
+    }
+
+    /// Adds equilibria, modes and static answers to a basis whose energy is that of a state. Collective.
+    fn span(&self, model: &FullModel, system: &System, factor: &Factor, basis: &mut Basis) -> Result<BasisReport> {
+        let mut report =
+            BasisReport { equilibria: self.states.len(), mode_samples: self.modes.len(), ..BasisReport::default() };
+        for state in &self.states {
+            let u = Block::from_columns(state.u.comm(), state.u.n_local(), state.u.to_vec()?);
+            report.coordinates_of_equilibria += basis.add(u, NEGLIGIBLE_OF_EQUILIBRIA)?;
+        }
+        for modes in &self.modes {
+            report.coordinates_of_modes += basis.add(modes.clone(), NEGLIGIBLE_OF_MODES)?;
+        }
+        let responses: Vec<&[Response]> = self.states.iter().map(|state| &state.responses[..]).collect();
+        let forces = galerkin::switching_forces(&model.interface, &responses);
+        report.switching_points = forces.chunk_by(|a, b| a.0 == b.0).count();
+        let contacts = Contacts::new(&model.interface, system)?;
+        let answers = contacts.loads(system.k.comm(), &forces).solved_by(factor)?;
+        report.coordinates_of_static_answers = basis.add(answers, NEGLIGIBLE_OF_ANSWERS)?;
+        Ok(report)
+    }
+
+    /// Friction values without an equilibrium, near the middle between samples of modes.
+    fn test_values(&self, options: &GalerkinOptions) -> Vec<f64> {
+        let own = |sample: &Sample| *sample == Sample::at(sample.friction);
+        let sorted = |samples: &mut dyn Iterator<Item = Sample>| {
+            let mut values: Vec<f64> = samples.filter(own).map(|sample| sample.friction).collect();
+            values.sort_by(f64::total_cmp);
+            values
+        };
+        let modes = sorted(&mut options.modes.iter().copied());
+        let states = sorted(&mut self.states.iter().map(|state| state.sample));
+        modes.windows(2).filter_map(|ends| empty_middle(&states, 0.5 * (ends[0] + ends[1]))).collect()
+    }
+}
+
+/// The middle between the two neighbours in a rising list that a value lies between, or is the first of.
+fn empty_middle(values: &[f64], value: f64) -> Option<f64> {
+    let pair = values.windows(2).find(|pair| pair[0] <= value + 1e-9 && value + 1e-9 < pair[1])?;
+    Some(0.5 * (pair[0] + pair[1]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equilibria_fill_the_gaps_between_samples() {
+        let close = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+        assert!(close(&values_between(&[0.3, 0.1]), &[0.15, 0.2, 0.25]), "{:?}", values_between(&[0.3, 0.1]));
+        assert!(close(&values_between(&[0.1, 0.16, 0.2]), &[0.13]));
+        assert!(values_between(&[0.4]).is_empty());
+    }
+
+    #[test]
+    fn tests_are_made_where_there_is_no_equilibrium() {
+        let states = [0.1, 0.2, 0.3, 0.4];
+        assert_eq!(empty_middle(&states, 0.2), Some(0.5 * (0.2 + 0.3)));
+        assert_eq!(empty_middle(&states, 0.36), Some(0.35));
+        assert_eq!(empty_middle(&states, 0.5), None);
+    }
+
+    #[test]
+    fn loads_and_contact_stiffness_vary_at_each_sample() {
+        let options = GalerkinOptions::over(&[0.2, 0.22], PathBuf::new());
+        assert_eq!(options.modes, [Sample::at(0.2), Sample::at(0.22)]);
+        let count = |is: fn(&Sample) -> bool| options.equilibria.iter().filter(|sample| is(sample)).count();
+        assert_eq!([count(|s| s.pressure != 1.0), count(|s| s.contact_stiffness != 1.0)], [4, 4]);
+        assert_eq!(options.equilibria.len(), 8);
+    }
+}
