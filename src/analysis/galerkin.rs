@@ -30,8 +30,7 @@ const EQUILIBRIUM_STEP: f64 = 0.05;
 /// Equilibria under these factors on the loads and on the contact stiffness join the basis, too.
 const PRESSURES: [f64; 2] = [0.5, 1.5];
 const CONTACT_STIFFNESSES: [f64; 2] = [0.5, 2.0];
-/// What adds less than this part of itself to the span is left out: of equilibria, modes and static answers. Eigenvalues
-/// at the samples have the square of that of modes as their error.
+/// What adds less than this part of itself to the span is left out: of equilibria, of modes, of static answers.
 const NEGLIGIBLE_OF_EQUILIBRIA: f64 = 1e-6;
 const NEGLIGIBLE_OF_MODES: f64 = 1e-3;
 const NEGLIGIBLE_OF_ANSWERS: f64 = 0.03;
@@ -43,6 +42,9 @@ pub struct GalerkinOptions {
     pub modes: Vec<Sample>,
     /// Where it takes the equilibrium alone.
     pub equilibria: Vec<Sample>,
+    /// What modes add less than this part of themselves is left out, 1e-7 or more: eigenvalues at the samples have its
+    /// square as their error.
+    pub negligible: f64,
     /// Coordinates at most.
     pub max_coordinates: usize,
     /// The super-element's file.
@@ -62,7 +64,14 @@ impl GalerkinOptions {
         let varied = modes.iter().flat_map(|&sample| pressed(sample).into_iter().chain(stiffened(sample)));
         let between = values_between(friction_values).into_iter().map(Sample::at);
         let equilibria = between.chain(varied).collect();
-        GalerkinOptions { modes, equilibria, max_coordinates: 1500, file, force: false }
+        GalerkinOptions {
+            modes,
+            equilibria,
+            negligible: NEGLIGIBLE_OF_MODES,
+            max_coordinates: 1500,
+            file,
+            force: false,
+        }
     }
 }
 
@@ -134,7 +143,7 @@ pub fn reduce_galerkin(
     let mut factor = Factor::new(FactorKind::Symmetric);
     factor.factorise(&k_ref)?;
     let mut basis = Basis::new(&k_ref, &snapshots.modes[0], options.max_coordinates);
-    let report = snapshots.span(model, &system, &factor, &mut basis)?;
+    let report = snapshots.span(model, &system, &factor, options.negligible, &mut basis)?;
 
     observer.event(Event::Stage("projecting the matrices"));
     let (element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
@@ -220,7 +229,14 @@ impl Snapshots {
     }
 
     /// Adds equilibria, modes and static answers to a basis whose energy is that of a state. Collective.
-    fn span(&self, model: &FullModel, system: &System, factor: &Factor, basis: &mut Basis) -> Result<BasisReport> {
+    fn span(
+        &self,
+        model: &FullModel,
+        system: &System,
+        factor: &Factor,
+        negligible: f64,
+        basis: &mut Basis,
+    ) -> Result<BasisReport> {
         let mut report =
             BasisReport { equilibria: self.states.len(), mode_samples: self.modes.len(), ..BasisReport::default() };
         for state in &self.states {
@@ -228,7 +244,7 @@ impl Snapshots {
             report.coordinates_of_equilibria += basis.add(u, NEGLIGIBLE_OF_EQUILIBRIA)?;
         }
         for modes in &self.modes {
-            report.coordinates_of_modes += basis.add(modes.clone(), NEGLIGIBLE_OF_MODES)?;
+            report.coordinates_of_modes += basis.add(modes.clone(), negligible)?;
         }
         let responses: Vec<&[Response]> = self.states.iter().map(|state| &state.responses[..]).collect();
         let forces = galerkin::switching_forces(&model.interface, &responses);

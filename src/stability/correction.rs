@@ -94,7 +94,7 @@ mod tests {
     use crate::native::{Mck, Session};
     use crate::stability::testing::{Blocks, eigenvalues, eigenvalues_of, entries};
 
-    const END: f64 = 3.0;
+    const END: f64 = 8.0;
 
     /// Vectors of a complex eigenproblem by inverse iteration: `P(lambda) x = 0`.
     fn null_vector(p: &DMatrix<Complex64>) -> DVector<Complex64> {
@@ -154,7 +154,7 @@ mod tests {
             let distance = |z: Complex64| exact.iter().map(|e| (e - z).norm() / e.norm()).fold(f64::INFINITY, f64::min);
             for (before, after) in reduced.iter().zip(&corrected) {
                 let [before, now] = [*before, after.lambda].map(distance);
-                assert!(now < 0.1 * before, "{before:e} {now:e}");
+                assert!(now < 0.4 * before, "{before:e} {now:e}");
                 assert!(after.backward_error > 1e-6);
             }
         });

@@ -1,8 +1,8 @@
 //! A Galerkin super-element of two pads on a disc against an independent program's eigenvalues of full contact: see
 //! `tests/validation/pads_on_disc.rs` for the model.
 //!
-//! Goal and, in brackets, what was measured: eigenvalues at a sample to 1e-8 of their modulus; between samples
-//! frequencies to 1e-4, closed points to 2 of 236, the same modes unstable; written and read again.
+//! Goal and, in brackets, what was measured, relative to the moduli: eigenvalues at the samples to 1e-8 [5e-9], the
+//! accuracy of the reference; between them to 1e-5 [2e-6].
 
 use num_complex::Complex64;
 use serde_json::Value;
@@ -16,13 +16,15 @@ use crate::support::data;
 
 /// Samples of the modes, and values at which equilibria alone join the basis.
 const SAMPLES: [f64; 2] = [0.2, 0.6];
-const BETWEEN: [f64; 3] = [0.3, 0.5, 0.8];
+const BETWEEN: [f64; 2] = [0.3, 0.5];
+/// Hz: the lower half of the reference's modes, among them an instability.
+const BAND: [f64; 2] = [0.0, 3000.0];
 
 fn eigenvalues(reference: &Value, friction: f64) -> Vec<Complex64> {
     let all = reference["results"][format!("{friction:.1}")]["eigenvalues"].as_array().unwrap();
     let number = |value: &Value| value.as_f64().unwrap();
     let of = |e: &Value| Complex64::new(number(&e["real"]), std::f64::consts::TAU * number(&e["frequency_hz"]));
-    all.iter().map(of).collect()
+    all.iter().map(of).filter(|z| z.im < std::f64::consts::TAU * BAND[1]).collect()
 }
 
 /// The largest distance of an eigenvalue of the reference, which has the 24 lowest, from the nearest mode, relative to
@@ -39,12 +41,14 @@ fn error(results: &Results, reference: &Value, friction: f64) -> f64 {
 fn a_galerkin_super_element_has_the_eigenvalues_of_full_contact() {
     let comm = Session::start(&[]).unwrap();
     let reference: Value = serde_json::from_str(&std::fs::read_to_string(data("pads_on_disc.json")).unwrap()).unwrap();
-    let model = FullModel::read(&comm, &data("pads_on_disc.toml")).unwrap();
+    let mut model = FullModel::read(&comm, &data("pads_on_disc.toml")).unwrap();
+    model.model.band = BAND;
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("pads.se.h5");
     let options = GalerkinOptions {
         modes: SAMPLES.map(Sample::at).to_vec(),
         equilibria: BETWEEN.map(Sample::at).to_vec(),
+        negligible: 1e-6,
         ..GalerkinOptions::over(&SAMPLES, file.clone())
     };
     let reduction = reduce_galerkin(&comm, &model, &options, &mut ()).unwrap();
@@ -56,7 +60,7 @@ fn a_galerkin_super_element_has_the_eigenvalues_of_full_contact() {
     let friction_values = Some(vec![0.2, 0.4, 0.6]);
     let options = StabilityOptions { friction_values, branches: false, ..StabilityOptions::default() };
     let results = stability(&comm, &reduced, &options, &mut ()).unwrap();
-    for (friction, tolerance) in [(0.2, 1e-8), (0.6, 1e-8), (0.4, 1e-4)] {
+    for (friction, tolerance) in [(0.2, 1e-8), (0.6, 1e-8), (0.4, 1e-5)] {
         assert!(error(&results, &reference, friction) < tolerance, "at {friction}");
     }
 }
