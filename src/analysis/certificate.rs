@@ -53,7 +53,8 @@ impl ReducedSolution {
 }
 
 impl Whole<'_> {
-    /// Solves a super-element at a friction value on the first rank, and compares with the full model there. Collective.
+    /// Solves a super-element at a friction value on the first rank, and compares with the full model there.
+    /// Collective.
     ///
     /// # Errors
     /// Those of the solution; PETSc's and MUMPS's.
@@ -91,8 +92,8 @@ impl Whole<'_> {
         Ok(answer)
     }
 
-    /// `sqrt(r^T K_ref^-1 r / u^T F)` with the residual r of the equilibrium: the length of its error in energy, to first
-    /// order.
+    /// `sqrt(r^T K_ref^-1 r / u^T F)` with the residual r of the equilibrium: the length of its error in energy, to
+    /// first order.
     fn equilibrium_error(&self, u: &Vector, friction: f64) -> Result<f64> {
         let contacts = Contacts::new(self.interface, self.system)?;
         let mut r = self.system.zeros()?;

@@ -35,7 +35,7 @@ const NEGLIGIBLE_OF_EQUILIBRIA: f64 = 1e-6;
 const NEGLIGIBLE_OF_MODES: f64 = 1e-3;
 const NEGLIGIBLE_OF_ANSWERS: f64 = 0.03;
 
-/// What [`reduce_galerkin`] is asked for.
+/// What [`reduce_galerkin`] does.
 #[derive(Debug, Clone)]
 pub struct GalerkinOptions {
     /// Where the basis takes equilibrium and modes.
@@ -112,7 +112,8 @@ struct Snapshots {
     modes: Vec<Block>,
 }
 
-/// Reduces a model with all of its contacts to a Galerkin super-element ([`galerkin`]), and writes its file. Collective.
+/// Reduces a model with all of its contacts to a Galerkin super-element ([`galerkin`]), and writes its file.
+/// Collective.
 ///
 /// # Errors
 /// [`crate::Error::Input`] where the file may not be replaced or a part can move freely;

@@ -4,9 +4,9 @@
 //! u = V q      M_r = V^T M V,  C_r = V^T C V,  K_r = V^T K V,  F_r = V^T F      g = B V q
 //! ```
 //!
-//! Nothing is linearised and nothing is averaged: every contact point has its law, weight, gap and status as in the full
-//! model, and equilibrium and stability at any friction value, load and contact stiffness are the full model's, in the
-//! space of V. V is spanned by
+//! Nothing is linearised and nothing is averaged: every contact point has its law, weight, gap and status as in the
+//! full model, and equilibrium and stability at any friction value, load and contact stiffness are the full model's, in
+//! the space of V. V is spanned by
 //!
 //! - equilibria of the full model at several friction values,
 //! - its modes at fewer of them, *right and left*: `y^H P(lambda) x` is then stationary, and the error of an eigenvalue
@@ -90,8 +90,8 @@ pub struct BasisReport {
     pub seconds: f64,
 }
 
-/// The forces on points whose static answers are added: along the normal and the direction of sliding, or along all axes
-/// where a closed point sticks. Given the responses of all points at several equilibria, these are the points that are
+/// The forces on points whose static answers are added: along the normal and the direction of sliding, or along all
+/// axes where a closed point sticks. Given the responses of all points at several equilibria, these are the points that are
 /// closed in some and open in others.
 pub fn switching_forces(interface: &Interface, equilibria: &[&[Response]]) -> Vec<(usize, [f64; 3])> {
     let is_open = |responses: &&[Response], a: usize| responses[a].status == Status::Open;
@@ -216,8 +216,8 @@ mod tests {
         Path::new(system, interface).unwrap().advance(mu, &mut |_, _, _| ()).unwrap()
     }
 
-    /// The equilibrium that the basis has is found, though the coordinates are few; at another friction value a complete
-    /// basis gives the full model's.
+    /// The equilibrium that the basis has is found, though the coordinates are few; at another friction value a
+    /// complete basis gives the full model's.
     #[test]
     fn equilibria_of_the_basis_and_of_a_complete_one_are_the_full_models() {
         let comm = Session::start(&[]).unwrap();

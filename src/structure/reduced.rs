@@ -39,6 +39,12 @@ impl ReducedModel {
         // The first rank alone draws the surface.
         let bare = || Ok((file::read_element(path)?, OuterSurface::default()));
         let (element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
+        if element.is_galerkin() && options.law.is_some() {
+            let what =
+                "--law is for node-to-node contacts, and this is a Galerkin super-element, whose contact points have";
+            let advice = "the laws of the model. Multiply their stiffness by --contact-stiffness";
+            return Err(Error::input(format!("{}: {what} {advice}", path.display())));
+        }
         let mut reduced = ReducedModel::new(path, element, surface, options.law.clone(), options.load_factor);
         reduced.interface.scale_contact_stiffness(options.contact_stiffness);
         Ok(reduced)
