@@ -27,12 +27,7 @@ pub(super) fn add_pair(
     let mut found = surfaces.search()?;
     let adjusted = adjust(&mut found, contact.adjust);
     set_gaps(&mut found, contact.clearance);
-    let law = PairLaw {
-        rotation: model.sliding(contact, mesh),
-        normal_law: model.normal_law(contact, mesh),
-        stick: model.stick(contact, mesh),
-        separation: contact.separation,
-    };
+    let law = PairLaw::new(model, mesh, contact);
     let first = interface.points.len();
     for point in &found.points {
         interface.gap_operator.push_projection(&point.slave, &point.master);
@@ -73,7 +68,16 @@ struct PairLaw<'a> {
     separation: bool,
 }
 
-impl PairLaw<'_> {
+impl<'a> PairLaw<'a> {
+    fn new(model: &'a Model, mesh: &Mesh, contact: &Contact) -> PairLaw<'a> {
+        PairLaw {
+            rotation: model.sliding(contact, mesh),
+            normal_law: model.normal_law(contact, mesh),
+            stick: model.stick(contact, mesh),
+            separation: contact.separation,
+        }
+    }
+
     fn kind(&self) -> TangentialKind {
         match (self.rotation, self.stick) {
             (Some(_), _) => TangentialKind::Sliding,

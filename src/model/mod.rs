@@ -28,6 +28,7 @@ mod criterion;
 pub mod elasticity;
 pub mod friction;
 mod item;
+mod joint_types;
 mod joints;
 mod keys;
 mod loads;
@@ -51,16 +52,14 @@ pub use analysis::spaced;
 pub use contacts::is_pressure_table;
 pub use criterion::InstabilityCriterion;
 pub use friction::{LARGEST_FRICTION, ROUGH};
+pub use joint_types::{Connector, Equation, EquationTerm, GROUND, PointMass, RigidSet, Tie};
 pub use joints::PENALTY;
 pub use place::Place;
 pub use proposed::ProposedStiffness;
 pub use read::{is_deck, parse, read};
 pub use source::{located, utf8};
 pub use surfaces::softest_young;
-pub use types::{
-    Connector, Contact, Equation, EquationTerm, Fix, GROUND, Load, LoadKind, Material, Model, NormalLaw, Part,
-    PointMass, Rayleigh, Reduction, RigidSet, Rotation, Tie,
-};
+pub use types::{Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction, Rotation};
 pub use units::UnitSystem;
 pub use write::{isotropic, write};
 
