@@ -62,7 +62,7 @@ fn eigenvalues(problem: &QuadraticProblem, labels: Vec<u64>) -> Vec<Complex64> {
 }
 
 /// A loss factor turns every eigenvalue `i omega` of a single material into `i omega sqrt(1 + i g)`, to 1e-9 [3e-13]; the
-/// first of the rod is `i pi / (2 L) sqrt(E (1 + i g) / rho)`, to 1e-4, the error of its elements [6e-7].
+/// first of the rod is `i pi / (2 L) sqrt(E (1 + i g) / rho)`, to 1e-4, the error of its elements [3e-7].
 #[test]
 fn one_material_turns_every_eigenvalue_by_its_loss_factor() {
     let comm = Session::start(&[]).unwrap();
@@ -196,8 +196,8 @@ fn dense_eigenvalues(problem: &QuadraticProblem) -> Vec<Complex64> {
 }
 
 /// Four loss factors, Rayleigh's damping, a dashpot and friction: the eigenvalues of a dense complex solver to 1e-9
-/// [4e-12], left vectors that solve the transposed problem and belong to their own mode alone in the product that
-/// branches are followed by, to 1e-6 [1e-9].
+/// [2e-11], left vectors that solve the transposed problem and belong to their own mode alone in the product that
+/// branches are followed by, to 1e-6 [6e-11].
 #[test]
 fn four_loss_factors_give_what_a_dense_complex_solver_gives() {
     let comm = Session::start(&[]).unwrap();
