@@ -83,8 +83,8 @@ pub struct System {
 }
 
 impl System {
-    /// Numbers the free dofs, then assembles M, C, K and G of all families. `constrained` says which displacements of each
-    /// node are zero; `contacts` take part in the pattern only. Collective.
+    /// Numbers the free dofs, then assembles M, C, K and G of all families. `constrained` says which displacements of
+    /// each node are zero; `contacts` take part in the pattern only. Collective.
     ///
     /// ```no_run
     /// use squeal::Session;

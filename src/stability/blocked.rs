@@ -81,8 +81,8 @@ impl Blocked {
         self.basis.take()
     }
 
-    /// How far a search would go, Hz; none where it is not for such a problem, or not for such an attempt any more. With
-    /// structural damping it is the only search that there is, and every attempt goes farther. Collective.
+    /// How far a search would go, Hz; none where it is not for such a problem, or not for such an attempt any more.
+    /// With structural damping it is the only search that there is, and every attempt goes farther. Collective.
     pub fn reach(&self, problem: &QuadraticProblem, request: &SearchRequest) -> Option<f64> {
         let margins = self.options.band_margins;
         if problem.matrices.g.is_some() {

@@ -81,7 +81,8 @@ fn largest(re: &Vector, im: &Vector) -> Result<(Complex64, f64)> {
 const BLOCK: usize = 32;
 
 /// Backward errors `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K| + |G|) |x|)` of eigenpairs, maximum norms
-/// and moduli of complex entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i. Collective.
+/// and moduli of complex entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i.
+/// Collective.
 ///
 /// # Errors
 /// PETSc's.

@@ -38,8 +38,8 @@ pub(super) struct Target {
     pub shift: f64,
 }
 
-/// The projected problem's pairs of the closed upper half plane within the radius, by modulus, vectors of length 1; none
-/// where it has too many. Collective.
+/// The projected problem's pairs of the closed upper half plane within the radius, by modulus, vectors of length 1;
+/// none where it has too many. Collective.
 ///
 /// # Errors
 /// PETSc's, LAPACK's.

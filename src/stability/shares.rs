@@ -1,16 +1,16 @@
 //! What explains a mode: shares of its energy, energy input, dissipation, and sensitivities.
 //!
 //! With `m = x^H M x`, `c = x^H C x`, `k = x^H K x`, `g = x^H G x` the mode's equation gives
-//! `lambda^2 m + lambda c + k + i g = 0`. M, C, G and the symmetric part of K give real numbers; the imaginary part of k
-//! is friction's. So of the imaginary part of the equation, with `lambda = a + i omega`,
+//! `lambda^2 m + lambda c + k + i g = 0`. M, C, G and the symmetric part of K give real numbers; the imaginary part of
+//! k is friction's. So of the imaginary part of the equation, with `lambda = a + i omega`,
 //!
 //! ```text
 //! 2 a omega m + omega c + Im k + g = 0        a = -Im k / (2 omega m) - c / (2 m) - g / (2 omega m)
 //! ```
 //!
 //! which is the balance of power: with the modal energy `E = omega^2 m / 2`, the energy input by friction is
-//! `-omega Im k / 2`, the dissipation by damping `omega^2 c / 2 + omega g / 2`, and what remains is `2 a E`. Both sums go over parts,
-//! connectors and contact pairs, so that the growth rate is a sum over them, too.
+//! `-omega Im k / 2`, the dissipation by damping `omega^2 c / 2 + omega g / 2`, and what remains is `2 a E`. Both sums
+//! go over parts, connectors and contact pairs, so that the growth rate is a sum over them, too.
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -36,8 +36,8 @@ pub struct Share {
 }
 
 /// The shares of all sources in a mode with eigenvalue `lambda`, from their forms with `y = x`. Their `energy_input`
-/// and `dissipation` add up to the growth rate. For a real eigenvalue, which has no cycle, `energy_input` is 0, and loss
-/// factors dissipate nothing.
+/// and `dissipation` add up to the growth rate. For a real eigenvalue, which has no cycle, `energy_input` is 0, and
+/// loss factors dissipate nothing.
 pub fn shares(lambda: Complex64, forms: &[Forms]) -> Vec<Share> {
     let m: f64 = forms.iter().map(|form| form.m.re).sum();
     let k: f64 = forms.iter().map(|form| form.k.re).sum();

@@ -225,7 +225,8 @@ impl<'a> Space<'a> {
         Ok(images)
     }
 
-    /// `M W`, `C W`, `K W` and `G W` side by side; where M, C and G are not symmetric, `M^T W`, `C^T W` and `G^T W`, too.
+    /// `M W`, `C W`, `K W` and `G W` side by side; where M, C and G are not symmetric, `M^T W`, `C^T W` and `G^T W`,
+    /// too.
     fn images(&self, w: &Block) -> Result<Block> {
         let (Mck { m, c, k, g }, p) = (self.problem().matrices, w.n_columns());
         let direct: Vec<&Matrix> = [m, c, k].into_iter().chain(g).collect();

@@ -61,8 +61,8 @@ fn eigenvalues(problem: &QuadraticProblem, labels: Vec<u64>) -> Vec<Complex64> {
     band.modes.iter().map(|mode| mode.lambda).collect()
 }
 
-/// A loss factor turns every eigenvalue `i omega` of a single material into `i omega sqrt(1 + i g)`, to 1e-9 [3e-13]; the
-/// first of the rod is `i pi / (2 L) sqrt(E (1 + i g) / rho)`, to 1e-4, the error of its elements [3e-7].
+/// A loss factor turns every eigenvalue `i omega` of a single material into `i omega sqrt(1 + i g)`, to 1e-9 [3e-13];
+/// the first of the rod is `i pi / (2 L) sqrt(E (1 + i g) / rho)`, to 1e-4, the error of its elements [3e-7].
 #[test]
 fn one_material_turns_every_eigenvalue_by_its_loss_factor() {
     let comm = Session::start(&[]).unwrap();
@@ -231,8 +231,9 @@ fn four_loss_factors_give_what_a_dense_complex_solver_gives() {
     assert!(largest < 1e-6, "{largest}");
 }
 
-/// What all sources feed and take adds up to the growth rate, to 1e-8; loss factors alone dissipate in the pad, and most
-/// in the mode that strains it; the sensitivity to a part's damping is the derivative with its loss factor, to 1e-5.
+/// What all sources feed and take adds up to the growth rate, to 1e-8; loss factors alone dissipate in the pad, and
+/// most in the mode that strains it; the sensitivity to a part's damping is the derivative with its loss factor, to
+/// 1e-5.
 #[test]
 fn energies_balance_and_sensitivities_are_derivatives() {
     let comm = Session::start(&[]).unwrap();

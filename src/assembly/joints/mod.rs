@@ -2,7 +2,7 @@
 //!
 //! | joint | rows of G | weights |
 //! |---|---|---|
-//! | connector | motion of one node set relative to another, or to the ground | its stiffness, its damping, its loss factor |
+//! | connector | motion of one node set relative to another, or to the ground | stiffness, damping, loss factor |
 //! | tie | jumps between two surfaces, a facet of the slave at a time ([`tie`]) | penalty |
 //! | rigid set | what distorts the set ([`rigid`]) | penalty |
 //! | equation | `sum a_k u_k` | penalty |

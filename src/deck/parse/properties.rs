@@ -8,8 +8,8 @@ use crate::deck::types::{Property, PropertyKind};
 use crate::model::PointMass;
 
 impl Parser {
-    /// The constant of a spring or dashpot, below the displacements that it is between; a mass; an inertia. A spring has
-    /// its imaginary stiffness behind the real one.
+    /// The constant of a spring or dashpot, below the displacements that it is between; a mass; an inertia. A spring
+    /// has its imaginary stiffness behind the real one.
     pub(super) fn property(&mut self, card: &Card) -> Result<()> {
         let set = self.name_of(card, "ELSET")?;
         let kind = match card.name.as_str() {

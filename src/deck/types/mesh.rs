@@ -139,7 +139,8 @@ pub struct Property {
     pub set: String,
     /// Displacements (1 to 6) of the two ends; none for a spring along its line.
     pub dofs: Option<[u8; 2]>,
-    /// Its constant, for a spring with the imaginary stiffness behind; the components 11, 22, 33, 12, 13, 23 of a rotary inertia.
+    /// Its constant, for a spring with the imaginary stiffness behind; the components 11, 22, 33, 12, 13, 23 of a
+    /// rotary inertia.
     pub values: [f64; 6],
     /// Where it stands.
     pub place: Place,
