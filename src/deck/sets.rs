@@ -194,8 +194,8 @@ impl Assembly<'_> {
         self.spaces.iter().flat_map(names).collect()
     }
 
-    /// What a surface consists of, each once, faces in the order of the deck. A contact point in the corner of two walls
-    /// meets the first of them, so that another order would be another model.
+    /// What a surface consists of, each once, faces in the order of the deck. A contact point in the corner of two
+    /// walls meets the first of them, so that another order would be another model.
     ///
     /// # Errors
     /// [`Error::Input`] for sets, elements and faces that are not there, and for a surface of nothing.

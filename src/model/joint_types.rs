@@ -18,6 +18,8 @@ pub struct Connector {
     pub between: [String; 2],
     /// The common reference point, m; the middle of the two centroids where the file does not say.
     pub at: Option<[f64; 3]>,
+    /// Unit vectors of its axes x, y, z, where they are not the mesh's.
+    pub axes: Option<[[f64; 3]; 3]>,
     /// Translational stiffness by axis, N/m.
     pub stiffness: [f64; 3],
     /// Rotational stiffness by axis, N m/rad.

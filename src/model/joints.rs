@@ -3,6 +3,7 @@
 use super::contacts::search_distance;
 use super::item::{Item, Vector, named};
 use super::keys;
+use super::materials::axes;
 use super::source::ModelText;
 use super::{Connector, Equation, EquationTerm, PointMass, RigidSet, Tie};
 use crate::Result;
@@ -34,6 +35,7 @@ fn connector(item: &Item, name: String, raw: &keys::ConnectorTable, unit: f64) -
         name,
         between: raw.between.get_ref().clone(),
         at: item.point(&raw.at, "at", unit)?,
+        axes: axes(item, &raw.x_axis, &raw.y_axis)?.map(|axes| [0, 1, 2].map(|i| axes.column(i).into_owned().into())),
         stiffness: constants(&raw.stiffness, "stiffness", "Give [x, y, z] in N/m")?,
         rotational_stiffness: optional(&raw.rotational_stiffness, "rotational_stiffness", rotational)?,
         damping: optional(&raw.damping, "damping", "Give [x, y, z] in N s/m")?,

@@ -221,6 +221,8 @@ tables! {
         pub name: Option<String>,
         pub between: Spanned<[String; 2]>,
         pub at: Option<Vector>,
+        pub x_axis: Option<Vector>,
+        pub y_axis: Option<Vector>,
         pub stiffness: Vector,
         pub rotational_stiffness: Option<Vector>,
         pub damping: Option<Vector>,

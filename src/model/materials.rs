@@ -200,18 +200,24 @@ impl<'a> MaterialReader<'a> {
 
     /// The material's axes as columns: those of the mesh, unless given.
     fn axes(&self) -> Result<Matrix3<f64>> {
-        let (item, raw) = (&self.item, self.raw);
-        let (x, y) = match (&raw.x_axis, &raw.y_axis) {
-            (None, None) => return Ok(Matrix3::identity()),
-            (Some(x), Some(y)) => (x, y),
-            (Some(given), None) | (None, Some(given)) => {
-                let what = "one of x_axis and y_axis alone does not fix the material's axes";
-                return Err(item.error(&given.span(), what, "Give both, or neither"));
-            }
-        };
-        let axes = elasticity::axes_from(item.direction(x, "x_axis")?, item.direction(y, "y_axis")?);
-        axes.ok_or_else(|| item.error(&y.span(), "x_axis and y_axis are parallel", "Give two different directions"))
+        let axes = axes(&self.item, &self.raw.x_axis, &self.raw.y_axis)?;
+        Ok(axes.unwrap_or_else(Matrix3::identity))
     }
+}
+
+/// Axes as columns, where `x_axis` and `y_axis` are given.
+pub fn axes(item: &Item, x_axis: &Option<Vector>, y_axis: &Option<Vector>) -> Result<Option<Matrix3<f64>>> {
+    let (x, y) = match (x_axis, y_axis) {
+        (None, None) => return Ok(None),
+        (Some(x), Some(y)) => (x, y),
+        (Some(given), None) | (None, Some(given)) => {
+            let what = "one of x_axis and y_axis alone does not fix the axes";
+            return Err(item.error(&given.span(), what, "Give both, or neither"));
+        }
+    };
+    let axes = elasticity::axes_from(item.direction(x, "x_axis")?, item.direction(y, "y_axis")?);
+    axes.map(Some)
+        .ok_or_else(|| item.error(&y.span(), "x_axis and y_axis are parallel", "Give two different directions"))
 }
 
 /// The kinds that have a key.

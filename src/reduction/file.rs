@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! /                 attributes: format "squeal super-element", version 4
-//! about             text, TOML: [origin] model, mesh with hash, friction, bands, samples; [[pair]] the pairs kept; parts
+//! about             text, TOML: [origin] model, mesh with hash, friction, bands, samples; [[pair]] the pairs kept;
+//!                   parts
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
 //! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + residual modes; kg, N s/m, N/m at the retained

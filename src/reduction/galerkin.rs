@@ -91,8 +91,8 @@ pub struct BasisReport {
 }
 
 /// The forces on points whose static answers are added: along the normal and the direction of sliding, or along all
-/// axes where a closed point sticks. Given the responses of all points at several equilibria, these are the points that are
-/// closed in some and open in others.
+/// axes where a closed point sticks. Given the responses of all points at several equilibria, these are the points that
+/// are closed in some and open in others.
 pub fn switching_forces(interface: &Interface, equilibria: &[&[Response]]) -> Vec<(usize, [f64; 3])> {
     let is_open = |responses: &&[Response], a: usize| responses[a].status == Status::Open;
     let switches = |a: &usize| {

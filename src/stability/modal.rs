@@ -8,11 +8,10 @@
 //! Phi^T K Phi = I + sum Phi^T B_a^T (D_a - D_0a) B_a Phi = I + U V^T
 //! ```
 //!
-//! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s, or from a factor of the sum where
-//! the rank is large. A step of a Krylov method then
-//! goes through C, U and V, where it went through M, C and a factor of K, and no coordinate is left out. That K_0
-//! becomes the identity, and not M, keeps the low modes' digits: rounding is relative to each mode's energy, and not to
-//! the highest mode's.
+//! where a sliding point's tangent differs by rank 1, and the inverse is [`Woodbury`]'s, or from a factor of the sum
+//! where the rank is large. A step of a Krylov method then goes through C, U and V, where it went through M, C and a
+//! factor of K, and no coordinate is left out. That K_0 becomes the identity, and not M, keeps the low modes' digits:
+//! rounding is relative to each mode's energy, and not to the highest mode's.
 //!
 //! Why it is written by hand: the modes of 81 friction values of the full brake's super-element (782 coordinates) take
 //! 18 s where TOAR with the factor of K took 30 s.

@@ -227,7 +227,7 @@ fn has_entry(weights: &[f64]) -> bool {
     weights.iter().any(|w| *w != 0.0)
 }
 
-/// `q = [u_R, phi]_second - [u_R, phi]_first` at the connector's point.
+/// `q = [u_R, phi]_second - [u_R, phi]_first` at the connector's point, along its axes.
 fn connector(sets: &Sets, connector: &Connector) -> std::result::Result<JointElement, String> {
     let ends: Vec<(&String, f64)> =
         connector.between.iter().zip([-1.0, 1.0]).filter(|(end, _)| !sets.is_ground(end)).collect();
@@ -240,7 +240,8 @@ fn connector(sets: &Sets, connector: &Connector) -> std::result::Result<JointEle
     let damping = [connector.damping, [0.0; 3]].concat();
     let acting = std::array::from_fn(|i| stiffness[i] != 0.0 || damping[i] != 0.0);
     for (end, sign) in ends {
-        let motion = sets.motion(end, Some(at))?;
+        let mut motion = sets.motion(end, Some(at))?;
+        connector.axes.iter().for_each(|axes| motion.turn(axes));
         motion.require(end, acting)?;
         rows.add_motion(&motion, sign);
     }
@@ -266,7 +267,7 @@ fn equation(equation: &Equation, nodes: &[u32], neighbours: &Neighbours) -> Join
     JointElement::springs(rows, vec![PENALTY * around.young * around.size])
 }
 
-/// `q = [u_R, R^T phi]` with the principal axes R of the inertia, on which it is diagonal.
+/// `q = [R u_R, R phi]` with the principal axes of the inertia, the rows of R, on which it is diagonal.
 fn point_mass(sets: &Sets, mass: &PointMass) -> std::result::Result<JointElement, String> {
     let mut motion = sets.motion(&mass.nodes, mass.at)?;
     let (has_mass, has_inertia) = (mass.mass != 0.0, mass.inertia != [0.0; 6]);
@@ -274,7 +275,7 @@ fn point_mass(sets: &Sets, mass: &PointMass) -> std::result::Result<JointElement
     let matrix = PointMass::matrix(mass.mass, mass.inertia);
     let inertia: Matrix3<f64> = matrix.fixed_view::<3, 3>(3, 3).into_owned();
     let principal = SymmetricEigen::new(inertia);
-    motion.turn_rotation(&principal.eigenvectors);
+    motion.turn(&[0, 1, 2].map(|i| principal.eigenvectors.column(i).into_owned().into()));
     let mut rows = Rows::new(6);
     rows.add_motion(&motion, 1.0);
     // The moment of a rod about its axis may be below 0 by rounding.

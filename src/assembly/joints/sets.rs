@@ -1,9 +1,7 @@
 //! The mean motions of node sets: what connectors, point masses and forces at points act on.
 
-use nalgebra::Matrix3;
-
 use crate::Result;
-use crate::algebra::norm;
+use crate::algebra::{dot, norm, product};
 use crate::contact::surface_points::nodal_weights;
 use crate::element::coupling::{Cloud, MeanMotion, mean_motion};
 use crate::mesh::{Mesh, Numbering};
@@ -56,11 +54,13 @@ impl SetMotion {
         self.nodes.iter().copied().zip(self.motion.spread(force, moment)).collect()
     }
 
-    /// Takes the rotation along the columns of `axes`: `R^T phi` in place of `phi`.
-    pub fn turn_rotation(&mut self, axes: &Matrix3<f64>) {
-        for block in &mut self.motion.rotation {
-            let turned = axes.transpose() * Matrix3::from_fn(|i, j| block[i][j]);
-            *block = std::array::from_fn(|i| std::array::from_fn(|j| turned[(i, j)]));
+    /// Takes displacement and rotation along other axes, the rows of R: `R u_R` and `R phi`.
+    pub fn turn(&mut self, axes: &[[f64; 3]; 3]) {
+        let blocks = self.motion.displacement.iter_mut().chain(&mut self.motion.rotation);
+        blocks.for_each(|block| *block = product(axes, block));
+        if let Some(lever) = &mut self.lever {
+            let (turned, size) = (axes.map(|axis| dot(axis, *lever)), norm(*lever));
+            *lever = turned.map(|x| if x.abs() > ON_AXIS * size { x } else { 0.0 });
         }
     }
 }

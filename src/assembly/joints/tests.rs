@@ -258,6 +258,7 @@ fn spring(between: [&str; 2]) -> Connector {
         name: "spring".into(),
         between: between.map(str::to_owned),
         at: None,
+        axes: None,
         stiffness: [2.0, 3.0, 5.0],
         rotational_stiffness: [0.0; 3],
         damping: [0.0; 3],
@@ -282,6 +283,26 @@ fn a_connector_to_the_ground_resists_the_motion_of_its_set_alone() {
     // A node set of this name comes first, and moves along.
     mesh.node_sets.insert("ground".into(), mesh.node_set("lower").unwrap());
     assert!(of(&mesh, ["upper", "ground"]).abs() < 1e-13);
+}
+
+/// Constants are along and about the connector's axes: a motion along its second axis has the second stiffness.
+#[test]
+fn a_connector_acts_along_its_axes() {
+    let mesh = plates(FacetShape::Triangle3, 0.1);
+    let axes = [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]];
+    let own = Connector { axes: Some(axes), rotational_stiffness: [7.0, 0.0, 0.0], ..spring(["upper", "ground"]) };
+    let joints = joints(&Model { connectors: vec![own], ..model(vec![], false) }, &mesh).unwrap();
+    let [k, _] = assembled(&joints, &mesh);
+    let energy = |u: &DVector<f64>| u.dot(&(&k * u));
+    for (axis, stiffness) in axes.into_iter().zip([2.0, 3.0, 5.0]) {
+        assert!((energy(&field(&mesh, |_| axis)) - stiffness).abs() < 1e-12);
+    }
+    let centre = Sets::new(&model(vec![], false), &mesh, &Numbering::even(mesh.nodes.len(), 0, 1))
+        .unwrap()
+        .centroid("upper")
+        .unwrap();
+    let about = |axis: [f64; 3]| energy(&field(&mesh, |x| cross(axis, sub(x, centre))));
+    assert!((about(axes[0]) - 7.0).abs() < 1e-10 && about(axes[1]).abs() < 1e-10);
 }
 
 #[test]

@@ -1,21 +1,25 @@
-//! Springs, dashpots, connector elements, masses and rotary inertias, between reference nodes, nodes of solids and the
+//! Springs, dashpots and connector elements between reference nodes, nodes of solids and the
 //! ground.
 //!
-//! Our connectors act along the global axes at one point. A spring between two points is one where they are one point,
-//! or lie one behind the other along the axis of the spring.
+//! Our connectors act along the axes of one point. A spring between two points is one where they are one point, or lie
+//! one behind the other along the axis of the spring.
+
+use nalgebra::Matrix3;
 
 use super::Conversion;
+use super::equations::Axes;
 use super::joints::connector;
+use super::materials::orientation_axes;
 use super::references::References;
 use super::regions::unlike;
 use crate::Result;
-use crate::algebra::{norm, sub};
-use crate::deck::VOIGT_ORDER;
+use crate::algebra::{dot, norm, scale, sub};
 use crate::deck::assembly::Element;
 use crate::deck::elements::Class;
 use crate::deck::sets::Kind;
 use crate::deck::types::{ConnectorBehaviour, ConnectorSection, N_COMPONENTS, Property, PropertyKind};
-use crate::model::{Connector, GROUND, Model, Place, PointMass, names};
+use crate::model::elasticity::axes_from;
+use crate::model::{Connector, GROUND, Model, Place, names};
 
 /// Points this near, relative to the size of the mesh, are one, and directions this close to an axis along it.
 const SAME: f64 = 1e-6;
@@ -50,14 +54,35 @@ struct Constants {
     damping: [f64; 6],
     /// Of all its stiffnesses.
     loss_factor: f64,
+    /// Where they are not the global ones.
+    axes: Option<Axes>,
+}
+
+impl Constants {
+    /// Which components act.
+    fn acts(&self) -> [bool; 6] {
+        [0, 1, 2, 3, 4, 5].map(|i| self.stiffness[i] != 0.0 || self.damping[i] != 0.0)
+    }
+
+    /// Along and about which global axes they may act.
+    fn acts_globally(&self) -> [bool; 6] {
+        let acts = self.acts();
+        let [along, about] = [&acts[..3], &acts[3..]].map(|own| own.contains(&true));
+        if self.axes.is_some() { [along, along, along, about, about, about] } else { acts }
+    }
+
+    /// The loss factor, where there is a stiffness.
+    fn loss(&self) -> Option<f64> {
+        (self.stiffness != [0.0; 6]).then_some(self.loss_factor)
+    }
 }
 
 /// An end of an element.
-struct End {
+pub(super) struct End {
     /// Node set or surface, or the ground.
-    region: String,
+    pub region: String,
     /// m
-    at: [f64; 3],
+    pub at: [f64; 3],
 }
 
 impl<'d> Conversion<'d> {
@@ -110,10 +135,10 @@ impl<'d> Conversion<'d> {
 
     fn spring(&mut self, element: u32, property: &Property, references: &References, model: &mut Model) -> Result<()> {
         let nodes = self.assembly.nodes(element).to_vec();
-        let axis = match (property.dofs, &nodes[..]) {
+        let (axis, axes) = match (property.dofs, &nodes[..]) {
             (None, &[first, second]) => self.axis_between(element, first, second)?,
             (Some([first, second]), _) if (1..=6).contains(&first) && (nodes.len() == 1 || second == first) => {
-                usize::from(first) - 1
+                (usize::from(first) - 1, self.axes_of(&property.orientation, property.place)?)
             }
             _ => {
                 let what = "a spring or dashpot acts between the same displacement (1 to 6) of both ends. \
@@ -121,7 +146,7 @@ impl<'d> Conversion<'d> {
                 return Err(self.assembly.error(property.place, what));
             }
         };
-        let mut constants = Constants::default();
+        let mut constants = Constants { axes, ..Constants::default() };
         match property.kind {
             PropertyKind::Spring => {
                 let [real, imaginary] = [property.values[0], property.values[1]];
@@ -137,17 +162,34 @@ impl<'d> Conversion<'d> {
         if axis < 3 { self.units.stiffness() } else { self.units.rotational_stiffness() }
     }
 
-    /// The global axis along which two nodes lie.
-    fn axis_between(&self, element: u32, first: u32, second: u32) -> Result<usize> {
+    /// The axis along which two nodes lie: a global one, or the first of axes of their own.
+    fn axis_between(&self, element: u32, first: u32, second: u32) -> Result<(usize, Option<Axes>)> {
         let line = sub(self.point(second), self.point(first));
         let length = norm(line);
-        let axis = (0..3).find(|&i| length > 0.0 && length - line[i].abs() <= SAME * length);
-        axis.ok_or_else(|| {
+        if length == 0.0 {
             let Element { kind, place, .. } = &self.assembly.elements[element as usize];
-            let what = "is supported where its ends lie one behind the other along a global axis. \
-                        Move an end, or take SPRING2";
-            self.assembly.error(*place, format_args!("a {} {what}", kind.name))
-        })
+            let what = format_args!("the ends of a {} are one point, so that it has no direction", kind.name);
+            return Err(self.assembly.error(*place, format_args!("{what}. Move an end, or take SPRING2")));
+        }
+        if let Some(axis) = (0..3).find(|&i| length - line[i].abs() <= SAME * length) {
+            return Ok((axis, None));
+        }
+        let across = (0..3).min_by(|&i, &j| line[i].abs().total_cmp(&line[j].abs())).unwrap_or(0);
+        let y_axis = std::array::from_fn(|i| if i == across { 1.0 } else { 0.0 });
+        Ok((0, axes_from(scale(1.0 / length, line), y_axis).as_ref().map(rows)))
+    }
+
+    /// The axes of an orientation.
+    fn axes_of(&self, name: &Option<String>, place: Place) -> Result<Option<Axes>> {
+        let Some(name) = name else { return Ok(None) };
+        let scopes = self.assembly.spaces.iter().flat_map(|space| &space.scopes);
+        let mut all = scopes.flat_map(|scope| &scope.orientations).chain(&self.deck.assembly.orientations);
+        let Some(orientation) = all.find(|own| own.name == *name) else {
+            return Err(self
+                .assembly
+                .error(place, format_args!("there is no orientation {}", self.deck.spelled(name))));
+        };
+        orientation_axes(self.deck, orientation, |v| v).map(|axes| Some(rows(&axes)))
     }
 
     /// Adds the constants to the connector between the ends of an element.
@@ -160,7 +202,7 @@ impl<'d> Conversion<'d> {
         model: &mut Model,
     ) -> Result<()> {
         let place = self.assembly.elements[element as usize].place;
-        let acts = [0, 1, 2, 3, 4, 5].map(|i| constants.stiffness[i] != 0.0 || constants.damping[i] != 0.0);
+        let acts = constants.acts_globally();
         let first = self.end(nodes[0], acts, references, place)?;
         let second = match nodes.get(1) {
             Some(&node) => self.end(node, acts, references, place)?,
@@ -174,14 +216,13 @@ impl<'d> Conversion<'d> {
                 Err(self.assembly.error(place, "both ends are on one set. Remove the element, or name two sets"))
             };
         }
-        self.require_one_point(&first, &second, acts, place)?;
+        self.require_one_point(&first, &second, constants, place)?;
         if constants.damping[3..] != [0.0; 3] {
             return Err(self.assembly.error(place, "damping of rotations is not supported. Give components 1 to 3"));
         }
         let [first, second] = if first.region == GROUND { [second, first] } else { [first, second] };
         let at = first.at;
-        let loss_factor = (constants.stiffness != [0.0; 6]).then_some(constants.loss_factor);
-        let own = connector_between(model, [first.region, second.region], (at, loss_factor), place);
+        let own = connector_between(model, [first.region, second.region], at, constants, place);
         for i in 0..3 {
             own.stiffness[i] += constants.stiffness[i];
             own.rotational_stiffness[i] += constants.stiffness[3 + i];
@@ -191,7 +232,7 @@ impl<'d> Conversion<'d> {
     }
 
     /// An end of an element that acts along some axes: a reference node, a node of a solid, or one that is held there.
-    fn end(&mut self, node: u32, acts: [bool; 6], references: &References, place: Place) -> Result<End> {
+    pub(super) fn end(&mut self, node: u32, acts: [bool; 6], references: &References, place: Place) -> Result<End> {
         let at = self.point(node);
         if let Some(reference) = references.at(node) {
             return Ok(End { region: reference.region.clone(), at });
@@ -220,8 +261,9 @@ impl<'d> Conversion<'d> {
     }
 
     /// Refuses ends at two points, unless they lie one behind the other along the axes that act.
-    fn require_one_point(&self, first: &End, second: &End, acts: [bool; 6], place: Place) -> Result<()> {
-        let line = sub(second.at, first.at);
+    fn require_one_point(&self, first: &End, second: &End, constants: &Constants, place: Place) -> Result<()> {
+        let (acts, line) = (constants.acts(), sub(second.at, first.at));
+        let line = constants.axes.map_or(line, |axes| axes.map(|axis| dot(axis, line)));
         let size = norm(first.at).max(norm(second.at)).max(self.units.length);
         let is_across = |i: usize| (0..3).any(|j| j != i && line[j].abs() > SAME * size);
         if (0..3).any(|i| acts[i] && is_across(i)) {
@@ -242,7 +284,8 @@ impl<'d> Conversion<'d> {
         let nodes = self.assembly.nodes(element).to_vec();
         let region =
             references.at(nodes[0]).or(references.at(nodes[1])).map_or_else(String::new, |one| one.region.clone());
-        let constants = self.connector_constants(section, &region)?;
+        let axes = self.axes_of(&section.orientation, section.place)?;
+        let constants = Constants { axes, ..self.connector_constants(section, &region)? };
         self.join(element, &nodes, &constants, references, model)
     }
 
@@ -301,56 +344,32 @@ impl<'d> Conversion<'d> {
             self.assembly.error(section.place, format_args!("there is no *CONNECTOR BEHAVIOR {name}. {advice}"))
         })
     }
-
-    /// A mass or inertia on a reference node or a node of a solid; both on one node are one mass.
-    fn mass(&mut self, element: u32, property: &Property, references: &References, model: &mut Model) -> Result<()> {
-        let (node, place) = (self.assembly.nodes(element)[0], self.assembly.elements[element as usize].place);
-        let acts = [true, true, true, false, false, false];
-        let is_inertia = property.kind == PropertyKind::RotaryInertia;
-        if is_inertia && references.at(node).is_none() {
-            return Err(self
-                .assembly
-                .error(place, "a rotary inertia is supported on a reference node. Couple the node to a surface"));
-        }
-        let End { region, at } = self.end(node, acts, references, place)?;
-        if region == GROUND {
-            return Ok(());
-        }
-        let known = model.masses.iter().position(|mass| mass.nodes == region && mass.at == Some(at));
-        let i = known.unwrap_or_else(|| {
-            let name = unlike(&region, |name| model.masses.iter().any(|own| own.name == name), "mass");
-            model.masses.push(PointMass { name, nodes: region, at: Some(at), mass: 0.0, inertia: [0.0; 6], place });
-            model.masses.len() - 1
-        });
-        let unit = if is_inertia { self.units.mass * self.units.length.powi(2) } else { self.units.mass };
-        match is_inertia {
-            true => VOIGT_ORDER
-                .iter()
-                .zip(property.values)
-                .for_each(|(&own, value)| model.masses[i].inertia[own] += value * unit),
-            false => model.masses[i].mass += property.values[0] * unit,
-        }
-        Ok(())
-    }
 }
 
-/// The connector of a model between two regions at a point, which is added where there is none: another one for a
-/// stiffness with another loss factor.
-fn connector_between(
-    model: &mut Model,
+/// Axes as rows.
+fn rows(axes: &Matrix3<f64>) -> Axes {
+    [0, 1, 2].map(|i| axes.column(i).into_owned().into())
+}
+
+/// The connector of a model between two regions at a point, which is added where there is none: another one for other
+/// axes, and for a stiffness with another loss factor.
+fn connector_between<'m>(
+    model: &'m mut Model,
     between: [String; 2],
-    (at, loss_factor): ([f64; 3], Option<f64>),
+    at: [f64; 3],
+    constants: &Constants,
     place: Place,
-) -> &mut Connector {
+) -> &'m mut Connector {
+    let (axes, loss_factor) = (constants.axes, constants.loss());
     let is_stiff = |own: &Connector| [own.stiffness, own.rotational_stiffness] != [[0.0; 3]; 2];
     let known = model.connectors.iter().position(|own| {
         let fits = loss_factor.is_none_or(|wanted| wanted == own.loss_factor || !is_stiff(own));
-        own.between == between && own.at == Some(at) && fits
+        own.between == between && own.at == Some(at) && own.axes == axes && fits
     });
     let i = known.unwrap_or_else(|| {
         let name =
             unlike(&between.join(" / "), |name| model.connectors.iter().any(|own| own.name == name), "connector");
-        model.connectors.push(connector(name, between, at, place));
+        model.connectors.push(Connector { axes, ..connector(name, between, at, place) });
         model.connectors.len() - 1
     });
     let own = &mut model.connectors[i];

@@ -22,7 +22,17 @@ use crate::model::{Connector, Fix, GROUND, Load, LoadKind, Model, PENALTY, Part,
 /// A connector without constants.
 pub(super) fn connector(name: String, between: [String; 2], at: [f64; 3], place: Place) -> Connector {
     let [stiffness, rotational_stiffness, damping] = [[0.0; 3]; 3];
-    Connector { name, between, at: Some(at), stiffness, rotational_stiffness, damping, loss_factor: 0.0, place }
+    Connector {
+        name,
+        between,
+        at: Some(at),
+        axes: None,
+        stiffness,
+        rotational_stiffness,
+        damping,
+        loss_factor: 0.0,
+        place,
+    }
 }
 
 impl Conversion<'_> {

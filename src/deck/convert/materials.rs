@@ -79,7 +79,7 @@ pub fn material(deck: &Deck, section: &SectionOf, units: &UnitSystem) -> Result<
         None => own,
         Some(orientation) => {
             name = format!("{name} in {}", deck.spelled(&orientation.name));
-            rotate(&own, &axes(deck, orientation, section)?)
+            rotate(&own, &orientation_axes(deck, orientation, |v| section.turned(v))?)
         }
     };
     let rows = [0, 1, 2, 3, 4, 5].map(|i| [0, 1, 2, 3, 4, 5].map(|j| elasticity[(i, j)]));
@@ -88,14 +88,18 @@ pub fn material(deck: &Deck, section: &SectionOf, units: &UnitSystem) -> Result<
     Ok((model::Material { name, density, elasticity: rows, loss_factor: material.structural }, rayleigh))
 }
 
-/// The axes of an orientation, turned with its instance.
-fn axes(deck: &Deck, orientation: &Orientation, section: &SectionOf) -> Result<Matrix3<f64>> {
+/// The axes of an orientation as columns, turned as its instance is.
+pub fn orientation_axes(
+    deck: &Deck,
+    orientation: &Orientation,
+    turned: impl Fn([f64; 3]) -> [f64; 3],
+) -> Result<Matrix3<f64>> {
     if orientation.is_cylindrical {
         let what = "cylindrical axes of a material that is not isotropic are not supported: they change within a part";
         return Err(orientation.place.error(&deck.files, what));
     }
     let unit = |v: [f64; 3]| {
-        let v = nalgebra::Vector3::from(section.turned(v));
+        let v = nalgebra::Vector3::from(turned(v));
         v.try_normalize(0.0).map(<[f64; 3]>::from)
     };
     let axes = unit(orientation.a).zip(unit(orientation.b)).and_then(|(a, b)| axes_from(a, b));

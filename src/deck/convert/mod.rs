@@ -17,6 +17,7 @@ mod discrete;
 mod equations;
 mod history;
 mod joints;
+mod masses;
 mod materials;
 mod pairs;
 mod references;

@@ -14,24 +14,28 @@ impl Parser {
         }
     }
 
-    /// The types on the first line; axes other than the global ones on the second are refused.
+    /// The types on the first line, the axes on the second.
     fn connector_section(&mut self, card: &Card) -> Result<()> {
         let set = self.name_of(card, "ELSET")?;
         let behaviour = card.word("BEHAVIOR");
-        let mut types = Vec::new();
+        let (mut types, mut orientation) = (Vec::new(), None);
         while let Some(row) = self.lines.row()? {
             let names: Vec<String> = row.fields().filter(|name| !name.is_empty()).map(str::to_uppercase).collect();
-            if types.is_empty() {
-                types = names;
-            } else if !names.is_empty() {
-                let what = "axes of a connector are not supported: it acts along the global ones. Leave the line out";
-                return Err(row.error(what));
+            match &names[..] {
+                _ if types.is_empty() => types = names,
+                [] => {}
+                [name] if orientation.is_none() => orientation = Some(name.clone()),
+                _ => {
+                    return Err(
+                        row.error("axes at both ends of a connector are not supported. Keep those of the first")
+                    );
+                }
             }
         }
         if types.is_empty() {
             return Err(card.error("the type of the connector is missing (*CONNECTOR SECTION)"));
         }
-        self.deck.connector_sections.push(ConnectorSection { set, types, behaviour, place: card.place });
+        self.deck.connector_sections.push(ConnectorSection { set, types, behaviour, orientation, place: card.place });
         Ok(())
     }
 

@@ -37,7 +37,8 @@ impl Parser {
         if let Some(what) = impossible(kind, values) {
             return Err(card.error(format_args!("{what} ({})", card.spelled)));
         }
-        self.scope().properties.push(Property { kind, set, dofs, values, place: card.place });
+        let orientation = card.word("ORIENTATION");
+        self.scope().properties.push(Property { kind, set, dofs, values, orientation, place: card.place });
         Ok(())
     }
 }

@@ -102,6 +102,8 @@ pub struct ConnectorSection {
     pub types: Vec<String>,
     /// Name of the behaviour.
     pub behaviour: Option<String>,
+    /// Name of its axes.
+    pub orientation: Option<String>,
     /// Where it stands.
     pub place: Place,
 }

@@ -142,6 +142,8 @@ pub struct Property {
     /// Its constant, for a spring with the imaginary stiffness behind; the components 11, 22, 33, 12, 13, 23 of a
     /// rotary inertia.
     pub values: [f64; 6],
+    /// Name of the axes along which it acts.
+    pub orientation: Option<String>,
     /// Where it stands.
     pub place: Place,
 }

@@ -95,6 +95,13 @@ impl DeckWriter<'_> {
             ("SPRING", 3, connector.rotational_stiffness, units.rotational_stiffness()),
             ("DASHPOT", 0, connector.damping, units.damping()),
         ];
+        let orientation = connector.axes.map_or_else(String::new, |[x, y, _]| {
+            self.n_orientations += 1;
+            let points: Vec<String> = x.iter().chain(&y).map(|&x| number(x)).collect();
+            let name = format!("AXES{}", self.n_orientations);
+            writeln!(out, "*ORIENTATION,NAME={name}\n{}", points.join(",")).expect("a string takes all");
+            format!(",ORIENTATION={name}")
+        });
         for (kind, first, values, unit) in constants {
             for (axis, value) in values.into_iter().enumerate().filter(|(_, value)| *value != 0.0) {
                 let (set, dof) =
@@ -105,8 +112,12 @@ impl DeckWriter<'_> {
                     }
                     _ => ("", String::new()),
                 };
-                writeln!(out, "*{kind},ELSET={set}{option}\n{dof},{dof}\n{}{imaginary}", number(value / unit))
-                    .expect("a string takes all");
+                writeln!(
+                    out,
+                    "*{kind},ELSET={set}{orientation}{option}\n{dof},{dof}\n{}{imaginary}",
+                    number(value / unit)
+                )
+                .expect("a string takes all");
             }
         }
         out

@@ -35,7 +35,15 @@ pub fn write(
     mark: &str,
     out: &mut impl Write,
 ) -> io::Result<Vec<String>> {
-    let mut writer = DeckWriter { model, mesh, units, names: Names::new(model, mesh), n_extra_nodes: 0, n_discrete: 0 };
+    let mut writer = DeckWriter {
+        model,
+        mesh,
+        units,
+        names: Names::new(model, mesh),
+        n_extra_nodes: 0,
+        n_discrete: 0,
+        n_orientations: 0,
+    };
     writeln!(out, "*HEADING\n{}\n** {mark}; units: {}", model.title.replace(['\n', '*'], " "), units.name)?;
     writer.nodes(out)?;
     writer.elements(out)?;
@@ -58,6 +66,8 @@ struct DeckWriter<'a> {
     n_extra_nodes: usize,
     /// Springs, dashpots and masses so far, numbered after the elements of the mesh.
     n_discrete: usize,
+    /// Axes of connectors so far.
+    n_orientations: usize,
 }
 
 /// A number with a decimal point and at most 20 characters: the shortest text that is read as the same number, or 13

@@ -19,6 +19,10 @@ fn connector(out: &mut Text, connector: &Connector, unit: f64) {
     out.line("name", quoted(&connector.name));
     out.line("between", format_args!("[{a}, {b}]"));
     out.point("at", connector.at, unit);
+    if let Some([x, y, _]) = &connector.axes {
+        out.line("x_axis", list(x));
+        out.line("y_axis", list(y));
+    }
     out.line("stiffness", list(&connector.stiffness));
     out.line("rotational_stiffness", list(&connector.rotational_stiffness));
     out.line("damping", list(&connector.damping));

@@ -39,7 +39,7 @@ fn rows<'t>(lines: impl Iterator<Item = &'t str>) -> Vec<Vec<f64>> {
 /// The eigenvalues, or else the displacements of all sets at the last time.
 pub fn reference(text: &str) -> Option<Reference> {
     if let Some((_, table)) = text.rsplit_once("E I G E N V A L U E   O U T P U T") {
-        // Number, eigenvalue, rad, cycles, imaginary part; with friction without the eigenvalue, and not by rising values.
+        // Number, eigenvalue, rad, cycles, imaginary part; with friction without the eigenvalue, not by rising values.
         let frequency = |row: Vec<f64>| match row.len() {
             4 => row[2],
             _ => row[1].max(0.0).sqrt() / std::f64::consts::TAU,

@@ -126,6 +126,18 @@ fn springs_go_to_the_ground_and_between_nodes() {
     assert!(all_close(own.stiffness, [0.0, 5e5, 0.0]) && own.at == Some([0.0, 0.0, 0.01]));
     let along = spring("4, 14", "SPRINGA", "");
     assert!(all_close(along.connectors[0].stiffness, [0.0, 0.0, 5e5]));
+    // From (0, 10, 0) to (0, 0, 10) mm.
+    let oblique = spring("2, 14", "SPRINGA", "");
+    let [x, y, z] = oblique.connectors[0].axes.unwrap();
+    let half = 0.5_f64.sqrt();
+    assert!(all_close([-half, half, 1.0], [x[1], x[2], y[0].abs()]) && x[0] == 0.0, "{x:?} {y:?} {z:?}");
+    assert!(all_close(oblique.connectors[0].stiffness, [5e5, 0.0, 0.0]));
+    let axes = "*ORIENTATION, NAME=A\n3., 4., 0., -4., 3., 0.\n*ELEMENT, TYPE=SPRING2, ELSET=S\n901, 1, 11\n";
+    let turned = model(&format!("{axes}*SPRING, ELSET=S, ORIENTATION=A\n2, 2\n500."));
+    let own = &turned.connectors[0];
+    assert!(all_close(own.stiffness, [0.0, 5e5, 0.0]) && all_close(own.axes.unwrap()[1], [-0.8, 0.6, 0.0]), "{own:?}");
+    let bush = axes.replace("SPRING2", "CONN3D2") + "*CONNECTOR SECTION, ELSET=S\nJOIN\nA";
+    assert!(all_close(model(&bush).connectors[0].axes.unwrap()[0], [0.6, 0.8, 0.0]));
     let between = spring("4, 14", "SPRING2", "3, 3");
     assert_eq!(between.connectors[0].between, ["node 4".to_owned(), "node 14".to_owned()]);
     let held = model(
