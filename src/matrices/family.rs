@@ -153,7 +153,7 @@ pub fn read(path: &Path) -> Result<MatrixFamily> {
         return Err(Error::input(format!("{place}: {what}. Give --part NAME for the modes of one of its parts")));
     }
     let line = |offset: usize| 1 + text[..offset.min(text.len())].matches('\n').count();
-    let keys: Keys = toml::from_str(&text).map_err(|error| {
+    let keys: Keys = toml::from_str(text).map_err(|error| {
         let at = line(error.span().map_or(0, |span| span.start));
         let advice =
             "A family has parameter = \"p\" and tables [[mass]], [[damping]], [[stiffness]], [[structural]] with file and factor";

@@ -65,7 +65,7 @@ enum Inverse {
     /// Of a low rank.
     Updated { v: Vec<f64>, rank: usize, woodbury: Woodbury },
     /// Of a large rank.
-    Factorised(Factor),
+    Factorised(Box<Factor>),
 }
 
 impl Modal {
@@ -234,7 +234,7 @@ fn factorised(comm: &Comm, n: usize, u: &[f64], v: &[f64]) -> Result<Option<Inve
     let mut factor = Factor::new(FactorKind::Unsymmetric);
     match factor.factorise(&Matrix::dense(comm, n, transposed.as_slice())?) {
         Err(Error::Singular { .. }) => Ok(None),
-        outcome => outcome.map(|()| Some(Inverse::Factorised(factor))),
+        outcome => outcome.map(|()| Some(Inverse::Factorised(Box::new(factor)))),
     }
 }
 
