@@ -33,7 +33,7 @@ use serde::Serialize;
 use crate::analysis::Output;
 use crate::model::NormalLaw;
 use crate::native::blas::restart_with_fitting_kernels;
-use crate::native::{Comm, Session, all_libraries};
+use crate::native::{Comm, Session, all_libraries, unused_options};
 use crate::output::json::{self, Failed, Warned};
 use crate::output::text::printable;
 use crate::results::Results;
@@ -236,7 +236,10 @@ pub fn main() -> i32 {
     match Session::start(&options) {
         Ok(comm) => {
             let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json };
-            guard_as(&comm, shell.json, || run(&arguments.command, &shell))
+            guard_as(&comm, shell.json, || {
+                run(&arguments.command, &shell)?;
+                warn_of_unused(&comm, &options)
+            })
         }
         Err(error) => {
             print_error("error", &error, arguments.json);
@@ -280,6 +283,14 @@ fn print_usage(usage: &clap::Error) -> i32 {
         };
     }
     usage.exit_code()
+}
+
+/// Says which options of `--petsc` nothing has read: a wrong name changes nothing.
+fn warn_of_unused(comm: &Comm, options: &PetscOptions) -> Result<()> {
+    for name in unused_options(options)?.into_iter().filter(|_| comm.is_root()) {
+        eprintln!("warning: --petsc: this command has not read the option {name}. Look at its name");
+    }
+    Ok(())
 }
 
 fn run(command: &Command, shell: &Shell) -> Result<()> {

@@ -28,7 +28,7 @@ pub mod petsc;
 pub use block::{Block, Noise, Orthonormal};
 pub use direct::{Factor, FactorKind, FactorStats, Lists, Precision, partition};
 pub use mck::Mck;
-pub use mpi::{Comm, MaxLoc, Session, all_libraries, libraries};
+pub use mpi::{Comm, MaxLoc, Session, all_libraries, libraries, unused_options};
 pub use petsc::{Csr, Gather, Matrix, Rows, Vector};
 
 #[cfg(test)]

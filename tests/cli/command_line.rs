@@ -304,6 +304,10 @@ fn options_reach_petsc() {
     let place = Place::blocks();
     let quiet = place.run(&["static", "brake.toml", "-o", "quiet"]);
     let monitored = place.run(&["static", "brake.toml", "-o", "run", "--petsc", "-equilibrium_snes_monitor"]);
+    assert!(!monitored.err.contains("has not read"), "{}", monitored.err);
+    let unknown = place.run(&["static", "brake.toml", "-o", "unknown", "--petsc", "-equilibrium_snes_monitr"]);
+    let warning = "warning: --petsc: this command has not read the option -equilibrium_snes_monitr.";
+    assert!(unknown.code == 0 && unknown.err.contains(warning), "{}", unknown.err);
     assert!(!quiet.out.contains("SNES Function norm") && monitored.out.contains("0 SNES Function norm"));
     assert_eq!((quiet.code, monitored.code), (0, 0));
     let view =

@@ -11,4 +11,4 @@ mod values;
 
 pub use comm::{Comm, MaxLoc};
 pub use datum::Datum;
-pub use session::{Session, all_libraries, libraries};
+pub use session::{Session, all_libraries, libraries, unused_options};

@@ -126,9 +126,41 @@ fn set_option(name: &str, value: &str) -> Result<()> {
     check(unsafe { sys::PetscOptionsSetValue(ptr::null_mut(), name.as_ptr(), value.as_ptr()) })
 }
 
+/// Those of some options, names with their dash, that nothing has asked PETSc's database for. Needs a session.
+///
+/// # Errors
+/// PETSc's.
+pub fn unused_options(options: &[(String, String)]) -> Result<Vec<&str>> {
+    let mut unused = Vec::new();
+    for (name, _) in options {
+        let bare =
+            CString::new(name.trim_start_matches('-')).map_err(|_| Error::input("an option holds a NUL byte"))?;
+        let mut used = sys::PetscBool::PETSC_FALSE;
+        // SAFETY: the name is NUL-terminated and lives for the call; the database is the session's.
+        check(unsafe { sys::PetscOptionsUsed(ptr::null_mut(), bare.as_ptr(), &mut used) })?;
+        if used == sys::PetscBool::PETSC_FALSE {
+            unused.push(name.as_str());
+        }
+    }
+    Ok(unused)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn options_that_nothing_asks_for_are_unused() {
+        let options = [("-fitting", "7"), ("-unknown", "")].map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let _session = Session::start(&options).unwrap();
+        let (mut value, mut found) = (0, sys::PetscBool::PETSC_FALSE);
+        // SAFETY: both names are NUL-terminated; the results are written before the call returns.
+        check(unsafe {
+            sys::PetscOptionsGetInt(ptr::null_mut(), ptr::null(), c"-fitting".as_ptr(), &mut value, &mut found)
+        })
+        .unwrap();
+        assert_eq!((value, unused_options(&options).unwrap()), (7, vec!["-unknown"]));
+    }
 
     /// A session has the process to itself; after its end MPI does not start again.
     #[test]
