@@ -15,7 +15,8 @@ const LONGEST_LINE: usize = 110;
 #[test]
 fn help_on_two_ranks() {
     let place = Place::empty();
-    let commands = "new example check convert static reduce export modes stability report study compare completions";
+    let commands =
+        "new example schema check convert static reduce export modes stability report study compare completions";
     let help = |arguments: &[&str]| {
         let Finished { code, out, err } = place.run(arguments);
         assert_eq!((code, err.as_str()), (0, ""), "{arguments:?}");
