@@ -9,8 +9,6 @@ use crate::assembly::System;
 use crate::contact::Response;
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::{Block, Comm, Factor, FactorKind, Matrix, Vector};
-use crate::output::overwrite::may_write_file;
-use crate::reduction::file;
 use crate::reduction::galerkin::{self, Basis, BasisReport};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Sample, SuperElement};
@@ -19,8 +17,8 @@ use crate::structure::{FullModel, ReducedModel, Structure};
 
 use super::certificate::Whole;
 use super::family::widened;
-use super::observer::{Event, Observer, warn};
-use super::reduce::SUPER_ELEMENT;
+use super::observer::{Event, Observer};
+use super::reduce::SuperElementPlace;
 use super::sweep::Sweep;
 
 /// Accuracy of left vectors that join the basis.
@@ -128,11 +126,8 @@ pub fn reduce_galerkin(
     observer: &mut dyn Observer,
 ) -> Result<GalerkinReduction> {
     let start = Instant::now();
-    warn(comm, model, observer);
-    model.require_constrained(comm)?;
-    model.require_mass()?;
-    let may_write = || may_write_file(&options.file, &SUPER_ELEMENT, options.force);
-    comm.agree(if comm.is_root() { may_write() } else { Ok(()) })?;
+    let place = SuperElementPlace { file: &options.file, force: options.force };
+    place.begin(comm, model, observer)?;
     observer.event(Event::Stage("assembling"));
     let mut system = model.assemble(comm, &model.families()?)?;
     let end = widened(model.model.band)[1];
@@ -148,9 +143,7 @@ pub fn reduce_galerkin(
 
     observer.event(Event::Stage("projecting the matrices"));
     let (element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
-    // Something may have come to that place since.
-    let write = || may_write().and_then(|()| file::write(&options.file, &element, &surface));
-    comm.agree(if comm.is_root() { write() } else { Ok(()) })?;
+    place.write(comm, &element, &surface)?;
 
     observer.event(Event::Stage("comparing with the full model between the samples"));
     let reduced = ReducedModel::new(&options.file, element.clone(), OuterSurface::default(), None, 1.0);

@@ -1,12 +1,13 @@
 //! From a model to a super-element's file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::native::Comm;
 use crate::output::overwrite::{FileKind, may_write_file};
 use crate::reduction::craig_bampton::Costs;
 use crate::reduction::file;
+use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::SuperElement;
 use crate::structure::FullModel;
 use crate::{Error, Result};
@@ -15,8 +16,42 @@ use super::observer::{Event, Observer, warn};
 use super::sweep::Sweep;
 
 /// What a reduction writes.
-pub(super) const SUPER_ELEMENT: FileKind =
-    FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
+const SUPER_ELEMENT: FileKind = FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
+
+/// Where the super-element of a reduction goes.
+pub(super) struct SuperElementPlace<'a> {
+    /// The file.
+    pub file: &'a Path,
+    /// Whether an earlier super-element may be replaced.
+    pub force: bool,
+}
+
+impl SuperElementPlace<'_> {
+    /// Refuses what cannot be reduced, and a place that is taken, before anything is computed. Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`].
+    pub(super) fn begin(&self, comm: &Comm, model: &FullModel, observer: &mut dyn Observer) -> Result<()> {
+        warn(comm, model, observer);
+        model.require_constrained(comm)?;
+        model.require_mass()?;
+        model.require_no_prescribed()?;
+        comm.agree(if comm.is_root() { self.may_write() } else { Ok(()) })
+    }
+
+    /// Writes the file, unless something has come to its place since. Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`], the system's.
+    pub(super) fn write(&self, comm: &Comm, element: &SuperElement, surface: &OuterSurface) -> Result<()> {
+        let write = || self.may_write().and_then(|()| file::write(self.file, element, surface));
+        comm.agree(if comm.is_root() { write() } else { Ok(()) })
+    }
+
+    fn may_write(&self) -> Result<()> {
+        may_write_file(self.file, &SUPER_ELEMENT, self.force)
+    }
+}
 
 /// What [`reduce`] is asked for.
 #[derive(Debug, Clone)]
@@ -57,23 +92,17 @@ pub fn reduce(
     observer: &mut dyn Observer,
 ) -> Result<Reduction> {
     let start = Instant::now();
-    warn(comm, model, observer);
-    model.require_constrained(comm)?;
-    model.require_mass()?;
-    model.require_no_prescribed()?;
+    let place = SuperElementPlace { file: &options.file, force: options.force };
+    place.begin(comm, model, observer)?;
     let friction = options.friction.unwrap_or_else(|| model.own_friction());
     let limit = options.limit.unwrap_or_else(|| model.reduction_limit());
-    let may_write = || may_write_file(&options.file, &SUPER_ELEMENT, options.force);
-    comm.agree(if comm.is_root() { may_write() } else { Ok(()) })?;
     observer.event(Event::Stage("assembling"));
     let system = model.assemble(comm, &model.families()?)?;
     let equilibrium = Sweep::new(&system, &model.interface, false)?.equilibrium(friction, observer)?;
     let equilibrium_seconds = start.elapsed().as_secs_f64();
     let mut follow = |event| observer.event(Event::Reduction(&event));
     let (element, surface, costs) = model.reduce(comm, &system, &equilibrium, limit, &mut follow)?;
-    // Something may have come to that place since.
-    let write = || may_write().and_then(|()| file::write(&options.file, &element, &surface));
-    comm.agree(if comm.is_root() { write() } else { Ok(()) })?;
+    place.write(comm, &element, &surface)?;
     Ok(Reduction { element, costs, equilibrium_seconds, seconds: start.elapsed().as_secs_f64() })
 }
 
