@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Result;
 use crate::assembly::System;
-use crate::contact::Interface;
+use crate::contact::{Interface, Response};
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::{Block, Comm, Factor, Vector};
 use crate::results::{Certificate, CertifiedMode};
@@ -68,9 +68,9 @@ impl Whole<'_> {
         let [right, left] =
             [&solution.right, &solution.left].map(|vectors| self.basis.combined(vectors, 2 * lambdas.len()));
         let u = self.basis.combined(&solution.equilibrium, 1).vector(0)?;
-        let equilibrium_error = self.equilibrium_error(&u, friction)?;
         let contacts = Contacts::new(self.interface, self.system)?;
         let responses = contacts.respond(&u, &self.interface.stage(friction))?;
+        let equilibrium_error = self.equilibrium_error(&u, &contacts, &responses)?;
         let equilibrium = Equilibrium { u, responses, friction, steps: Vec::new() };
         let mut sweep = Sweep::new(self.system, self.interface, reduced.friction_damping())?;
         let approximation = Approximation { lambdas: &lambdas, right: &right, left: &left };
@@ -94,11 +94,10 @@ impl Whole<'_> {
 
     /// `sqrt(r^T K_ref^-1 r / u^T F)` with the residual r of the equilibrium: the length of its error in energy, to
     /// first order.
-    fn equilibrium_error(&self, u: &Vector, friction: f64) -> Result<f64> {
-        let contacts = Contacts::new(self.interface, self.system)?;
+    fn equilibrium_error(&self, u: &Vector, contacts: &Contacts, responses: &[Response]) -> Result<f64> {
         let mut r = self.system.zeros()?;
         self.system.k.multiply(u, &mut r)?;
-        contacts.add_forces(&contacts.respond(u, &self.interface.stage(friction))?, -1.0, &mut r)?;
+        contacts.add_forces(responses, -1.0, &mut r)?;
         r.axpy(-1.0, &self.system.load)?;
         let comm = self.system.k.comm();
         let column = |v: &Vector| Ok(Block::from_columns(comm, v.n_local(), v.to_vec()?));
