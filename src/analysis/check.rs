@@ -8,7 +8,7 @@ use crate::contact::law::Tangential;
 use crate::element::facet;
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
-use crate::model::{Connector, Load, LoadKind, PointMass, Rayleigh, RigidSet, Rotation, Tie};
+use crate::model::{Connector, Load, LoadKind, PointMass, ProposedStiffness, Rayleigh, RigidSet, Rotation, Tie};
 use crate::native::{Comm, Factor, FactorKind};
 use crate::output::model_summary::{
     LayoutRow, LoadRow, LossRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow,
@@ -25,6 +25,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
     let masses = &full.model.masses;
     let mass_kg = parts.iter().map(|row| row.mass_kg).chain(masses.iter().map(|own| own.mass)).sum();
     let load = |load: &Load| LoadRow { load: load.name.clone(), on: load.on.clone(), what: amount(full, load) };
+    let proposed = full.model.proposed(&full.mesh);
     let sliding = || full.interface.pairs.iter().filter(|pair| pair.is_sliding());
     ModelSummary {
         title: full.model.title.clone(),
@@ -36,7 +37,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
         },
         parts,
         rotations: full.model.rotations.iter().map(rotation).collect(),
-        pairs: full.interface.pairs.iter().map(|own| pair(full, own)).collect(),
+        pairs: full.interface.pairs.iter().map(|own| pair(full, own, &proposed)).collect(),
         layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
         constrained_dofs: full.held.as_flattened().iter().filter(|&&h| h).count(),
         connectors: full.joints.count(JointKind::Connector),
@@ -101,10 +102,10 @@ fn sliding(full: &FullModel, pair: &ContactPair) -> Option<[f64; 2]> {
     Some([mean, mean / rotation.speed.abs()])
 }
 
-fn pair(full: &FullModel, pair: &ContactPair) -> PairRow {
+fn pair(full: &FullModel, pair: &ContactPair, proposed: &[ProposedStiffness]) -> PairRow {
     let statistics = &pair.statistics;
     let sliding = sliding(full, pair);
-    let proposed = full.model.proposed(&full.mesh).into_iter().find(|own| own.contact == pair.name);
+    let proposed = proposed.iter().find(|own| own.contact == pair.name);
     PairRow {
         pair: pair.name.clone(),
         kind: format!("{:?}", pair.kind).to_lowercase(),
@@ -119,7 +120,7 @@ fn pair(full: &FullModel, pair: &ContactPair) -> PairRow {
         gap_min_m: statistics.gap[0],
         gap_max_m: statistics.gap[1],
         friction: pair.friction,
-        proposed_stiffness_n_per_m3: proposed.as_ref().map(|own| own.stiffness),
+        proposed_stiffness_n_per_m3: proposed.map(|own| own.stiffness),
         proposed_stick_n_per_m3: proposed.and_then(|own| own.stick),
     }
 }
