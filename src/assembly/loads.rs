@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use crate::Result;
 use crate::element::facet;
 use crate::mesh::{Mesh, Surface};
-use crate::model::{Load, LoadKind, Model, Place};
+use crate::model::{Fix, Load, LoadKind, Model, Place};
 
 use super::joints::Sets;
-use super::{ElementMatrices, Elements};
+use super::{Elements, element_forces};
 
 /// Which displacements of each node the model prescribes.
 ///
@@ -29,7 +29,7 @@ pub fn constraints(model: &Model, mesh: &Mesh) -> Result<Vec<[bool; 3]>> {
 /// # Errors
 /// [`Error::Input`](crate::Error::Input) where a set is missing, or two supports prescribe different displacements.
 pub fn prescribed(model: &Model, mesh: &Mesh) -> Result<BTreeMap<u32, [f64; 3]>> {
-    if model.fixes.iter().all(|fix| fix.displacement == [0.0; 3]) {
+    if !model.fixes.iter().any(Fix::moves) {
         return Ok(BTreeMap::new());
     }
     let mut known: BTreeMap<(u32, usize), f64> = BTreeMap::new();
@@ -59,28 +59,13 @@ pub fn prescribed(model: &Model, mesh: &Mesh) -> Result<BTreeMap<u32, [f64; 3]>>
 /// What prescribed displacements `u_c` (m, by node) do to the free dofs: forces `-K_e u_c` (N) of all elements of which
 /// a node is moved.
 pub fn forces_of_prescribed(families: &[&dyn Elements], prescribed: &BTreeMap<u32, [f64; 3]>) -> Vec<(u32, [f64; 3])> {
-    let (mut element, mut forces) = (ElementMatrices::default(), Vec::new());
+    let mut forces = Vec::new();
     if prescribed.is_empty() {
         return forces;
     }
-    for family in families {
-        for e in 0..family.len() {
-            let nodes = family.nodes(e);
-            if !nodes.iter().any(|node| prescribed.contains_key(node)) {
-                continue;
-            }
-            family.matrices(e, &mut element);
-            let moved: Vec<f64> = nodes.iter().flat_map(|n| prescribed.get(n).copied().unwrap_or_default()).collect();
-            let product = element.k.chunks_exact(moved.len()).map(|row| -dot(row, &moved));
-            let own: Vec<f64> = product.collect();
-            forces.extend(nodes.iter().copied().zip(own.as_chunks().0.iter().copied()));
-        }
-    }
+    let u = |n: u32| prescribed.get(&n).copied().unwrap_or_default();
+    element_forces(families, |n| prescribed.contains_key(&n), u, |n, force| forces.push((n, force.map(|f| -f))));
     forces
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The nodal forces (N) of the model's loads.

@@ -28,4 +28,4 @@ pub use joints::{JointElement, JointKind, Joints};
 pub use loads::{constraints, forces_of_prescribed, loads, prescribed};
 pub use pattern::Pattern;
 pub use solids::Solids;
-pub use system::{Connectivity, ElementMatrices, Elements, System};
+pub use system::{Connectivity, ElementMatrices, Elements, System, element_forces};

@@ -169,6 +169,26 @@ impl System {
     }
 }
 
+/// The forces `K_e u_e` (N) of all elements of which a node is `chosen`, at each of their nodes.
+pub fn element_forces(
+    families: &[&dyn Elements],
+    chosen: impl Fn(u32) -> bool,
+    u: impl Fn(u32) -> [f64; 3],
+    mut add: impl FnMut(u32, [f64; 3]),
+) {
+    let mut element = ElementMatrices::default();
+    for family in families {
+        for e in (0..family.len()).filter(|&e| family.nodes(e).iter().any(|&n| chosen(n))) {
+            let nodes = family.nodes(e);
+            family.matrices(e, &mut element);
+            let values: Vec<f64> = nodes.iter().flat_map(|&n| u(n)).collect();
+            let product = |row: &[f64]| row.iter().zip(&values).map(|(k, u)| k * u).sum::<f64>();
+            let forces: Vec<f64> = element.k.chunks_exact(values.len()).map(product).collect();
+            nodes.iter().zip(forces.as_chunks().0).for_each(|(&n, force)| add(n, *force));
+        }
+    }
+}
+
 /// K, M and C by one pass over the elements that touch this rank's rows; M by way of `mass` where it does not couple
 /// axes.
 fn sum(

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::algebra::{cross, dot, norm, sub};
-use crate::assembly::{DofMap, ElementMatrices, Elements, System};
+use crate::assembly::{DofMap, Elements, System, element_forces};
 use crate::contact::interface::{ContactPair, Interface};
 use crate::contact::law::{Response, Status};
 use crate::native::Comm;
@@ -162,21 +162,17 @@ impl Balance {
 fn internal_forces_at_supports(families: &[&dyn Elements], dofs: &DofMap, u: &[[f64; 3]]) -> BTreeMap<u32, [f64; 3]> {
     let is_held = |n: u32| dofs.owns(n) && dofs.node_dofs(n).iter().any(|&e| e < 0);
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
-    let mut element = ElementMatrices::default();
-    for family in families {
-        for e in (0..family.len()).filter(|&e| family.nodes(e).iter().any(|&n| is_held(n))) {
-            let nodes = family.nodes(e);
-            family.matrices(e, &mut element);
-            let values: Vec<f64> = nodes.iter().flat_map(|&n| u[n as usize]).collect();
-            for (a, &n) in nodes.iter().enumerate().filter(|&(_, &n)| is_held(n)) {
+    element_forces(
+        families,
+        is_held,
+        |n| u[n as usize],
+        |n, force| {
+            if is_held(n) {
                 let sum = forces.entry(n).or_default();
-                for i in 0..3 {
-                    let row = &element.k[(3 * a + i) * values.len()..][..values.len()];
-                    sum[i] += row.iter().zip(&values).map(|(k, u)| k * u).sum::<f64>();
-                }
+                (0..3).for_each(|i| sum[i] += force[i]);
             }
-        }
-    }
+        },
+    );
     forces
 }
 
