@@ -99,9 +99,11 @@ impl Convert {
 /// lost where a part has two kinds of one shape.
 fn name_kinds(read: &mut ModelFiles) -> Vec<String> {
     let mut lost = Vec::new();
-    for (index, name) in read.mesh.parts.iter().enumerate() {
-        let own = read.mesh.elements.iter().filter(|element| element.part as usize == index);
-        let kinds: BTreeSet<ElementKind> = own.map(|element| element.kind).collect();
+    let mut of_parts = vec![BTreeSet::new(); read.mesh.parts.len()];
+    for element in read.mesh.elements.iter() {
+        of_parts[element.part as usize].insert(element.kind);
+    }
+    for (kinds, name) in of_parts.iter().zip(&read.mesh.parts) {
         let unusual = kinds.iter().filter(|kind| ElementKind::default_for(kind.shape()) != **kind);
         let Some(part) = read.model.parts.iter_mut().find(|part| part.name == *name) else { continue };
         part.elements.clear();

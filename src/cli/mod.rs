@@ -102,6 +102,13 @@ impl Shell<'_> {
         })
     }
 
+    /// Says which options of `--petsc` nothing has read: a wrong name changes nothing.
+    fn warn_of_unused(&self, options: &PetscOptions) -> Result<()> {
+        let unread = |name| format!("--petsc: this command has not read the option {name}. Look at its name");
+        self.warn(&unused_options(options)?.into_iter().map(unread).collect::<Vec<_>>());
+        Ok(())
+    }
+
     /// Writes warnings to standard error, a line each: as text, or as JSON like errors.
     pub fn warn(&self, warnings: &[String]) {
         for warning in warnings.iter().filter(|_| self.comm.is_root()) {
@@ -238,7 +245,7 @@ pub fn main() -> i32 {
             let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json };
             guard_as(&comm, shell.json, || {
                 run(&arguments.command, &shell)?;
-                warn_of_unused(&comm, &options)
+                shell.warn_of_unused(&options)
             })
         }
         Err(error) => {
@@ -283,14 +290,6 @@ fn print_usage(usage: &clap::Error) -> i32 {
         };
     }
     usage.exit_code()
-}
-
-/// Says which options of `--petsc` nothing has read: a wrong name changes nothing.
-fn warn_of_unused(comm: &Comm, options: &PetscOptions) -> Result<()> {
-    for name in unused_options(options)?.into_iter().filter(|_| comm.is_root()) {
-        eprintln!("warning: --petsc: this command has not read the option {name}. Look at its name");
-    }
-    Ok(())
 }
 
 fn run(command: &Command, shell: &Shell) -> Result<()> {
