@@ -33,6 +33,20 @@ pub enum CellKind {
     Axis = 6,
 }
 
+/// What a cell belongs to.
+struct Cell {
+    kind: CellKind,
+    part: i32,
+    pair: i32,
+}
+
+impl Cell {
+    /// Of no part and no pair.
+    fn of(kind: CellKind) -> Cell {
+        Cell { kind, part: -1, pair: -1 }
+    }
+}
+
 /// The axis is longer than the part that turns by this fraction, at each end.
 const AXIS_MARGIN: f64 = 0.25;
 
@@ -78,11 +92,11 @@ impl ModelPicture {
         self.points.len() as u32 - 1
     }
 
-    fn add_cell(&mut self, kind: CellKind, nodes: Vec<u32>, normal: [f64; 3]) {
+    fn add_cell(&mut self, cell: Cell, nodes: Vec<u32>, normal: [f64; 3]) {
         self.cells.push(nodes);
-        self.kind.push(kind as i32);
-        self.part.push(-1);
-        self.pair.push(-1);
+        self.kind.push(cell.kind as i32);
+        self.part.push(cell.part);
+        self.pair.push(cell.pair);
         self.normal.push(normal);
     }
 
@@ -93,9 +107,8 @@ impl ModelPicture {
         }
         for (triangle, part) in boundary.triangles.iter().zip(&boundary.part) {
             let corners = triangle.map(|n| boundary.nodes[n as usize]);
-            self.add_cell(CellKind::Part, triangle.map(|n| first + n).to_vec(), unit_normal(&corners));
-            self.part.pop();
-            self.part.push(*part);
+            let cell = Cell { part: *part, ..Cell::of(CellKind::Part) };
+            self.add_cell(cell, triangle.map(|n| first + n).to_vec(), unit_normal(&corners));
         }
     }
 
@@ -105,9 +118,7 @@ impl ModelPicture {
         for facet in &mesh.surfaces[name].facets {
             let place = |&n: &u32| *places.entry(n).or_insert_with(|| self.add_point(mesh.nodes[n as usize]));
             let nodes = facet.nodes().iter().map(place).collect();
-            self.add_cell(kind, nodes, unit_normal(&corners(mesh, facet)));
-            self.pair.pop();
-            self.pair.push(pair);
+            self.add_cell(Cell { pair, ..Cell::of(kind) }, nodes, unit_normal(&corners(mesh, facet)));
         }
     }
 
@@ -116,7 +127,7 @@ impl ModelPicture {
             let point = self.add_point(*x);
             self.constrained[point as usize] =
                 axes.iter().zip([1, 2, 4]).map(|(&held, bit)| i32::from(held) * bit).sum();
-            self.add_cell(CellKind::Constrained, vec![point], [0.0; 3]);
+            self.add_cell(Cell::of(CellKind::Constrained), vec![point], [0.0; 3]);
         }
     }
 
@@ -130,7 +141,7 @@ impl ModelPicture {
         for (node, force) in sums {
             let point = self.add_point(mesh.nodes[node as usize]);
             self.force[point as usize] = force;
-            self.add_cell(CellKind::Load, vec![point], [0.0; 3]);
+            self.add_cell(Cell::of(CellKind::Load), vec![point], [0.0; 3]);
         }
     }
 
@@ -148,7 +159,7 @@ impl ModelPicture {
         let ends = [low - AXIS_MARGIN * radius, high + AXIS_MARGIN * radius];
         let at = |along: f64| [0, 1, 2].map(|i| rotation.through[i] + along * rotation.axis[i]);
         let nodes = ends.map(|along| self.add_point(at(along))).to_vec();
-        self.add_cell(CellKind::Axis, nodes, scale(rotation.speed.signum(), rotation.axis));
+        self.add_cell(Cell::of(CellKind::Axis), nodes, scale(rotation.speed.signum(), rotation.axis));
     }
 
     /// As a grid to be written.
