@@ -177,6 +177,13 @@ pub struct Fix {
     pub place: Place,
 }
 
+impl Fix {
+    /// Whether it prescribes a displacement other than zero.
+    pub fn moves(&self) -> bool {
+        self.displacement != [0.0; 3]
+    }
+}
+
 /// Rigid rotation imposed on the velocity of a part.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Rotation {

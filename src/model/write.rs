@@ -32,7 +32,7 @@ pub fn write(model: &Model, mesh_file: &str) -> String {
         out.table("[[fix]]");
         out.line("nodes", quoted(&fix.nodes));
         out.line("axes", quoted(&axes));
-        out.point("displacement", Some(fix.displacement).filter(|own| *own != [0.0; 3]), model.mesh_unit);
+        out.point("displacement", fix.moves().then_some(fix.displacement), model.mesh_unit);
     }
     for rotation in &model.rotations {
         out.table("[[rotation]]");

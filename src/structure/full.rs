@@ -10,7 +10,7 @@ use crate::contact::{ContactPair, Interface, Response};
 use crate::deck::DeckSummary;
 use crate::element::solid::{MassProperties, mass_properties};
 use crate::mesh::{Mesh, Numbering, Piece};
-use crate::model::{self, Load, LoadKind, Model, is_deck};
+use crate::model::{self, Fix, Load, LoadKind, Model, is_deck};
 use crate::native::{Comm, Vector};
 use crate::reduction;
 use crate::results::{About, ContactFaces, Pair, Part};
@@ -158,7 +158,7 @@ impl FullModel {
     /// [`Error::Input`] with the line of the support.
     pub fn require_no_prescribed(&self) -> Result<()> {
         let what = "a displacement other than zero cannot be reduced. Press the parts together by a [[load]]";
-        let moved = self.model.fixes.iter().find(|fix| fix.displacement != [0.0; 3]);
+        let moved = self.model.fixes.iter().find(|fix| fix.moves());
         moved.map_or(Ok(()), |fix| Err(self.model.error(fix.place, format_args!("fix of {:?}: {what}", fix.nodes))))
     }
 
@@ -190,7 +190,7 @@ impl FullModel {
             LoadKind::Pressure(pressure) => pressure == 0.0,
         };
         let overlaps = |pair: &ContactPair| pair.separation && pair.statistics.gap[0] < -SMALLEST_OVERLAP;
-        let is_moved = self.model.fixes.iter().any(|fix| fix.displacement != [0.0; 3]);
+        let is_moved = self.model.fixes.iter().any(Fix::moves);
         self.model.loads.iter().all(is_zero) && !is_moved && !self.interface.pairs.iter().any(overlaps)
     }
 
