@@ -137,6 +137,12 @@ impl<'d> Assembly<'d> {
         Ok(())
     }
 
+    /// A direction of a space in the assembly.
+    pub fn turned(&self, space: usize, direction: [f64; 3]) -> [f64; 3] {
+        let turn = space.checked_sub(1).and_then(|instance| self.deck.instances[instance].rotation);
+        turn.map_or(direction, |turn| sub(turned(&turn, direction), turned(&turn, [0.0; 3])))
+    }
+
     /// Nodes of an element.
     pub fn nodes(&self, element: u32) -> &[u32] {
         let Element { kind, first, .. } = self.elements[element as usize];
@@ -204,7 +210,7 @@ fn placed(instance: &Instance, x: [f64; 3]) -> [f64; 3] {
 }
 
 /// Rodrigues' formula: `x' = o + r cos a + (k x r) sin a + k (k.r) (1 - cos a)` with `r = x - o`.
-pub fn turned(turn: &Turn, x: [f64; 3]) -> [f64; 3] {
+fn turned(turn: &Turn, x: [f64; 3]) -> [f64; 3] {
     let axis = sub(turn.to, turn.from);
     let k = scale(1.0 / norm(axis), axis);
     let r = sub(x, turn.from);

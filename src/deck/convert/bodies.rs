@@ -1,16 +1,16 @@
 //! Parts and their elements: a part for each section of the deck, in each instance.
 
 use super::materials;
+use super::orientations::orientation;
 use crate::Result;
-use crate::algebra::sub;
-use crate::deck::assembly::{Assembly, turned};
+use crate::deck::assembly::Assembly;
 use crate::deck::elements::Class;
 use crate::deck::sets::Kind;
-use crate::deck::types::{Entry, Orientation, Section, Turn};
+use crate::deck::types::{Entry, Orientation, Section};
 use crate::element::ElementKind;
 use crate::element::solid::is_inverted;
 use crate::mesh::Mesh;
-use crate::model::{Part, UnitSystem, names};
+use crate::model::{Part, UnitSystem};
 
 /// Mark of a node that no solid uses, and of an element without a section.
 pub const UNUSED: u32 = u32::MAX;
@@ -28,18 +28,6 @@ pub struct SectionOf<'d> {
     pub name: String,
     /// Index of its space.
     pub space: usize,
-    /// Rotation of the instance.
-    pub turn: Option<Turn>,
-}
-
-impl SectionOf<'_> {
-    /// A direction of the part in the assembly.
-    pub fn turned(&self, direction: [f64; 3]) -> [f64; 3] {
-        match &self.turn {
-            None => direction,
-            Some(turn) => sub(turned(turn, direction), turned(turn, [0.0; 3])),
-        }
-    }
 }
 
 /// All sections of all instances.
@@ -51,17 +39,9 @@ pub fn sections<'d>(assembly: &Assembly<'d>) -> Result<Vec<SectionOf<'d>>> {
     let mut all: Vec<SectionOf> = Vec::new();
     for (space, scopes) in assembly.spaces.iter().enumerate() {
         let sections: Vec<&Section> = scopes.scopes.iter().flat_map(|scope| &scope.sections).collect();
-        let orientations = scopes.scopes.iter().flat_map(|scope| &scope.orientations);
-        let orientations: Vec<&Orientation> = orientations.chain(&deck.assembly.orientations).collect();
-        let turn = space.checked_sub(1).and_then(|instance| deck.instances[instance].rotation);
         for section in &sections {
             let wanted = section.orientation.as_ref();
-            let orientation = wanted.map(|name| {
-                orientations.iter().find(|own| own.name == *name).copied().ok_or_else(|| {
-                    let advice = names::advice(name, orientations.iter().map(|own| own.name.as_str()));
-                    assembly.error(section.place, format_args!("there is no orientation {name}. {advice}"))
-                })
-            });
+            let orientation = wanted.map(|name| orientation(assembly, space, name, section.place)).transpose()?;
             let own = deck.spelled(&section.set);
             let instance = deck.spelled(&scopes.name);
             let name = match (instance.is_empty(), sections.len()) {
@@ -70,7 +50,7 @@ pub fn sections<'d>(assembly: &Assembly<'d>) -> Result<Vec<SectionOf<'d>>> {
                 (false, _) => format!("{instance}.{own}"),
             };
             let name = super::regions::unlike(&name, |name| all.iter().any(|other| other.name == name), "part");
-            all.push(SectionOf { section, orientation: orientation.transpose()?, name, space, turn });
+            all.push(SectionOf { section, orientation, name, space });
         }
     }
     if all.is_empty() {
@@ -134,7 +114,7 @@ impl Bodies {
                 return Err(assembly.error(place, what));
             }
         }
-        let (material, rayleigh) = materials::material(assembly.deck, of, units)?;
+        let (material, rayleigh) = materials::material(assembly, of, units)?;
         self.parts.push(Part { name: of.name.clone(), material, rayleigh, elements: Vec::new(), place });
         Ok(())
     }

@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 use super::Conversion;
 use super::equations::Axes;
 use super::joints::connector;
-use super::materials::orientation_axes;
+use super::orientations::{axes, orientation};
 use super::references::References;
 use super::regions::unlike;
 use crate::Result;
@@ -91,10 +91,11 @@ impl<'d> Conversion<'d> {
         let mut is_done = vec![false; self.assembly.elements.len()];
         let deck = self.deck;
         for (space, property) in self.properties() {
+            let axes = self.axes_of(space, &property.orientation, property.place)?;
             for element in self.elements_of(&property.set, space, property.place, &mut is_done)? {
                 match property.kind {
                     PropertyKind::Spring | PropertyKind::Dashpot => {
-                        self.spring(element, property, references, model)?
+                        self.spring(element, property, axes, references, model)?
                     }
                     PropertyKind::Mass | PropertyKind::RotaryInertia => {
                         self.mass(element, property, references, model)?
@@ -103,8 +104,9 @@ impl<'d> Conversion<'d> {
             }
         }
         for section in &deck.connector_sections {
+            let axes = self.axes_of(0, &section.orientation, section.place)?;
             for element in self.elements_of(&section.set, 0, section.place, &mut is_done)? {
-                self.connector_element(element, section, references, model)?;
+                self.connector_element(element, section, axes, references, model)?;
             }
         }
         match self.assembly.elements.iter().zip(is_done).find(|(own, done)| own.kind.class == Class::Discrete && !done)
@@ -133,12 +135,19 @@ impl<'d> Conversion<'d> {
         Ok(elements)
     }
 
-    fn spring(&mut self, element: u32, property: &Property, references: &References, model: &mut Model) -> Result<()> {
+    fn spring(
+        &mut self,
+        element: u32,
+        property: &Property,
+        axes: Option<Axes>,
+        references: &References,
+        model: &mut Model,
+    ) -> Result<()> {
         let nodes = self.assembly.nodes(element).to_vec();
         let (axis, axes) = match (property.dofs, &nodes[..]) {
             (None, &[first, second]) => self.axis_between(element, first, second)?,
             (Some([first, second]), _) if (1..=6).contains(&first) && (nodes.len() == 1 || second == first) => {
-                (usize::from(first) - 1, self.axes_of(&property.orientation, property.place)?)
+                (usize::from(first) - 1, axes)
             }
             _ => {
                 let what = "a spring or dashpot acts between the same displacement (1 to 6) of both ends. \
@@ -179,17 +188,11 @@ impl<'d> Conversion<'d> {
         Ok((0, axes_from(scale(1.0 / length, line), y_axis).as_ref().map(rows)))
     }
 
-    /// The axes of an orientation.
-    fn axes_of(&self, name: &Option<String>, place: Place) -> Result<Option<Axes>> {
+    /// The axes of an orientation that a space names.
+    fn axes_of(&self, space: usize, name: &Option<String>, place: Place) -> Result<Option<Axes>> {
         let Some(name) = name else { return Ok(None) };
-        let scopes = self.assembly.spaces.iter().flat_map(|space| &space.scopes);
-        let mut all = scopes.flat_map(|scope| &scope.orientations).chain(&self.deck.assembly.orientations);
-        let Some(orientation) = all.find(|own| own.name == *name) else {
-            return Err(self
-                .assembly
-                .error(place, format_args!("there is no orientation {}", self.deck.spelled(name))));
-        };
-        orientation_axes(self.deck, orientation, |v| v).map(|axes| Some(rows(&axes)))
+        let orientation = orientation(&self.assembly, space, name, place)?;
+        axes(&self.assembly, space, orientation).map(|axes| Some(rows(&axes)))
     }
 
     /// Adds the constants to the connector between the ends of an element.
@@ -278,13 +281,13 @@ impl<'d> Conversion<'d> {
         &mut self,
         element: u32,
         section: &ConnectorSection,
+        axes: Option<Axes>,
         references: &References,
         model: &mut Model,
     ) -> Result<()> {
         let nodes = self.assembly.nodes(element).to_vec();
         let region =
             references.at(nodes[0]).or(references.at(nodes[1])).map_or_else(String::new, |one| one.region.clone());
-        let axes = self.axes_of(&section.orientation, section.place)?;
         let constants = Constants { axes, ..self.connector_constants(section, &region)? };
         self.join(element, &nodes, &constants, references, model)
     }

@@ -1,14 +1,16 @@
 //! Elasticity of materials in the global axes, and the system of units that they are in.
 
-use nalgebra::{Matrix3, Matrix6};
+use nalgebra::Matrix6;
 
 use super::KnownUnits;
 use super::bodies::SectionOf;
+use super::orientations::axes;
 use crate::Result;
 use crate::deck::VOIGT_ORDER;
-use crate::deck::types::{Deck, Elastic, ElasticKind, Material, Orientation};
+use crate::deck::assembly::Assembly;
+use crate::deck::types::{Deck, Elastic, ElasticKind, Material};
 use crate::model::elasticity::{
-    axes_from, from_compliance, is_positive_definite, isotropic_compliance, orthotropic_compliance, rotate, youngs,
+    from_compliance, is_positive_definite, isotropic_compliance, orthotropic_compliance, rotate, youngs,
 };
 use crate::model::{self, UnitSystem, names};
 
@@ -70,7 +72,12 @@ fn of_section<'d>(deck: &'d Deck, section: &SectionOf) -> Result<(&'d Material, 
 ///
 /// # Errors
 /// [`Error::Input`](crate::Error::Input) for materials that are not there or cannot be.
-pub fn material(deck: &Deck, section: &SectionOf, units: &UnitSystem) -> Result<(model::Material, model::Rayleigh)> {
+pub fn material(
+    assembly: &Assembly,
+    section: &SectionOf,
+    units: &UnitSystem,
+) -> Result<(model::Material, model::Rayleigh)> {
+    let deck = assembly.deck;
     let (material, elastic, density) = of_section(deck, section)?;
     let impossible = "no material has these constants: the elasticity is not positive definite";
     let own = elasticity(elastic).ok_or_else(|| elastic.place.error(&deck.files, impossible))? * units.stress();
@@ -79,33 +86,13 @@ pub fn material(deck: &Deck, section: &SectionOf, units: &UnitSystem) -> Result<
         None => own,
         Some(orientation) => {
             name = format!("{name} in {}", deck.spelled(&orientation.name));
-            rotate(&own, &orientation_axes(deck, orientation, |v| section.turned(v))?)
+            rotate(&own, &axes(assembly, section.space, orientation)?)
         }
     };
     let rows = [0, 1, 2, 3, 4, 5].map(|i| [0, 1, 2, 3, 4, 5].map(|j| elasticity[(i, j)]));
     let rayleigh = model::Rayleigh { alpha: material.alpha / units.time, beta: material.beta * units.time };
     let density = density.map_or(0.0, |density| density * units.density());
     Ok((model::Material { name, density, elasticity: rows, loss_factor: material.structural }, rayleigh))
-}
-
-/// The axes of an orientation as columns, turned as its instance is.
-pub fn orientation_axes(
-    deck: &Deck,
-    orientation: &Orientation,
-    turned: impl Fn([f64; 3]) -> [f64; 3],
-) -> Result<Matrix3<f64>> {
-    if orientation.is_cylindrical {
-        let what = "cylindrical axes of a material that is not isotropic are not supported: they change within a part";
-        return Err(orientation.place.error(&deck.files, what));
-    }
-    let unit = |v: [f64; 3]| {
-        let v = nalgebra::Vector3::from(turned(v));
-        v.try_normalize(0.0).map(<[f64; 3]>::from)
-    };
-    let axes = unit(orientation.a).zip(unit(orientation.b)).and_then(|(a, b)| axes_from(a, b));
-    axes.ok_or_else(|| {
-        orientation.place.error(&deck.files, "the two points of the axes lie on a line through the origin")
-    })
 }
 
 /// What is noted of materials without a density.

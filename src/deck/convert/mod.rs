@@ -19,6 +19,7 @@ mod history;
 mod joints;
 mod masses;
 mod materials;
+mod orientations;
 mod pairs;
 mod references;
 mod regions;

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use super::Conversion;
 use super::history::State;
 use crate::Result;
-use crate::deck::types::{Behaviour, ContactPair, Dependence, Friction, Interaction};
+use crate::deck::types::{Behaviour, Clearance, ContactPair, Dependence, Friction, Interaction};
 use crate::mesh::Mesh;
 use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay};
 use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, Place, ROUGH, is_pressure_table, names};
@@ -19,11 +19,13 @@ const ROUGH_FROM: f64 = 1e3;
 impl<'d> Conversion<'d> {
     /// The contact pairs with their normal laws.
     pub(super) fn contacts(&mut self) -> Result<Vec<Contact>> {
+        self.require_pairs_of_clearances()?;
         let mut contacts: Vec<Contact> = Vec::new();
         for pair in self.contact_pairs()? {
             let [slave, master] =
                 [self.surface_name(&pair.slave, pair.place)?, self.surface_name(&pair.master, pair.place)?];
             let interaction = self.interaction(pair)?;
+            let clearance = self.deck.clearances.iter().rfind(|own| is_of(own, pair));
             let name = format!("{slave} / {master}");
             if contacts.iter().any(|other| other.name == name) {
                 return Err(self.assembly.error(pair.place, format_args!("the contact pair {name} is there already")));
@@ -38,12 +40,26 @@ impl<'d> Conversion<'d> {
                 stick: None,
                 separation: !interaction.no_separation,
                 search_distance: None,
-                adjust: pair.adjust.filter(|_| pair.clearance.is_none()).map_or(0.0, |gap| gap * self.units.length),
-                clearance: pair.clearance.map(|gap| gap * self.units.length),
+                adjust: pair.adjust.filter(|_| clearance.is_none()).map_or(0.0, |gap| gap * self.units.length),
+                clearance: clearance.map(|own| own.value * self.units.length),
                 place: pair.place,
             });
         }
         Ok(contacts)
+    }
+
+    /// Refuses a clearance of surfaces that are no contact pair.
+    fn require_pairs_of_clearances(&self) -> Result<()> {
+        let pairs = self.contact_pairs()?;
+        let Some(lost) = self.deck.clearances.iter().find(|own| !pairs.iter().any(|pair| is_of(own, pair))) else {
+            return Ok(());
+        };
+        let name = |slave: &str, master: &str| format!("{} / {}", self.deck.spelled(slave), self.deck.spelled(master));
+        let wanted = name(&lost.slave, &lost.master);
+        let known: Vec<String> = pairs.iter().map(|pair| name(&pair.slave, &pair.master)).collect();
+        let advice = names::advice(&wanted, known.iter().map(String::as_str));
+        let what = format_args!("no *CONTACT PAIR has slave and master {wanted} (*CLEARANCE). {advice}");
+        Err(self.assembly.error(lost.place, what))
     }
 
     /// The contact pairs that are no ties.
@@ -144,6 +160,11 @@ impl Conversion<'_> {
             }
         }
     }
+}
+
+/// Whether a clearance is of a pair.
+fn is_of(clearance: &Clearance, pair: &ContactPair) -> bool {
+    clearance.slave == pair.slave && clearance.master == pair.master
 }
 
 /// The slope of a table of pressure over overlap, if it is a straight line through the origin. Rows without pressure

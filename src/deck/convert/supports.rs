@@ -9,7 +9,7 @@ use super::history::State;
 use crate::Result;
 use crate::algebra::{norm, scale, sub};
 use crate::deck::sets::Kind;
-use crate::deck::types::{ActionKind, Entry, Spin};
+use crate::deck::types::{Action, ActionKind, Entry, Spin};
 use crate::model::{Equation, Fix, Load, LoadKind, Place, Rotation};
 
 /// A force on a node, by axis, with the step that it began in.
@@ -63,6 +63,10 @@ impl Conversion<'_> {
     /// each axis.
     fn moved(&self, state: &State) -> Result<Prescribed> {
         let mut all = Prescribed::new();
+        let is_moved = |action: &Action| matches!(action.what, ActionKind::Boundary(_, _, value) if value != 0.0);
+        if !state.actions().any(|(_, action)| is_moved(action)) {
+            return Ok(all);
+        }
         for (_, action) in state.actions() {
             let ActionKind::Boundary(of, [first, last], value) = &action.what else { continue };
             for node in self.bodies.used(&self.assembly.set(Kind::Node, 0, of, action.place)?) {

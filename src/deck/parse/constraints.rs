@@ -7,7 +7,8 @@ use crate::Result;
 use crate::deck::card::Card;
 use crate::deck::row::Row;
 use crate::deck::types::{
-    ConstraintKind, EquationDefinition, PointConstraint, RigidDefinition, TermDefinition, TieDefinition, Transform,
+    Clearance, ConstraintKind, EquationDefinition, PointConstraint, RigidDefinition, TermDefinition, TieDefinition,
+    Transform,
 };
 
 /// Fields of a term of an equation: node, displacement, coefficient.
@@ -112,19 +113,13 @@ impl Parser {
         Ok(())
     }
 
-    /// The gap of a contact pair that stands above, in place of the mesh's.
+    /// The gap of a contact pair, in place of the mesh's.
     fn clearance(&mut self, card: &Card) -> Result<()> {
         let [slave, master] = [self.name_of(card, "SLAVE")?, self.name_of(card, "MASTER")?];
         let Some(value) = card.number("VALUE")? else {
-            return Err(card.error("VALUE= is missing (*CLEARANCE): a gap by tables is not supported"));
+            return Err(card.error("VALUE= is missing (*CLEARANCE). Give VALUE=: a gap by tables is not supported"));
         };
-        let pairs = &mut self.deck.contact_pairs;
-        let Some(pair) = pairs.iter_mut().find(|pair| pair.slave == slave && pair.master == master) else {
-            let [slave, master] = [slave, master].map(|name| self.deck.spelled(&name));
-            let what = format_args!("no *CONTACT PAIR of {slave} and {master} stands above it (*CLEARANCE)");
-            return Err(card.error(what));
-        };
-        pair.clearance = Some(value);
+        self.deck.clearances.push(Clearance { slave, master, value, place: card.place });
         Ok(())
     }
 }

@@ -122,8 +122,8 @@ impl Parser {
             let (slave, master) = (slave.to_uppercase(), master.to_uppercase());
             n += 1;
             let interaction = interaction.clone();
-            let (clearance, place) = (None, row.place);
-            self.deck.contact_pairs.push(ContactPair { slave, master, interaction, adjust, clearance, tied, place });
+            let place = row.place;
+            self.deck.contact_pairs.push(ContactPair { slave, master, interaction, adjust, tied, place });
         }
         if n == 0 { Err(card.error("the two surfaces are missing")) } else { Ok(()) }
     }

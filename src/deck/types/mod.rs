@@ -21,7 +21,7 @@ pub use mesh::{
     SurfaceDefinition, SurfaceItem, Turn,
 };
 pub use physics::{
-    Behaviour, ContactPair, Coupling, Dependence, Elastic, ElasticKind, Friction, Interaction, Material,
+    Behaviour, Clearance, ContactPair, Coupling, Dependence, Elastic, ElasticKind, Friction, Interaction, Material,
 };
 
 /// A deck.
@@ -47,6 +47,8 @@ pub struct Deck {
     pub interactions: Vec<Interaction>,
     /// Contact pairs.
     pub contact_pairs: Vec<ContactPair>,
+    /// Initial gaps of contact pairs.
+    pub clearances: Vec<Clearance>,
     /// Couplings of a reference node.
     pub couplings: Vec<Coupling>,
     /// Surfaces that move as one.

@@ -126,10 +126,21 @@ pub struct ContactPair {
     pub interaction: String,
     /// Whether nodes of the slave are moved onto the master, and from which distance.
     pub adjust: Option<f64>,
-    /// Initial gap in place of the mesh's.
-    pub clearance: Option<f64>,
     /// Whether the surfaces move as one.
     pub tied: bool,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// The initial gap of a contact pair, in place of the mesh's.
+#[derive(Debug)]
+pub struct Clearance {
+    /// Name of the slave surface.
+    pub slave: String,
+    /// Name of the master surface.
+    pub master: String,
+    /// The gap.
+    pub value: f64,
     /// Where it stands.
     pub place: Place,
 }

@@ -138,6 +138,10 @@ fn springs_go_to_the_ground_and_between_nodes() {
     assert!(all_close(own.stiffness, [0.0, 5e5, 0.0]) && all_close(own.axes.unwrap()[1], [-0.8, 0.6, 0.0]), "{own:?}");
     let bush = axes.replace("SPRING2", "CONN3D2") + "*CONNECTOR SECTION, ELSET=S\nJOIN\nA";
     assert!(all_close(model(&bush).connectors[0].axes.unwrap()[0], [0.6, 0.8, 0.0]));
+    let in_part = axes.replace("SPRING2", "SPRING1").replace("901, 1, 11", "901, 14");
+    let instance = read(&as_instance(&format!("{in_part}*SPRING, ELSET=S, ORIENTATION=A\n2\n500.\n"))).unwrap();
+    let turned = instance.model.connectors[0].axes.unwrap()[1];
+    assert!((0..3).all(|i| close(turned[i] + 2.0, [1.4, 1.2, 2.0][i])), "{turned:?}");
     let between = spring("4, 14", "SPRING2", "3, 3");
     assert_eq!(between.connectors[0].between, ["node 4".to_owned(), "node 14".to_owned()]);
     let held = model(
@@ -212,7 +216,10 @@ fn a_joint_between_nodes_has_the_stiffness_of_an_element() {
 #[test]
 fn a_clearance_is_the_gap_of_a_pair() {
     let lines = "*BOUNDARY\nHUB, 1, 3\n";
-    let text = format!("*CLEARANCE, VALUE=-0.02, MASTER=DISC_FACE, SLAVE=PAD_FACE\n{lines}");
+    let clearance = "*CLEARANCE, VALUE=-0.02, MASTER=DISC_FACE, SLAVE=PAD_FACE\n";
+    let above = model(clearance.trim_end());
+    assert!(close(above.contacts[0].clearance.unwrap(), -2e-5));
+    let text = format!("{clearance}{lines}");
     let Converted { model, mesh, .. } = with(lines, &text).unwrap();
     assert!(close(model.contacts[0].clearance.unwrap(), -2e-5));
     let mut deck = Vec::new();

@@ -181,8 +181,8 @@ fn another_system_of_units_gives_the_same_model() {
     );
 }
 
-#[test]
-fn instances_are_moved_and_then_turned() {
+/// The good deck as an instance, moved and then turned, with these lines in its part.
+fn as_instance(lines: &str) -> String {
     let text = good();
     let (mesh, rest) = text.split_once("*MATERIAL").unwrap();
     let (heading, mesh) = mesh.split_once("*NODE").unwrap();
@@ -190,10 +190,15 @@ fn instances_are_moved_and_then_turned() {
     let rest = rest.replace(sections, "").replace("PAD_FACE, DISC_FACE", "b-1.PAD_FACE, B-1.DISC_FACE");
     let rest =
         rest.replace("HUB, 1", "b-1.HUB, 1").replace("BACK, 3", "FOUR, 3").replace("TURNING, 5", "B-1.TURNING, 5");
-    let text = format!(
-        "{heading}*PART, NAME=brake\n*NODE{mesh}{sections}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=B-1, PART=Brake\n\
+    format!(
+        "{heading}*PART, NAME=brake\n*NODE{mesh}{sections}{lines}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=B-1, PART=Brake\n\
          1., 2., 3.\n0,0,0, 0,0,1, 90.\n*END INSTANCE\n*NSET, NSET=FOUR, INSTANCE=B-1\nBACK\n*END ASSEMBLY\n*MATERIAL{rest}"
-    );
+    )
+}
+
+#[test]
+fn instances_are_moved_and_then_turned() {
+    let text = as_instance("");
     let Converted { model, mesh, summary } = read(&text).unwrap();
     assert_eq!((summary.instances, &mesh.parts[..]), (1, &["B-1.Disc".to_owned(), "B-1.PAD".to_owned()][..]));
     // (0, 10, 0) + (1, 2, 3), turned by a right angle: (-12, 1, 3) mm.
