@@ -104,6 +104,24 @@ mod tests {
         (0..4).fold(DVector::from_element(n, Complex64::ONE), |x, _| lu.solve(&x).unwrap().normalize())
     }
 
+    /// All displacements but the stiff ones along y, whose small coupling is what the basis lacks, and those.
+    fn basis_and_rest() -> [DMatrix<f64>; 2] {
+        let mixed = |i: usize, j: usize| match (i, j) {
+            _ if i == j => 1.0,
+            _ if i + 1 == j || j + 2 == i => 0.02,
+            _ => 0.0,
+        };
+        let all = DMatrix::from_fn(12, 12, mixed);
+        let with = |is_stiff: bool| (0..12).filter(|j| (j % 3 == 1) == is_stiff).collect::<Vec<_>>();
+        [false, true].map(|is_stiff| all.select_columns(&with(is_stiff)))
+    }
+
+    /// `P(lambda) = lambda^2 M + lambda C + K`
+    fn at(lambda: Complex64, [m, c, k]: [&DMatrix<f64>; 3]) -> DMatrix<Complex64> {
+        let complex = |a: &DMatrix<f64>| a.map(Complex64::from);
+        complex(m) * lambda * lambda + complex(c) * lambda + complex(k)
+    }
+
     /// Block on a belt without one coordinate of the last block: the correction brings the eigenvalues much nearer.
     #[test]
     fn corrected_eigenvalues_are_those_of_the_whole_problem() {
@@ -111,30 +129,14 @@ mod tests {
         let blocks = Blocks::new(&comm, 4);
         blocks.with(0.5, &[], |problem| {
             let [m, c, k] = problem.matrices.map(entries).into_array();
-            // All displacements but the stiff ones along y, whose small coupling is what V lacks.
-            let mixed = |i: usize, j: usize| {
-                if i == j {
-                    1.0
-                } else if i + 1 == j || j + 2 == i {
-                    0.02
-                } else {
-                    0.0
-                }
-            };
-            let all = DMatrix::from_fn(12, 12, mixed);
-            let v = all.select_columns((0..12).filter(|j| j % 3 != 1).collect::<Vec<_>>().as_slice());
-            let lacking = all.select_columns((0..12).filter(|j| j % 3 == 1).collect::<Vec<_>>().as_slice());
+            let [v, lacking] = basis_and_rest();
             let project = |a: &DMatrix<f64>| v.transpose() * a * &v;
-            let p = |lambda: Complex64, [m, c, k]: [&DMatrix<f64>; 3]| {
-                let complex = |a: &DMatrix<f64>| a.map(Complex64::from);
-                complex(m) * lambda * lambda + complex(c) * lambda + complex(k)
-            };
             let (m_r, c_r, k_r) = (project(&m), project(&c), project(&k));
             let reduced = eigenvalues_of(Mck::from([m_r.clone(), c_r.clone(), k_r.clone()]), END);
             let exact = eigenvalues(problem, END);
             let vectors = |transpose: bool| {
                 let columns = reduced.iter().flat_map(|&lambda| {
-                    let p = p(lambda, [&m_r, &c_r, &k_r]);
+                    let p = at(lambda, [&m_r, &c_r, &k_r]);
                     let q = null_vector(&if transpose { p.adjoint() } else { p });
                     let x = v.map(Complex64::from) * q;
                     [x.map(|z| z.re), x.map(|z| z.im)].map(|part| part.as_slice().to_vec())

@@ -7,8 +7,8 @@
 
 use std::f64::consts::PI;
 
-use crate::support::block::Block;
-use crate::support::{assert_close, brake};
+use crate::support::block::add_block;
+use crate::support::{assert_close, brake, pressed_pad};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use squeal::analysis::{Snapshot, Sweep, explain_full};
@@ -18,12 +18,6 @@ use squeal::mesh::Mesh;
 use squeal::native::{Comm, Matrix, Mck, Precision, Session, lapack};
 use squeal::stability::{Band, BandSolver, Complex, EigenOptions, QuadraticProblem};
 use squeal::structure::FullModel;
-
-/// A block of `cells` from `corner` on, in millimetres.
-fn block(mesh: &mut Mesh, part: &str, cells: [usize; 3], corner: [f64; 3], size: [f64; 3]) {
-    let map = |s: [f64; 3]| [0, 1, 2].map(|i| 1e-3 * (corner[i] + size[i] * s[i]));
-    Block { part, cells, wraps: false, map: &map }.add_to(mesh);
-}
 
 const ROD: &str = r#"
 [material.steel]
@@ -67,7 +61,7 @@ fn eigenvalues(problem: &QuadraticProblem, labels: Vec<u64>) -> Vec<Complex64> {
 fn one_material_turns_every_eigenvalue_by_its_loss_factor() {
     let comm = Session::start(&[]).unwrap();
     let mut mesh = Mesh::default();
-    block(&mut mesh, "rod", [10, 1, 1], [0.0; 3], [100.0, 5.0, 5.0]);
+    add_block(&mut mesh, "rod", [10, 1, 1], [0.0; 3], [100.0, 5.0, 5.0]);
     let rod = brake(ROD, mesh);
     let system = rod.assemble(&comm, &rod.families().unwrap()).unwrap();
     let solve = |matrices: Mck<&Matrix>| eigenvalues(&QuadraticProblem::symmetric(matrices), system.dofs.labels());
@@ -104,9 +98,6 @@ rayleigh = { alpha = 5.0, beta = 1e-7 }
 material = "lining"
 [part.piston]
 material = "steel"
-[[fix]]
-nodes = "disc_z0"
-axes = "xyz"
 [[connector]]
 name = "pin"
 between = ["piston_z1", "ground"]
@@ -114,24 +105,9 @@ stiffness = [2e8, 1e8, 1e5]
 rotational_stiffness = [1e3, 1e3, 1e3]
 damping = [10, 20, 0]
 loss_factor = 0.3
-[[rotation]]
-part = "disc"
-axis = [0, 0, 1]
-through = [-0.1, 0.01, 0]
-speed = 5.0
-[[contact]]
-name = "disc / pad"
-slave = "pad_z0"
-master = "disc_z1"
-law = { linear = 2e13 }
-friction = 0.4
 [[tie]]
 slave = "piston_z0"
 master = "pad_z1"
-[[load]]
-name = "force"
-on = "piston_z1"
-force = [0, 0, -1000]
 [stability]
 band = [0, 42000]
 "#;
@@ -148,11 +124,7 @@ struct Model {
 
 impl Model {
     fn new(comm: &Comm) -> Model {
-        let mut mesh = Mesh::default();
-        block(&mut mesh, "disc", [2, 2, 1], [0.0, 0.0, 0.0], [30.0, 31.0, 10.0]);
-        block(&mut mesh, "pad", [2, 2, 1], [5.0, 5.0, 10.0], [20.0, 21.0, 5.0]);
-        block(&mut mesh, "piston", [1, 1, 1], [8.0, 9.0, 15.0], [12.0, 13.0, 8.0]);
-        let brake = brake(BRAKE, mesh);
+        let brake = brake(&format!("{}{BRAKE}", pressed_pad::SLIDING), pressed_pad::mesh([2, 2, 1]));
         let system = assembled(comm, &brake);
         let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(FRICTION, &mut ()).unwrap();
         Model { brake, system, equilibrium }

@@ -1,18 +1,7 @@
-//! Super-elements against the models that they reduce: a pad pressed by a piston on a sliding disc, all blocks.
-//!
-//! ```text
-//!           | force           z
-//!       +---v---+             |_ y     the disc turns about an axis far away: it slides along y
-//!       | piston|
-//!     +-+-------+-+           piston and pad stick; 4 reference nodes between pad and disc
-//!     |    pad    |
-//!   +-+-----------+-+
-//!   |     disc      |         held at its bottom
-//!   +---------------+
-//! ```
+//! Super-elements against the models that they reduce: a pad pressed by a piston on a sliding disc, all blocks;
+//! piston and pad stick, 4 reference nodes between pad and disc.
 
-use crate::support::block::Block;
-use crate::support::{assert_close, brake};
+use crate::support::{assert_close, brake, pressed_pad};
 use num_complex::Complex64;
 use squeal::Result;
 use squeal::analysis::Sweep;
@@ -21,7 +10,6 @@ use squeal::contact::law::{FrictionFactor, FrictionFunction};
 use squeal::contact::{FrictionLaw, Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
 use squeal::equilibrium::LabelledFactor;
-use squeal::mesh::Mesh;
 use squeal::model::NormalLaw;
 use squeal::native::{Block as Columns, Comm, Precision, Session};
 use squeal::reduction::craig_bampton::{self, Structure};
@@ -31,7 +19,7 @@ use squeal::reduction::{contacts, craig_bampton::Reduced, file};
 use squeal::stability::{BandRequest, BandSolver, EigenOptions, QuadraticProblem};
 use squeal::structure::FullModel;
 
-const MODEL: &str = r#"
+const OWN: &str = r#"
 [material.iron]
 young = 110e9
 poisson = 0.27
@@ -49,22 +37,8 @@ rayleigh = { alpha = 20.0, beta = 2e-7 }
 [part.piston]
 material = "iron"
 [[fix]]
-nodes = "disc_z0"
-axes = "xyz"
-[[fix]]
 nodes = "piston_z1"
 axes = "xy"
-[[rotation]]
-part = "disc"
-axis = [0, 0, 1]
-through = [-0.1, 0.01, 0]
-speed = 5.0
-[[contact]]
-name = "disc / pad"
-slave = "pad_z0"
-master = "disc_z1"
-law = { linear = 2e13 }
-friction = 0.4
 [[contact]]
 name = "piston / pad"
 slave = "piston_z0"
@@ -73,31 +47,22 @@ law = { linear = 2e13 }
 friction = 0.6
 stick = 1e13
 separation = false
-[[load]]
-name = "force"
-on = "piston_z1"
-force = [0, 0, -1000]
 [stability]
 band = [0, 30000]
 "#;
+
+/// The whole text.
+fn model() -> String {
+    format!("{}{OWN}", pressed_pad::SLIDING)
+}
 
 const N_CONTACTS: usize = 4;
 const FRICTION: f64 = 0.4;
 const BAND: [f64; 2] = [0.0, 30000.0];
 
-/// A block of `cells` from `corner` on, in millimetres.
-fn block(mesh: &mut Mesh, part: &str, cells: [usize; 3], corner: [f64; 3], size: [f64; 3]) {
-    let map = |s: [f64; 3]| [0, 1, 2].map(|i| 1e-3 * (corner[i] + size[i] * s[i]));
-    Block { part, cells, wraps: false, map: &map }.add_to(mesh);
-}
-
 /// The brake with its reduced contacts.
 fn blocks(text: &str) -> FullModel {
-    let mut mesh = Mesh::default();
-    block(&mut mesh, "disc", [3, 3, 1], [0.0, 0.0, 0.0], [30.0, 31.0, 10.0]);
-    block(&mut mesh, "pad", [2, 2, 1], [5.0, 5.0, 10.0], [20.0, 21.0, 5.0]);
-    block(&mut mesh, "piston", [1, 1, 1], [8.0, 9.0, 15.0], [12.0, 13.0, 8.0]);
-    let mut brake = brake(text, mesh);
+    let mut brake = brake(text, pressed_pad::mesh([3, 3, 1]));
     brake.interface = contacts::reduce(&brake.model, &brake.mesh, &brake.interface, N_CONTACTS).unwrap();
     brake
 }
@@ -188,7 +153,7 @@ fn largest_error(found: &[Complex64], exact: &[Complex64]) -> f64 {
 #[test]
 fn all_modes_kept_give_the_full_models_eigenvalues() {
     let comm = Session::start(&[]).unwrap();
-    let full = Full::new(&comm, MODEL, FRICTION);
+    let full = Full::new(&comm, &model(), FRICTION);
     let (_, element) = full.reduce(f64::INFINITY);
     // The load point keeps its two held coordinates.
     assert_eq!(element.n_coordinates(), full.system.dofs.n_global() + 2);
@@ -203,9 +168,9 @@ fn all_modes_kept_give_the_full_models_eigenvalues() {
 #[test]
 fn loss_factors_are_in_the_super_element() {
     let comm = Session::start(&[]).unwrap();
-    let text = MODEL.replace("density = 7100", "density = 7100\nloss_factor = 0.01");
+    let text = model().replace("density = 7100", "density = 7100\nloss_factor = 0.01");
     let full = Full::new(&comm, &text.replace("density = 2600", "density = 2600\nloss_factor = 0.1"), FRICTION);
-    let undamped = Full::new(&comm, MODEL, FRICTION);
+    let undamped = Full::new(&comm, &model(), FRICTION);
     assert!(full.eigenvalues.iter().zip(&undamped.eigenvalues).all(|(z, w)| z.re < w.re - 1e-3 * w.norm()));
     for (limit, allowed) in [(f64::INFINITY, 1e-9), (100e3, 1e-3)] {
         let (reduced, element) = full.reduce(limit);
@@ -225,15 +190,15 @@ fn loss_factors_are_in_the_super_element() {
 
 /// A tie, a rigid set, a mass, springs to the ground and an equation in place of the piston's contact and supports.
 fn with_joints() -> String {
-    let (before, rest) = MODEL.split_once("[[fix]]\nnodes = \"piston_z1\"\naxes = \"xy\"\n").unwrap();
-    let (contacts, loads) = rest.split_once("[[contact]]\nname = \"piston / pad\"").unwrap();
-    let (_, loads) = loads.split_once("[[load]]").unwrap();
+    let text = model();
+    let (before, rest) = text.split_once("[[fix]]\nnodes = \"piston_z1\"\naxes = \"xy\"\n").unwrap();
+    let (_, end) = rest.split_once("[stability]").unwrap();
     let joints = "[[tie]]\nslave = \"piston_z0\"\nmaster = \"pad_z1\"\n[[rigid]]\nnodes = \"piston_z1\"\n\
                   [[mass]]\nnodes = \"piston_z1\"\nmass = 0.1\nat = [0.014, 0.016, 0.03]\n\
                   inertia = [2e-5, 2e-5, 2e-5, 0, 0, 0]\n\
                   [[connector]]\nbetween = [\"piston_z1\", \"ground\"]\nstiffness = [2e8, 1e8, 1e5]\n\
                   rotational_stiffness = [1e3, 1e3, 1e3]\n";
-    format!("{before}{contacts}{joints}[[load]]{loads}")
+    format!("{before}{joints}[stability]{end}")
 }
 
 /// With joints the super-element has the full model's eigenvalues, too: all modes kept 1e-9, those up to 60 kHz 1e-3.
@@ -259,7 +224,7 @@ fn joints_are_in_the_super_element() {
 fn modal_coordinates_of_one_friction_serve_the_others() {
     const WIDE: [f64; 2] = [0.0, 60000.0];
     let comm = Session::start(&[]).unwrap();
-    let (_, element) = Full::new(&comm, MODEL, FRICTION).reduce(2.0 * WIDE[1]);
+    let (_, element) = Full::new(&comm, &model(), FRICTION).reduce(2.0 * WIDE[1]);
     let interface = element.interface(Some(NormalLaw::Cubic { k1: 2e13, k3: 1e25 }));
     let system = element.assemble(&comm, &interface, 1.0).unwrap();
     let mut sweep = Sweep::new(&system, &interface, false).unwrap();
@@ -307,7 +272,7 @@ fn transposed_errors(problem: &QuadraticProblem, lambdas: &[Complex64], y: &Colu
 fn frequencies_fall_to_the_exact_ones_as_modes_are_added() {
     let comm = Session::start(&[]).unwrap();
     let undamped: String =
-        MODEL.lines().filter(|line| !line.starts_with("rayleigh")).map(|l| format!("{l}\n")).collect();
+        model().lines().filter(|line| !line.starts_with("rayleigh")).map(|l| format!("{l}\n")).collect();
     let full = Full::new(&comm, &undamped, 0.0);
     let exact: Vec<f64> = full.eigenvalues.iter().map(|l| l.im).collect();
     let mut above: Vec<f64> = vec![f64::INFINITY; exact.len()];
@@ -328,7 +293,7 @@ fn frequencies_fall_to_the_exact_ones_as_modes_are_added() {
 #[test]
 fn constraint_modes_hold_rigid_motions_with_their_mass_and_inertia() {
     let comm = Session::start(&[]).unwrap();
-    let mut brake = blocks(MODEL);
+    let mut brake = blocks(&model());
     brake.held.fill([false; 3]);
     let system = brake.assemble(&comm, &brake.families().unwrap()).unwrap();
     let stuck = Response { force: [0.0; 3], tangent: [[0.0; 3]; 3], normal_force: 0.0, status: Status::Stick };
@@ -370,7 +335,7 @@ fn constraint_modes_hold_rigid_motions_with_their_mass_and_inertia() {
 #[test]
 fn every_contact_force_is_reproduced_under_any_law() {
     let comm = Session::start(&[]).unwrap();
-    let full = Full::new(&comm, MODEL, FRICTION);
+    let full = Full::new(&comm, &model(), FRICTION);
     let (_, element) = full.reduce(60e3);
     let pair = &full.brake.interface.pairs[0];
     let exact: Vec<[f64; 3]> = full.equilibrium.responses[pair.points.clone()].iter().map(|r| r.force).collect();
@@ -407,14 +372,14 @@ impl FrictionFunction for Falling {
 #[test]
 fn a_users_friction_law_acts_in_the_super_element_as_in_its_model() {
     let comm = Session::start(&[]).unwrap();
-    let mut brake = blocks(&MODEL.replace("band = ", "friction_damping = true\nband = "));
+    let mut brake = blocks(&model().replace("band = ", "friction_damping = true\nband = "));
     let law = FrictionLaw::user(Falling);
     brake.interface.set_friction_law("disc / pad", law.clone()).unwrap();
     let full = Full::of(&comm, brake, FRICTION);
     let (_, element) = full.reduce(f64::INFINITY);
     let (_, _, found) = analyse(&comm, &element, None, FRICTION);
     let error = largest_error(&found, &full.eigenvalues);
-    let (constant, exact) = (Full::new(&comm, MODEL, FRICTION).eigenvalues[0], full.eigenvalues[0]);
+    let (constant, exact) = (Full::new(&comm, &model(), FRICTION).eigenvalues[0], full.eigenvalues[0]);
     let effect = (constant - exact).norm() / exact.norm();
     println!("largest error {error:.1e}, effect of the law on the first mode {effect:.1e}");
     assert!(error < 1e-10 && effect > 1e-4, "{error} {effect}");
@@ -443,7 +408,7 @@ fn the_file_of_a_super_element_contains_the_friction_curve() {
     let comm = Session::start(&[]).unwrap();
     let table = "{ by = [\"speed\"], table = [[0.4, 0], [0.3, 2]] }";
     let (_, element) =
-        Full::new(&comm, &MODEL.replace("friction = 0.4", &format!("friction = {table}")), FRICTION).reduce(60e3);
+        Full::new(&comm, &model().replace("friction = 0.4", &format!("friction = {table}")), FRICTION).reduce(60e3);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("blocks.se.h5");
     let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
@@ -455,7 +420,7 @@ fn the_file_of_a_super_element_contains_the_friction_curve() {
 #[test]
 fn a_band_beyond_the_modes_kept_is_refused() {
     let comm = Session::start(&[]).unwrap();
-    let (_, element) = Full::new(&comm, MODEL, FRICTION).reduce(60e3);
+    let (_, element) = Full::new(&comm, &model(), FRICTION).reduce(60e3);
     assert_eq!(element.require_band([0.0, 30e3]).unwrap(), None);
     assert!(element.require_band([0.0, 31e3]).unwrap().unwrap().contains("above 30000 Hz are less exact"));
     assert!(element.require_band([0.0, 61e3]).unwrap_err().to_string().contains("up to 60000 Hz only"));

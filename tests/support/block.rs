@@ -20,6 +20,12 @@ pub struct Block<'a> {
     pub map: &'a dyn Fn([f64; 3]) -> [f64; 3],
 }
 
+/// Adds a block of `cells` from `corner` on, in millimetres.
+pub fn add_block(mesh: &mut Mesh, part: &str, cells: [usize; 3], corner: [f64; 3], size: [f64; 3]) {
+    let map = |s: [f64; 3]| [0, 1, 2].map(|i| 1e-3 * (corner[i] + size[i] * s[i]));
+    Block { part, cells, wraps: false, map: &map }.add_to(mesh);
+}
+
 impl Block<'_> {
     /// Adds the block as a part, and its sides as surfaces `<part>_x0`, `<part>_x1`, `<part>_y0`, ...
     pub fn add_to(&self, mesh: &mut Mesh) {

@@ -8,6 +8,7 @@ pub mod block;
 pub mod browser;
 pub mod gmsh;
 pub mod pad_on_disc;
+pub mod pressed_pad;
 pub mod program;
 
 use std::path::{Path, PathBuf};

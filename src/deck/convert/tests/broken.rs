@@ -53,6 +53,16 @@ const BROKEN: &[[&str; 3]] = &[
     ["0.4\n", "4.\n", "a.inp:50: a friction coefficient of 4 is above 2"],
     ["\n20000.\n", "\n-1.\n", "a.inp:48: the stiffness of the contact must be above 0"],
     ["=LINEAR\n20000.", "=TABULAR\n0.,0.\n1.,1.\n1.,2.", "a.inp:48: pressures and overlaps of the table do not rise"],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*CLEARANCE, VALUE=0.1, MASTER=PAD_FACE, SLAVE=DISC_FACE\n*MATERIAL, NAME=Steel\n",
+        "a.inp:38: no *CONTACT PAIR has slave and master Disc_face / Pad_face (*CLEARANCE). Did you mean",
+    ],
+    [
+        "*MATERIAL, NAME=Steel\n",
+        "*CLEARANCE, MASTER=DISC_FACE, SLAVE=PAD_FACE\n*MATERIAL, NAME=Steel\n",
+        "a.inp:38: VALUE= is missing (*CLEARANCE). Give VALUE=",
+    ],
     ["BACK, 3, -25.", "BACK, 4, -25.", "a.inp:58: a moment on nodes of solids"],
     ["BACK, 3, -25.", "BACK, 3, ", "a.inp:58: the force is missing"],
     ["TURNING, 5., 0,0,0, 0,0,1", "TURNING, 5., 0,0,0, 0,0,0", "a.inp:60: the two points of the axis of rotation"],
