@@ -2,6 +2,7 @@
 #include <malloc.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 
 MPI_Comm squeal_comm_world(void) { return MPI_COMM_WORLD; }
 MPI_Comm squeal_comm_self(void) { return MPI_COMM_SELF; }
@@ -36,6 +37,19 @@ void squeal_libraries(char *text, size_t size)
 char *openblas_get_corename(void) __attribute__((weak));
 
 const char *squeal_blas_kernels(void) { return openblas_get_corename ? openblas_get_corename() : NULL; }
+
+int squeal_take_blas_buffer(void)
+{
+  const size_t size = (size_t)160 << 20;
+  void *room = mmap(NULL, size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  const PetscBLASInt n = 1;
+  const double one = 1.0;
+  double x = 1.0;
+  if (room == MAP_FAILED) return 0;
+  munmap(room, size);
+  BLAStrsm_("L", "L", "N", "N", &n, &n, &one, &one, &n, &x, &n);
+  return 1;
+}
 
 void squeal_give_memory_back(void)
 {

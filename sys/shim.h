@@ -25,6 +25,8 @@ void squeal_give_memory_back(void);
 void squeal_libraries(char *text, size_t size);
 /* The kernels that OpenBLAS has chosen; NULL of another BLAS. */
 const char *squeal_blas_kernels(void);
+/* Has BLAS take its buffer of at most 160 MB of address space; 0 where there is no room for it. */
+int squeal_take_blas_buffer(void);
 /* BLAS and LAPACK that PETSc's headers leave out. */
 void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
             double *x, const int *incx);

@@ -1,5 +1,6 @@
 //! The command line: arguments, one file a command, exit codes.
 
+mod allocator;
 mod check;
 mod compare;
 mod completions;
@@ -17,6 +18,8 @@ mod r#static;
 mod study;
 mod values;
 mod watch;
+
+pub use allocator::Allocator;
 
 use std::env;
 use std::ffi::OsString;

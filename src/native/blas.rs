@@ -11,6 +11,8 @@ use std::process::Command;
 
 use squeal_sys as sys;
 
+use crate::{Error, Result};
+
 /// What overrules the choice of OpenBLAS.
 const CORE_TYPE: &str = "OPENBLAS_CORETYPE";
 /// Kernels with AVX2, and with AVX-512.
@@ -40,6 +42,19 @@ pub fn restart_with_fitting_kernels() {
         let name = arguments.next().unwrap_or_default();
         // It returns where the program cannot be started, which then goes on as it is.
         let _ = Command::new(program).arg0(name).args(arguments).env(CORE_TYPE, better).exec();
+    }
+}
+
+/// Has BLAS take its buffer. OpenBLAS asks for it when it is first needed, and where there is no memory it asks for
+/// ever.
+///
+/// # Errors
+/// [`Error::OutOfMemory`].
+pub(in crate::native) fn take_buffer() -> Result<()> {
+    // SAFETY: the shim computes with memory of its own.
+    match unsafe { sys::squeal_take_blas_buffer() } {
+        0 => Err(Error::OutOfMemory { what: "BLAS needs 160 MB of address space".into(), needed_mb: Some(160.0) }),
+        _ => Ok(()),
     }
 }
 

@@ -8,6 +8,7 @@ mod external_matrices;
 mod joints;
 mod json;
 mod matrix_formats;
+mod memory;
 mod no_convergence;
 mod parallel;
 mod reduced_brake;

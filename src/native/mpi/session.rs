@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use squeal_sys as sys;
 
 use super::Comm;
+use crate::native::blas;
 use crate::native::petsc::error::{check, collect};
 use crate::{Error, Result, hdf};
 
@@ -60,6 +61,7 @@ impl Session {
         }
         // SAFETY: no arguments are passed, so PETSc reads neither the command line nor a file.
         check(unsafe { sys::SlepcInitialize(ptr::null_mut(), ptr::null_mut(), ptr::null(), ptr::null()) })?;
+        blas::take_buffer()?;
         // SAFETY: `collect` has the signature of a handler and no context.
         check(unsafe { sys::PetscPushErrorHandler(Some(collect), ptr::null_mut()) })?;
         // SAFETY: MPI runs; both are constant handles.

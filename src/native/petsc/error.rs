@@ -10,6 +10,9 @@ use squeal_sys as sys;
 use crate::error::Frame;
 use crate::{Error, Result};
 
+/// PETSc's `PETSC_ERR_MEM`.
+const OUT_OF_MEMORY: sys::PetscErrorCode = 55;
+
 /// The error under way: its message and the functions that it has passed through, the innermost first.
 #[derive(Default)]
 struct Stack {
@@ -55,7 +58,19 @@ pub(in crate::native) fn check(code: sys::PetscErrorCode) -> Result<()> {
         return Ok(());
     }
     let Stack { message, frames } = STACK.with_borrow_mut(std::mem::take);
-    Err(Error::Petsc { code, message, frames })
+    Err(short_memory(code, &frames).unwrap_or(Error::Petsc { code, message, frames }))
+}
+
+/// What PETSc reports where it can allocate no memory. Its functions then return a line number in place of the code, so
+/// the functions themselves are looked at.
+fn short_memory(code: sys::PetscErrorCode, frames: &[Frame]) -> Option<Error> {
+    let is_allocator = |frame: &&Frame| frame.function.starts_with("PetscMalloc");
+    let n_allocators = frames.iter().take_while(is_allocator).count();
+    if n_allocators == 0 && code != OUT_OF_MEMORY {
+        return None;
+    }
+    let whose = frames.get(n_allocators).map_or("PETSc", |frame| frame.function.as_str());
+    Some(Error::OutOfMemory { what: format!("{whose} of PETSc could not allocate what it needs"), needed_mb: None })
 }
 
 /// Carries an error or a panic across PETSc's C frames.
@@ -93,5 +108,26 @@ impl Trap {
             Some(error) => Err(error),
             None => outcome,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ErrorKind;
+
+    fn frames(functions: &[&str]) -> Vec<Frame> {
+        functions.iter().map(|name| Frame { function: (*name).into(), file: "mal.c".into(), line: 55 }).collect()
+    }
+
+    #[test]
+    fn short_memory_is_known_by_its_code_or_by_the_function_that_allocates() {
+        let short = short_memory(4865, &frames(&["PetscMallocAlign", "PetscMallocA", "MatDuplicate"])).unwrap();
+        assert!(
+            short.kind() == ErrorKind::OutOfMemory && short.to_string().contains("MatDuplicate of PETSc"),
+            "{short}"
+        );
+        assert!(short_memory(OUT_OF_MEMORY, &frames(&["MatLUFactor", "PetscMallocA"])).is_some());
+        assert!(short_memory(63, &frames(&["MatLUFactor", "PetscMallocA"])).is_none());
     }
 }
