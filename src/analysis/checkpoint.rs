@@ -4,6 +4,7 @@
 //! .NAME.unfinished/.resume/
 //!   study.txt                 what the numbers depend on, a line each: a run that differs does not continue
 //!   value-0003.h5             a finished value: its group of the results file, and the eigenvalues for tracking
+//!   files-0003.txt            all files of results so far with their bytes
 //!   path-0003.RANK.h5         the last equilibria of the path that ends there
 //!   vectors-0003.RANK.h5      right and left vectors of a snapshot that tracking still needs, single precision,
 //!                             and its equilibrium
@@ -27,6 +28,7 @@ use crate::hdf::{self, Format, array, list, table, values};
 use crate::native::{Block, Comm, Vector};
 use crate::output::files::write_file;
 use crate::output::folder::{self, Folder, RESUME};
+use crate::output::overwrite::entries;
 use crate::results::{Value, file};
 use crate::{Error, Result};
 
@@ -97,7 +99,8 @@ impl Checkpoint {
         self.comm.agree(self.write_own(number, sweep, snapshot))?;
         let spectrum = snapshot.map(Snapshot::spectrum);
         let file = self.folder.join(value_name(number));
-        self.comm.agree(if self.comm.is_root() { write_value(&file, value, spectrum) } else { Ok(()) })?;
+        let write = || self.write_list(number).and_then(|()| write_value(&file, value, spectrum));
+        self.comm.agree(if self.comm.is_root() { write() } else { Ok(()) })?;
         self.n_done += 1;
         self.kept.extend(snapshot.map(|snapshot| (number, snapshot.life())));
         self.tidy(number);
@@ -121,10 +124,24 @@ impl Checkpoint {
         })
     }
 
+    /// Writes which files of results there are, unless those of the value before have been removed.
+    fn write_list(&self, number: usize) -> Result<()> {
+        let draft = draft(&self.folder);
+        if number > 0 && !self.folder.join(list_name(number - 1)).exists() {
+            let what = "has been removed or emptied while this run was writing it";
+            return Err(Error::input(format!("{} {what}. Give the command again", draft.display())));
+        }
+        let size = |name: &String| draft.join(name).metadata().map_err(Error::io(&draft)).map(|data| data.len());
+        let lines =
+            entries(&draft)?.iter().map(|name| Ok(format!("{}\t{name}\n", size(name)?))).collect::<Result<String>>()?;
+        write_file(&self.folder.join(list_name(number)), |out| out.write_all(lines.as_bytes()))
+    }
+
     /// Removes, best effort, the path to the value before and the vectors of snapshots that live no more.
     fn tidy(&mut self, number: usize) {
         if number > 0 {
             let _ = std::fs::remove_file(self.own("path", number - 1));
+            let _ = std::fs::remove_file(self.folder.join(list_name(number - 1)));
         }
         let (alive, dead) = std::mem::take(&mut self.kept).into_iter().partition(|(_, life)| life.strong_count() > 0);
         self.kept = alive;
@@ -216,6 +233,15 @@ fn value_name(number: usize) -> String {
     format!("value-{number:04}.h5")
 }
 
+fn list_name(number: usize) -> String {
+    format!("files-{number:04}.txt")
+}
+
+/// The unfinished folder whose checkpoint stands in `place`.
+fn draft(place: &Path) -> PathBuf {
+    place.parent().map_or_else(PathBuf::new, Path::to_owned)
+}
+
 fn products_name([left, right]: [usize; 2]) -> String {
     format!("products-{left:04}-{right:04}.h5")
 }
@@ -253,7 +279,24 @@ fn usable(place: &Path, target: &Path, identity: &[(&str, String)], n: usize) ->
             return Err(Error::input(format!("{what}: {name} was {before}, is {value}. {advice}")));
         }
     }
+    require_files(place, n - 1)?;
     (0..n).try_for_each(|i| read_value(&place.join(value_name(i))).map(|_| ()))
+}
+
+/// Refuses an unfinished folder in which files of finished values are missing, or have another length.
+fn require_files(place: &Path, last: usize) -> Result<()> {
+    let list = place.join(list_name(last));
+    let refused =
+        |path: &Path, what: &str| Err(Error::input(format!("{} {what}. Use --force to begin again", path.display())));
+    let Ok(text) = std::fs::read_to_string(&list) else { return refused(&list, "is missing or damaged") };
+    for (size, name) in text.lines().filter_map(|line| line.split_once('\t')) {
+        let path = draft(place).join(name);
+        let is_whole = path.metadata().is_ok_and(|data| size.parse() == Ok(data.len()));
+        if !is_whole {
+            return refused(&path, "is missing or has another length than the run that began here has written");
+        }
+    }
+    Ok(())
 }
 
 fn write_value(path: &Path, value: &Value, spectrum: Option<&Spectrum>) -> Result<()> {

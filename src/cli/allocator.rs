@@ -47,7 +47,7 @@ fn end(size: usize) -> ! {
     let mut rest = &mut text[..];
     let _ = writeln!(
         rest,
-        "error: too little memory: {:.1} MB more could not be had. A coarser mesh, other programs closed, a higher \
+        "error: too little memory: {:.1} MB more could not be allocated. A coarser mesh, other programs closed, a higher \
          limit or a machine with more memory help",
         size as f64 / 1e6
     );

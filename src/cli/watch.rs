@@ -3,6 +3,7 @@
 use crate::Result;
 use crate::analysis::{Event, Observer};
 use crate::model::ProposedStiffness;
+use crate::output::text::friction;
 use crate::reduction::craig_bampton;
 use crate::results::Value;
 use crate::stability::EigenProgress;
@@ -100,5 +101,5 @@ fn finished(value: &Value) -> String {
         }
         None => "equilibrium".into(),
     };
-    format!("friction coefficient {:.4}: {found}", value.friction)
+    format!("friction coefficient {}: {found}", friction(value.friction))
 }

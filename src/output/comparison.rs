@@ -5,7 +5,7 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::columns::write_csv;
-use super::text::{aligned, or_dash, paragraph};
+use super::text::{aligned, friction, or_dash, paragraph};
 use crate::comparison::{ComparedMode, Comparison, ComparisonAtValue, ModePair};
 
 /// Errors at each friction value, then the unstable modes, then those without partner. `names` are those of A and B.
@@ -32,7 +32,7 @@ fn errors_text(values: &[ComparisonAtValue]) -> String {
         let least = at.pairs.iter().min_by(|a, b| a.mac.total_cmp(&b.mac));
         let mac = or_dash(least, |pair| format!("{:.4} ({:.0} Hz)", pair.mac, pair.a.frequency));
         let [only_a, only_b] = at.unmatched.each_ref().map(Vec::len);
-        format!("{:.4}\t{}\t{frequency}\t{growth}\t{mac}\t{only_a}\t{only_b}", at.friction, at.pairs.len())
+        format!("{}\t{}\t{frequency}\t{growth}\t{mac}\t{only_a}\t{only_b}", friction(at.friction), at.pairs.len())
     };
     aligned(heading, values.iter().map(row))
 }
@@ -50,7 +50,7 @@ fn unstable_text(values: &[ComparisonAtValue]) -> String {
         for ModePair { a, b, frequency_error, growth_error, mac } in at.pairs.iter().filter(|pair| pair.is_unstable()) {
             let modes = [a, b].map(|mode| format!("{:.2}\t{:+.2}", mode.frequency, mode.growth_rate)).join("\t");
             let (frequency, growth) = (100.0 * frequency_error, 100.0 * growth_error);
-            rows.push(format!("{:.4}\t{modes}\t{frequency:+.4}\t{growth:+.3}\t{mac:.4}", at.friction));
+            rows.push(format!("{}\t{modes}\t{frequency:+.4}\t{growth:+.3}\t{mac:.4}", friction(at.friction)));
         }
     }
     if rows.is_empty() {
@@ -69,7 +69,7 @@ fn unpaired_text(values: &[ComparisonAtValue]) -> String {
                 format!("{:.1} Hz ({:+.1} /s{mark})", mode.frequency, mode.growth_rate)
             };
             let list: Vec<String> = at.unmatched[side].iter().map(one).collect();
-            text += &format!("friction {:.4}: only {name} has {}\n", at.friction, list.join(", "));
+            text += &format!("friction {}: only {name} has {}\n", friction(at.friction), list.join(", "));
         }
     }
     text

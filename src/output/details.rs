@@ -1,7 +1,7 @@
 //! Equilibria and modes in words, one friction value after the other.
 
 use super::explain;
-use super::text::aligned;
+use super::text::{aligned, friction};
 use crate::equilibrium::{Counts, PairForces};
 use crate::results::{ModeData, Pair, Results, Value};
 use crate::stability::Count;
@@ -12,7 +12,7 @@ pub fn text(results: &Results) -> String {
 }
 
 fn equilibrium(value: &Value, pairs: &[Pair]) -> String {
-    let mut text = format!("\nfriction {:.3}\n", value.friction);
+    let mut text = format!("\nfriction {}\n", friction(value.friction));
     for step in &value.steps {
         let last = step.iterations.last().expect("a step has its start");
         text += &format!(

@@ -5,7 +5,7 @@ use std::io::{Result, Write};
 use serde::Serialize;
 
 use super::columns::write_csv;
-use super::text::{aligned, or_dash, paragraph, plural};
+use super::text::{aligned, friction, or_dash, paragraph, plural};
 use crate::comparison::{CurvePoint, Errors, Sizes, StudiedModel, Study};
 
 /// Sizes and times, errors, and the instabilities over friction.
@@ -73,7 +73,7 @@ fn curve_text(study: &Study, i: usize) -> String {
     let line = |name: &str, cell: &dyn Fn(f64) -> String| {
         study.friction_values.iter().fold(name.to_owned(), |line, &mu| line + "\t" + &cell(mu))
     };
-    let heading = line("friction", &|mu| format!("{mu:.3}"));
+    let heading = line("friction", &friction);
     let rows = models(study).map(|model| line(&model.name, &|mu| cell(model, mu)));
     format!(
         "\nthe mode at {}: Hz and growth rate in 1/s\n{}",
@@ -84,7 +84,8 @@ fn curve_text(study: &Study, i: usize) -> String {
 
 fn spurious_text(study: &Study) -> String {
     let line = |model: &StudiedModel| {
-        let one = |p: &CurvePoint| format!("{:.1} Hz at {:.3} ({:+.1} /s)", p.frequency, p.friction, p.growth_rate);
+        let one =
+            |p: &CurvePoint| format!("{:.1} Hz at {} ({:+.1} /s)", p.frequency, friction(p.friction), p.growth_rate);
         let list: Vec<String> = model.spurious.iter().map(one).collect();
         format!("{} is unstable where the reference is not: {}\n", model.name, list.join(", "))
     };

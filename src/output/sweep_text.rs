@@ -1,5 +1,6 @@
 //! The sweep as a table for people, and its outcome in a sentence.
 
+use super::text::friction;
 use crate::results::{ModeData, Results, Status, Value, Verdict};
 
 /// A line a friction value: how many modes, which of them grow.
@@ -18,7 +19,7 @@ pub fn sweep(results: &Results) -> String {
         let list = if unstable.is_empty() { "none".into() } else { unstable.join(", ") };
         let doubt =
             if value.count.is_some_and(|count| !count.agrees()) { "  (number of modes not confirmed)" } else { "" };
-        text += &format!("{:>8.3}  {:>5}  {list}{doubt}\n", value.friction, value.modes.len());
+        text += &format!("{:>8}  {:>5}  {list}{doubt}\n", friction(value.friction), value.modes.len());
     }
     text
 }
@@ -45,10 +46,10 @@ fn instability(results: &Results) -> String {
     let unstable = || values().flat_map(|value| value.modes.iter().filter(|m| m.unstable).map(|m| (value.friction, m)));
     let growth = |(_, mode): &(f64, &ModeData)| mode.growth_rate();
     let first = unstable().min_by(|a, b| a.0.total_cmp(&b.0).then(growth(b).total_cmp(&growth(a))));
-    let Some((friction, mode)) = first else { return String::new() };
-    let (at, worst) = unstable().max_by(|a, b| growth(a).total_cmp(&growth(b))).unwrap_or((friction, mode));
+    let Some((from, mode)) = first else { return String::new() };
+    let (at, worst) = unstable().max_by(|a, b| growth(a).total_cmp(&growth(b))).unwrap_or((from, mode));
     format!(
-        "unstable first at friction {friction}: {:.0} Hz; strongest {:.0} Hz at friction {at} ({:+.0} /s)",
+        "unstable first at friction {from}: {:.0} Hz; strongest {:.0} Hz at friction {at} ({:+.0} /s)",
         mode.frequency(),
         worst.frequency(),
         worst.growth_rate()

@@ -39,6 +39,13 @@ pub fn files(place: &str, files: &[(&str, &str)]) -> String {
     format!("\nresults in {place}:\n{lines}")
 }
 
+/// A friction coefficient for people: three decimals, up to seven where it has them.
+pub fn friction(value: f64) -> String {
+    let long = format!("{value:.7}");
+    let n_zeros = long.chars().rev().take_while(|&c| c == '0').count();
+    long[..long.len() - n_zeros.min(4)].to_owned()
+}
+
 /// What a run took.
 pub fn cost(seconds: f64, n_ranks: usize) -> String {
     format!("\n{seconds:.1} s on {n_ranks} rank{}\n", plural(n_ranks))
@@ -90,6 +97,12 @@ mod tests {
     fn control_characters_are_spelled_out() {
         assert_eq!(printable("disc\t1\n"), "disc\t1\n");
         assert_eq!(printable("\u{1b}[2Jdisc\u{7}"), "\\u{1b}[2Jdisc\\u{7}");
+    }
+
+    #[test]
+    fn friction_values_have_the_digits_that_keep_them_apart() {
+        let shown = [0.1, 0.100001, 0.1 + 0.2, 0.17823456789, 1.0, 0.0].map(friction);
+        assert_eq!(shown, ["0.100", "0.100001", "0.300", "0.1782346", "1.000", "0.000"]);
     }
 
     #[test]

@@ -63,6 +63,13 @@ fn results(place: &Place, folder: &str) -> Results {
     file::read(&place.path(&format!("{folder}/results.h5"))).unwrap()
 }
 
+/// The rows of a friction value in the tables of a run.
+fn rows(place: &Place, folder: &str, friction: f64) -> Vec<String> {
+    let tables = ["modes.csv", "contact.csv"].map(|table| place.read(&format!("{folder}/{table}")));
+    let lines = tables.iter().flat_map(|table| table.lines());
+    lines.filter(|line| line.starts_with(&format!("{friction},"))).map(str::to_owned).collect()
+}
+
 /// Values by friction, those asked for and the others.
 fn sorted(results: &Results) -> [Vec<&Value>; 2] {
     [true, false].map(|asked| {
@@ -161,12 +168,43 @@ fn a_killed_run_goes_on() {
     let expected = results(&place, "expected");
     let hopf = &expected.diagram.as_ref().unwrap().hopf;
     assert!(!hopf.is_empty() && expected.values.len() > 3, "{hopf:?}");
-    let mut chance = Chance(7);
+    let (mut chance, mut n_equal) = (Chance(7), 0);
     for round in 0..n_rounds(1) {
         let moments = kill_and_go_on(&place, &expected, &mut chance, 2);
+        // What was finished when the run was first killed is not solved again: the same bytes.
+        for value in &expected.values[..moments[0].0] {
+            let [found, same] = ["run", "expected"].map(|folder| rows(&place, folder, value.friction));
+            assert!(found == same && found.is_empty() != value.asked, "{}: {found:?} {same:?}", value.friction);
+            n_equal += found.len();
+        }
         println!("round {round}: killed at {moments:?} (values done, seconds of the longest)");
         std::fs::remove_dir_all(place.path("run")).unwrap();
     }
+    println!("{n_equal} rows are the same bytes");
+}
+
+/// The second signal ends a run within a value, as the end of the seconds after the first does.
+#[test]
+fn a_run_that_a_second_signal_has_ended_goes_on() {
+    let place = Place::pads();
+    let arguments =
+        ["stability", "brake.toml", "--band=0:1500", "--friction=0.1:0.6:0.1", "--no-branches", "-o", "run"];
+    let finished = place.run(&arguments);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    std::fs::rename(place.path("run"), place.path("expected")).unwrap();
+    let mut child = start(&place, 1, &arguments);
+    wait_for(&place, &mut child, 2);
+    signal("TERM", child.id());
+    std::thread::sleep(Duration::from_millis(50));
+    signal("TERM", child.id());
+    assert_eq!(end(child).code, 143);
+    let n = n_done(&place);
+    assert!((2..6).contains(&n) && !place.path("run").exists(), "{n}");
+    let finished = place.run(&arguments);
+    assert!(finished.code == 0 && finished.out.contains("that an earlier run has found"), "{}", finished.err);
+    assert_same(&results(&place, "run"), &results(&place, "expected"));
+    let equal = |mu: f64| rows(&place, "run", mu) == rows(&place, "expected", mu);
+    assert!(equal(0.1) && equal(0.2) && !rows(&place, "run", 0.1).is_empty());
 }
 
 /// A rank is killed; mpirun ends the others.
@@ -265,9 +303,34 @@ fn what_was_begun_otherwise_is_not_gone_on_with() {
     place.write(".run.unfinished/.resume/value-0001.h5", &value[..value.len() / 2]);
     let finished = place.run(&with("--friction=0:1:0.002"));
     assert!(finished.code == 2 && finished.err.contains("value-0001.h5 is incomplete or damaged"), "{}", finished.err);
+    place.write(".run.unfinished/.resume/value-0001.h5", &value);
+    let fields = std::fs::read(place.path(".run.unfinished/equilibrium_mu0.000.vtu")).unwrap();
+    std::fs::remove_file(place.path(".run.unfinished/equilibrium_mu0.000.vtu")).unwrap();
+    let missing = place.run(&with("--friction=0:1:0.002"));
+    assert!(missing.code == 2 && missing.err.contains("equilibrium_mu0.000.vtu is missing"), "{}", missing.err);
+    place.write(".run.unfinished/equilibrium_mu0.000.vtu", &fields);
+    let study = place.read(".run.unfinished/.resume/study.txt");
+    place.write(".run.unfinished/.resume/study.txt", [0xff_u8, 0xfe]);
+    let damaged = place.run(&with("--friction=0:1:0.002"));
+    assert!(damaged.code == 2 && damaged.err.contains("study.txt is missing or damaged"), "{}", damaged.err);
+    place.write(".run.unfinished/.resume/study.txt", study);
     let finished = place.run(&[&with("--friction=0.1")[..], &["--force"]].concat());
     assert_eq!(finished.code, 0, "{}", finished.err);
     assert_eq!(results(&place, "run").about.friction_values, [0.1]);
+}
+
+/// A folder that somebody removes under the run, and a place where nothing can be written.
+#[test]
+fn a_folder_that_goes_or_cannot_be_made_is_said() {
+    let place = Place::blocks();
+    let mut child = start(&place, 1, &["static", "brake.toml", "--friction=0:1:0.002", "-o", "run"]);
+    wait_for(&place, &mut child, 3);
+    std::fs::rename(place.path(".run.unfinished"), place.path("elsewhere")).unwrap();
+    let Finished { code, err, .. } = end(child);
+    assert!(code == 2 && err.contains(".run.unfinished has been removed or emptied while this run"), "{code} {err}");
+    assert!(!place.path("run").exists());
+    let refused = place.run(&["static", "brake.toml", "-o", "/sys/run"]);
+    assert!(refused.code == 2 && refused.err.contains("cannot create the output folder /sys/run: "), "{}", refused.err);
 }
 
 /// What fits on the disc is kept, and the run goes on when there is room.
