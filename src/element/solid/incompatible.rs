@@ -15,11 +15,13 @@
 //! version 2.22 leaves the factor out.
 
 use super::HEXAHEDRON_8_NODES;
+use super::geometric::sum_geometric;
+use super::recovery::{strain, stress};
 use super::stiffness::sum_products;
 use super::table::{inverse_transposed, jacobian, physical_gradients, positions};
 use crate::element::quadrature::HEXAHEDRON_8;
 use crate::element::shape;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 /// Nodes and modes.
 const N: usize = 11;
@@ -28,7 +30,39 @@ const M: usize = 33;
 
 /// As [`super::stiffness`].
 pub fn stiffness(x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], k: &mut [f64]) {
-    let x = positions::<8>(x);
+    eliminate(&full_stiffness(elasticity, &points(positions(x))), k);
+}
+
+/// As [`super::geometric_stiffness`]: with the amplitudes `a = -K_aa^-1 K_au u` in the displacements, and
+/// `T^T K_g T`, `T = [I; -K_aa^-1 K_au]`, which is what eliminating `a` from `K + K_g` leaves to the first order in the
+/// stress.
+pub fn geometric_stiffness(x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], u: &[[f64; 3]], k: &mut [f64]) {
+    let points = points(positions(x));
+    let full = SMatrix::<f64, M, M>::from_column_slice(&full_stiffness(elasticity, &points));
+    let (au, aa) = (full.fixed_view::<9, 24>(24, 0), full.fixed_view::<9, 9>(24, 24).into_owned());
+    let modes = -aa.lu().solve(&au).unwrap_or_else(|| SMatrix::repeat(f64::NAN));
+    let nodal = SVector::<f64, 24>::from_column_slice(u.as_flattened());
+    let amplitudes = modes * nodal;
+    let all: [[f64; 3]; N] = std::array::from_fn(|a| match a {
+        0..8 => u[a],
+        _ => std::array::from_fn(|i| amplitudes[3 * (a - 8) + i]),
+    });
+    let stresses = points.gradients.map(|gradients| stress(elasticity, &strain(&all, &gradients)));
+    let scalar = sum_geometric(&points.gradients, &points.factors, &stresses);
+    let kg = SMatrix::<f64, M, M>::from_fn(|r, c| if r % 3 == c % 3 { scalar[r / 3][c / 3] } else { 0.0 });
+    let mut t = SMatrix::<f64, M, 24>::zeros();
+    t.fixed_view_mut::<24, 24>(0, 0).fill_with_identity();
+    t.fixed_view_mut::<9, 24>(24, 0).copy_from(&modes);
+    k.copy_from_slice((t.transpose() * kg * t).as_slice());
+}
+
+/// The points of the rule with the gradients of nodes and modes, and `w detJ`.
+struct Points {
+    gradients: [[[f64; 3]; N]; 8],
+    factors: [f64; 8],
+}
+
+fn points(x: &[[f64; 3]; 8]) -> Points {
     let table = &HEXAHEDRON_8_NODES.stiffness;
     let centre = shape::HEXAHEDRON_8.gradients([0.0; 3]);
     let (inverse, det_centre) = inverse_transposed(&jacobian(x, centre.first_chunk().expect("eight nodes")));
@@ -43,9 +77,14 @@ pub fn stiffness(x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], k: &mut [f64]) {
         }
         factors[q] = point.weight * det;
     }
+    Points { gradients, factors }
+}
+
+/// `K` of nodes and modes.
+fn full_stiffness(elasticity: &[[f64; 6]; 6], points: &Points) -> [f64; M * M] {
     let mut full = [0.0; M * M];
-    sum_products::<N, M, 8>(elasticity, &gradients, &factors, &mut full);
-    eliminate(&full, k);
+    sum_products::<N, M, 8>(elasticity, &points.gradients, &points.factors, &mut full);
+    full
 }
 
 /// `K = K_uu - K_ua K_aa^-1 K_au`, symmetric to the last bit.

@@ -15,6 +15,7 @@
 //! (Voigt's mean), so that the element does not depend on the axes.
 
 use super::HEXAHEDRON_8_NODES;
+use super::recovery::{strain, stress};
 use super::stiffness::sum_products;
 use super::table::{physical_gradients, positions};
 
@@ -43,6 +44,13 @@ pub fn stiffness(x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], k: &mut [f64]) {
             (0..3).for_each(|i| k[24 * (3 * a + i) + 3 * b + i] += kappa * entry);
         }
     }
+}
+
+/// As [`super::geometric_stiffness`]: the stress of the mean strain at 2 x 2 x 2 points.
+pub fn geometric_stiffness(x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], u: &[[f64; 3]]) -> [[f64; 8]; 8] {
+    let x = positions::<8>(x);
+    let stress = stress(elasticity, &strain(positions::<8>(u), &mean_gradients(x).0));
+    HEXAHEDRON_8_NODES.stiffness.geometric(x, |_| stress)
 }
 
 /// `b_a` (1/m) and the volume (m3); 2 x 2 x 2 points integrate both exactly.

@@ -27,12 +27,14 @@
 //! element forces for offsets up to 4 % of the edge; and since that offset shrinks with the element, it vanishes on
 //! refinement): `patch` measures it.
 
+mod geometric;
 mod incompatible;
 mod mass;
 mod mean_strain;
 #[cfg(test)]
 mod patch;
 mod recovery;
+mod rotation;
 mod stiffness;
 mod table;
 #[cfg(test)]
@@ -44,6 +46,7 @@ use super::quadrature::{
 use super::{ElementKind, Shape, shape};
 pub use mass::MassProperties;
 pub use recovery::von_mises;
+pub use rotation::ConvectiveInertia;
 use table::Family;
 pub use table::jacobian;
 
@@ -94,6 +97,48 @@ pub fn stiffness(kind: ElementKind, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], 
     }
 }
 
+/// Fills `k` (row-major, `(3n)^2`, N/m) with the geometric stiffness of an element, `integral of grad N_a . sigma grad
+/// N_b` on each axis, `sigma` the stress (Pa) of the nodal displacements `u` (m) at each point of the stiffness rule.
+///
+/// It is symmetric. A rigid rotation turns the internal forces f: `K_g (theta x r) = theta x f`.
+pub fn geometric_stiffness(
+    kind: ElementKind,
+    x: &[[f64; 3]],
+    elasticity: &[[f64; 6]; 6],
+    u: &[[f64; 3]],
+    k: &mut [f64],
+) {
+    match kind {
+        ElementKind::C3D8I => incompatible::geometric_stiffness(x, elasticity, u, k),
+        ElementKind::C3D8R => spread(mean_strain::geometric_stiffness(x, elasticity, u).as_flattened(), &IDENTITY, k),
+        _ => with_family!(kind, family => spread(family.geometric(x, elasticity, u).as_flattened(), &IDENTITY, k)),
+    }
+}
+
+const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Writes `a_ab t_ij` at `(3a + i, 3b + j)` of `out`, from the `n x n` numbers `a`.
+pub fn spread(a: &[f64], t: &[[f64; 3]; 3], out: &mut [f64]) {
+    let n = a.len().isqrt();
+    assert_eq!(out.len(), 9 * n * n, "an element matrix has one entry a pair of dofs");
+    for (at, value) in out.iter_mut().enumerate() {
+        let [row, column] = [at / (3 * n), at % (3 * n)];
+        *value = a[n * (row / 3) + column / 3] * t[row % 3][column % 3];
+    }
+}
+
+/// The inertia of an element through which its material flows: [`ConvectiveInertia`].
+///
+/// `flow(x)` is the material's velocity (m/s) at a point; `density` in kg/m3.
+pub fn convective_inertia(
+    shape: Shape,
+    x: &[[f64; 3]],
+    density: f64,
+    flow: impl Fn([f64; 3]) -> [f64; 3],
+) -> ConvectiveInertia {
+    with_family!(ElementKind::default_for(shape), family => family.convective_inertia(x, density, flow))
+}
+
 /// Fills `m` (`n` x `n`, row-major, kg) with the consistent mass, the same for each of the three axes.
 ///
 /// `m_ab = integral of density N_a N_b`; `x` in m, `density` in kg/m3. The full matrix is `m_ab delta_ij` at dofs
@@ -120,8 +165,7 @@ pub fn mass_properties(shape: Shape, x: &[[f64; 3]], density: f64) -> MassProper
 /// `x` and the nodal displacements `u` in m. Voigt order xx yy zz xy yz zx. Incompatible modes add no mean strain where
 /// `detJ` is constant, and are left out.
 pub fn mean_stress(kind: ElementKind, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], u: &[[f64; 3]]) -> [f64; 6] {
-    let strain = with_family!(kind, family => family.mean_strain(x, u));
-    elasticity.map(|d| (0..6).map(|c| d[c] * strain[c]).sum())
+    recovery::stress(elasticity, &with_family!(kind, family => family.mean_strain(x, u)))
 }
 
 /// Whether the element is turned inside out somewhere, or flat: `detJ <= 0` at a node or at a point of the stiffness

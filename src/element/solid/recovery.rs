@@ -16,10 +16,15 @@ impl<const N: usize, const Q: usize> Table<N, Q> {
 }
 
 /// `sum_a B_a u_a` from the gradients `dN_a/dx`.
-fn strain<const N: usize>(u: &[[f64; 3]; N], g: &[[f64; 3]; N]) -> [f64; 6] {
+pub(super) fn strain<const N: usize>(u: &[[f64; 3]; N], g: &[[f64; 3]; N]) -> [f64; 6] {
     // h_ij = du_i/dx_j = sum_a u_a,i dN_a/dx_j
     let h = |i: usize, j: usize| (0..N).map(|a| u[a][i] * g[a][j]).sum::<f64>();
     [h(0, 0), h(1, 1), h(2, 2), h(0, 1) + h(1, 0), h(1, 2) + h(2, 1), h(2, 0) + h(0, 2)]
+}
+
+/// `D strain`, Pa.
+pub(super) fn stress(elasticity: &[[f64; 6]; 6], strain: &[f64; 6]) -> [f64; 6] {
+    elasticity.map(|d| (0..6).map(|c| d[c] * strain[c]).sum())
 }
 
 /// Equivalent stress of von Mises, Pa, of a stress in Voigt order xx yy zz xy yz zx.

@@ -1,6 +1,7 @@
 //! A shape's tables at the points of its rules, and what is computed with them.
 
-use super::MassProperties;
+use super::recovery::{strain, stress};
+use super::{ConvectiveInertia, MassProperties};
 use crate::algebra::{cofactor_columns, dot};
 use crate::element::MAX_NODES;
 use crate::element::interpolation::Interpolation;
@@ -78,6 +79,20 @@ impl<const N: usize, const M: usize, const Q: usize, const P: usize> Family<N, M
     #[inline]
     pub(super) fn stiffness(&self, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], k: &mut [f64]) {
         super::stiffness::integrate::<N, M, Q>(positions(x), elasticity, &self.stiffness, k);
+    }
+
+    pub(super) fn geometric(&self, x: &[[f64; 3]], elasticity: &[[f64; 6]; 6], u: &[[f64; 3]]) -> [[f64; N]; N] {
+        let u = positions::<N>(u);
+        self.stiffness.geometric(positions(x), |gradients| stress(elasticity, &strain(u, gradients)))
+    }
+
+    pub(super) fn convective_inertia(
+        &self,
+        x: &[[f64; 3]],
+        density: f64,
+        flow: impl Fn([f64; 3]) -> [f64; 3],
+    ) -> ConvectiveInertia {
+        self.mass.convective_inertia(positions(x), density, flow)
     }
 
     #[inline]
