@@ -1,5 +1,7 @@
 //! What a model is, before anything is computed.
 
+use std::f64::consts::PI;
+
 use crate::Result;
 use crate::assembly::JointKind;
 use crate::assembly::joints::tie::TieSummary;
@@ -36,7 +38,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
             size_m: full.extents(comm),
         },
         parts,
-        rotations: full.model.rotations.iter().map(rotation).collect(),
+        rotations: full.model.rotations.iter().map(|own| rotation(comm, full, own)).collect(),
         pairs: full.interface.pairs.iter().map(|own| pair(full, own, &proposed)).collect(),
         layouts: with_layouts.then(|| sliding().map(|pair| layout(full, pair)).collect()),
         constrained_dofs: full.held.as_flattened().iter().filter(|&&h| h).count(),
@@ -85,8 +87,18 @@ fn loss_factor(own: &Connector) -> Option<LossRow> {
     (own.loss_factor != 0.0).then(row)
 }
 
-fn rotation(own: &Rotation) -> RotationRow {
-    RotationRow { part: own.part.clone(), axis: own.axis, through_m: own.through, speed_rad_per_s: own.speed }
+fn rotation(comm: &Comm, full: &FullModel, own: &Rotation) -> RotationRow {
+    let splitting = own.speed.abs() / PI;
+    RotationRow {
+        part: own.part.clone(),
+        axis: own.axis,
+        through_m: own.through,
+        speed_rad_per_s: own.speed,
+        inertia: own.inertia,
+        speed_max_m_per_s: full.largest_speed(comm, own),
+        splitting_hz: splitting,
+        splitting_of_band: splitting / full.model.band[1],
+    }
 }
 
 /// Mean sliding speed of a pair's points (m/s), weighted by their areas, and their mean distance from the axis

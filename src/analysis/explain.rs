@@ -1,7 +1,7 @@
 //! What explains a mode of a brake, by part, joint and contact pair.
 
 use crate::Result;
-use crate::assembly::JointKind;
+use crate::assembly::{JointKind, TurningSolids};
 use crate::equilibrium::Equilibrium;
 use crate::reduction::super_element::Member;
 use crate::results::{Kind, Source};
@@ -20,6 +20,7 @@ impl Sweep<'_> {
     pub fn explain(
         &mut self,
         (families, named): (&[Sources], &[(Kind, String)]),
+        turning: Option<&TurningSolids>,
         equilibrium: &Equilibrium,
         mode: &Mode,
         left: Option<Complex>,
@@ -27,13 +28,15 @@ impl Sweep<'_> {
         let (lambda, right) = (mode.lambda, Complex { re: &mode.re, im: &mode.im });
         let pairs = &self.path.contacts().interface().pairs;
         let names = named.iter().cloned().chain(pairs.iter().map(|pair| (Kind::Contact, pair.name.clone())));
-        let own = self.forms(families, named.len(), equilibrium, [right, right])?;
+        let mut own = self.forms(families, named.len(), equilibrium, [right, right])?;
+        own.extend(self.gyroscopic_form(turning, [right, right])?);
         let mut sources: Vec<Source> = names
             .zip(shares(lambda, &own))
             .map(|((kind, name), share)| Source { kind, name, share, sensitivity: None, friction: None })
             .collect();
         let Some(left) = left else { return Ok(sources) };
-        let forms = self.forms(families, named.len(), equilibrium, [left, right])?;
+        let mut forms = self.forms(families, named.len(), equilibrium, [left, right])?;
+        forms.extend(self.gyroscopic_form(turning, [left, right])?);
         let product = self_product(lambda, &forms);
         for (source, form) in sources.iter_mut().zip(&forms) {
             source.sensitivity = Some(sensitivity(lambda, form, product));
@@ -55,15 +58,23 @@ impl Sweep<'_> {
         let mut forms = of_elements(self.system, families, n_named, vectors)?;
         let contacts = self.path.contacts();
         let frictions = contacts.interface().frictions_at(equilibrium.friction);
-        forms.extend(of_contacts(contacts, equilibrium, &frictions, self.friction_damping, vectors)?);
+        forms.extend(of_contacts(contacts, equilibrium, &frictions, self.terms.friction_damping, vectors)?);
         Ok(forms)
+    }
+
+    /// What the inertia forces of rotations have in `y^H C x`; none where there are none. They do no work and belong to
+    /// no source.
+    fn gyroscopic_form(&self, turning: Option<&TurningSolids>, vectors: [Complex; 2]) -> Result<Option<Forms>> {
+        let Some(turning) = turning.filter(|turning| !turning.is_none()) else { return Ok(None) };
+        let all = of_elements(self.system, &[(turning, &|_| 0)], 1, vectors)?;
+        Ok(Some(Forms { c: all[0].c, ..Forms::default() }))
     }
 
     /// The forms of `dP / d mu` of each contact pair: K and friction damping are linear in mu.
     fn friction_forms(&mut self, equilibrium: &Equilibrium, vectors: [Complex; 2]) -> Result<Vec<Forms>> {
         let at = |mu: f64| {
             let frictions = vec![mu; self.path.contacts().interface().pairs.len()];
-            of_contacts(self.path.contacts(), equilibrium, &frictions, self.friction_damping, vectors)
+            of_contacts(self.path.contacts(), equilibrium, &frictions, self.terms.friction_damping, vectors)
         };
         let (one, none) = (at(1.0)?, at(0.0)?);
         let difference = |(a, b): (&Forms, &Forms)| Forms { m: a.m - b.m, c: a.c - b.c, k: a.k - b.k, g: None };
@@ -87,7 +98,7 @@ pub fn explain(
         Structure::Reduced(reduced) => {
             let named = [(Kind::Part, "super-element".to_owned())];
             let member = Member::new(&reduced.element);
-            sweep.explain((&[(&member, &|_| 0)], &named), equilibrium, mode, left)
+            sweep.explain((&[(&member, &|_| 0)], &named), None, equilibrium, mode, left)
         }
     }
 }
@@ -110,7 +121,7 @@ pub fn explain_full(
     let joint = |e: usize| full.mesh.parts.len() + full.joints.elements[e].joint;
     let families = full.families()?;
     let sources: [Sources; 2] = [(&families.solids, &part), (families.joints, &joint)];
-    sweep.explain((&sources, &named), equilibrium, mode, left)
+    sweep.explain((&sources, &named), Some(&families.turning), equilibrium, mode, left)
 }
 
 /// A joint as results call it.

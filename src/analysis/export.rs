@@ -125,7 +125,8 @@ impl Export<'_> {
         friction: f64,
         observer: &mut dyn Observer,
     ) -> Result<()> {
-        let mut sweep = Sweep::new(system, structure.interface(), structure.friction_damping())?;
+        let prestress = structure.prestress()?;
+        let mut sweep = Sweep::of(structure, system, prestress.as_ref())?;
         let equilibrium = sweep.equilibrium(friction, observer)?;
         observer.event(Event::Stage("writing"));
         sweep.linearise(&equilibrium, |problem| {

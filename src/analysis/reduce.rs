@@ -36,6 +36,7 @@ impl SuperElementPlace<'_> {
         model.require_constrained(comm)?;
         model.require_mass()?;
         model.require_no_prescribed()?;
+        model.require_no_prestress()?;
         comm.agree(if comm.is_root() { self.may_write() } else { Ok(()) })
     }
 

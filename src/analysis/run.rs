@@ -95,7 +95,7 @@ pub(super) fn run(
     let (checkpoint, earlier) = resume(comm, job, output, folder.as_ref(), &about)?;
     let n_earlier = earlier.len();
     announce(job, output, &about, n_earlier, observer);
-    let system = structure.assemble(comm)?;
+    let (system, prestress) = (structure.assemble(comm)?, structure.prestress()?);
     let motion = structure.surface_motion(&system)?;
     let results = Results {
         about: About { n_dofs: system.dofs.n_global(), ..about },
@@ -103,7 +103,7 @@ pub(super) fn run(
         contact: structure.contact_faces(),
         ..Results::default()
     };
-    let sweep = Sweep::new(&system, structure.interface(), structure.friction_damping())?;
+    let sweep = Sweep::of(structure, &system, prestress.as_ref())?;
     let fields = FieldWriter { structure, system: &system, folder: folder.as_ref() };
     let place = output.map(|output| output.folder.clone());
     let mut run =

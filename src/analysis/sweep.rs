@@ -7,11 +7,12 @@ use std::time::Instant;
 
 use super::observer::{Event, Observer};
 use crate::Result;
-use crate::assembly::System;
+use crate::assembly::{Prestress, System};
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, LinearSystem, Path};
 use crate::native::{Block, FactorStats, Matrix, Precision, Vector};
-use crate::stability::{self, Band, BandSolver, Count, EigenOptions, Linearised, Mode, QuadraticProblem};
+use crate::stability::{self, Band, BandSolver, Count, EigenOptions, LinearTerms, Linearised, Mode, QuadraticProblem};
+use crate::structure::Structure;
 
 /// A structure under analysis at one friction coefficient after the other.
 pub struct Sweep<'a> {
@@ -19,8 +20,8 @@ pub struct Sweep<'a> {
     pub(super) path: Path<'a>,
     solver: BandSolver,
     linearised: Linearised,
-    /// Whether friction that turns with the velocity damps the modes.
-    pub(super) friction_damping: bool,
+    /// What the modes have beside contact.
+    pub(super) terms: LinearTerms<'a>,
     /// Spent on equilibria, modes and left vectors.
     seconds: [f64; 3],
 }
@@ -54,9 +55,25 @@ impl<'a> Sweep<'a> {
             path: Path::new(system, interface)?,
             solver: BandSolver::new(EigenOptions::default(), system.dofs.labels()),
             linearised: Linearised::default(),
-            friction_damping,
+            terms: LinearTerms { friction_damping, prestress: None },
             seconds: [0.0; 3],
         })
+    }
+
+    /// The sweep of a structure, its modes with the structure's friction damping, and prestress where it is given.
+    /// Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn of(structure: &'a Structure, system: &'a System, prestress: Option<&'a Prestress<'a>>) -> Result<Sweep<'a>> {
+        let sweep = Sweep::new(system, structure.interface(), structure.friction_damping())?;
+        Ok(sweep.with_prestress(prestress))
+    }
+
+    /// The same, whose modes have the geometric stiffness of the equilibrium, where one is given.
+    pub fn with_prestress(mut self, prestress: Option<&'a Prestress<'a>>) -> Sweep<'a> {
+        self.terms.prestress = prestress;
+        self
     }
 
     /// The equilibrium at a friction coefficient of the swept pairs, from the last one. Collective.
@@ -81,7 +98,7 @@ impl<'a> Sweep<'a> {
     pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], observer: &mut dyn Observer) -> Result<Band> {
         let start = Instant::now();
         let LinearSystem { contacts, tangent, factor } = self.path.linear_system();
-        self.linearised = Linearised::new(self.system, contacts, equilibrium, self.friction_damping, tangent)?;
+        self.linearised = Linearised::new(self.system, contacts, equilibrium, self.terms, tangent)?;
         let problem = self.linearised.problem(self.system, contacts, tangent);
         let mut progress = |progress| observer.event(Event::Modes(progress));
         let outcome = self.solver.solve_band(&problem, factor, &band.into(), &mut progress);
@@ -99,7 +116,7 @@ impl<'a> Sweep<'a> {
         look: impl FnOnce(&QuadraticProblem) -> Result<T>,
     ) -> Result<T> {
         let LinearSystem { contacts, tangent, .. } = self.path.linear_system();
-        self.linearised = Linearised::new(self.system, contacts, equilibrium, self.friction_damping, tangent)?;
+        self.linearised = Linearised::new(self.system, contacts, equilibrium, self.terms, tangent)?;
         look(&self.linearised.problem(self.system, contacts, tangent))
     }
 
@@ -148,7 +165,7 @@ impl<'a> Sweep<'a> {
         let contacts = self.path.contacts();
         let responses = contacts.respond(u, &contacts.interface().stage(friction))?;
         let damped = || stability::with_friction_damping(self.system, contacts, friction, &responses);
-        self.friction_damping.then(damped).transpose()
+        self.terms.friction_damping.then(damped).transpose()
     }
 
     /// The equilibria from which the path goes on: [`Path::states`].

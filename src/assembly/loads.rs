@@ -56,6 +56,13 @@ pub fn prescribed(model: &Model, mesh: &Mesh) -> Result<BTreeMap<u32, [f64; 3]>>
     Ok(moved)
 }
 
+/// Adds the prescribed displacements (m, by node) to nodal ones, which are zero there.
+pub fn add_prescribed(nodal: &mut [[f64; 3]], prescribed: &BTreeMap<u32, [f64; 3]>) {
+    for (&node, moved) in prescribed {
+        (0..3).for_each(|i| nodal[node as usize][i] += moved[i]);
+    }
+}
+
 /// What prescribed displacements `u_c` (m, by node) do to the free dofs: forces `-K_e u_c` (N) of all elements of which
 /// a node is moved.
 pub fn forces_of_prescribed(families: &[&dyn Elements], prescribed: &BTreeMap<u32, [f64; 3]>) -> Vec<(u32, [f64; 3])> {

@@ -8,6 +8,7 @@ use crate::{Error, Result};
 use super::{Connectivity, ElementMatrices, Elements};
 
 /// The solid elements of a mesh with the materials of their parts.
+#[derive(Clone)]
 pub struct Solids<'a> {
     mesh: &'a Mesh,
     /// Model part of each mesh part.
@@ -26,6 +27,11 @@ impl<'a> Solids<'a> {
             })
         };
         Ok(Solids { mesh, parts: mesh.parts.iter().map(part).collect::<Result<_>>()? })
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &'a Mesh {
+        self.mesh
     }
 
     /// Von Mises stress (Pa) of the mean stress of element `e`, for nodal displacements `u` (m).

@@ -32,6 +32,10 @@ pub trait Elements: Connectivity {
     fn has_structural_damping(&self) -> bool {
         false
     }
+    /// Whether the damping of a member may have a skew part: the same on all ranks.
+    fn is_gyroscopic(&self) -> bool {
+        false
+    }
     /// Overwrites `out` with member e's matrices. Rows are node-major: three displacements a node.
     fn matrices(&self, e: usize, out: &mut ElementMatrices);
 }
@@ -72,8 +76,10 @@ pub struct System {
     pub k: Matrix,
     /// Mass, kg.
     pub m: Matrix,
-    /// Damping, N s/m.
+    /// Damping, N s/m, and gyroscopic terms where a part has the inertia of its rotation.
     pub c: Matrix,
+    /// Whether C has gyroscopic terms, and so is not symmetric.
+    pub is_gyroscopic: bool,
     /// Structural damping, N/m: `sum g_e K_e` of stiffnesses with loss factors `g_e`; none where all of these are 0.
     pub g: Option<Matrix>,
     /// External forces, N.
@@ -125,7 +131,8 @@ impl System {
         let [k, m, c] = sum([k, m, c], mass, &scatter, families)?;
         let g = structural_damping(&k, &scatter, families)?;
         let load = Vector::zeros(comm, dofs.n_local())?;
-        Ok(System { dofs, k, m, c, g, load, pattern_seconds })
+        let is_gyroscopic = families.iter().any(|family| family.is_gyroscopic());
+        Ok(System { dofs, k, m, c, is_gyroscopic, g, load, pattern_seconds })
     }
 
     /// Adds forces (N) at nodes to the load; those at constrained dofs go into the support.

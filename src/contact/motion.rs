@@ -29,13 +29,20 @@ pub fn sliding(master: &Rotation, x: [f64; 3], n: [f64; 3], size: f64) -> Tangen
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Place;
+    use crate::model::{Inertia, Place};
 
     const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
     /// Direction and speed on a disc that turns about z at 5 rad/s.
     fn on_disc(through: [f64; 3], x: [f64; 3], n: [f64; 3]) -> Option<(Vector3<f64>, f64)> {
-        let disc = Rotation { part: "disc".into(), axis: UP, through, speed: 5.0, place: Place::default() };
+        let disc = Rotation {
+            part: "disc".into(),
+            axis: UP,
+            through,
+            speed: 5.0,
+            inertia: Inertia::None,
+            place: Place::default(),
+        };
         match sliding(&disc, x, n, 1e-3) {
             Tangential::Sliding { direction, speed } => Some((direction.into(), speed)),
             _ => None,

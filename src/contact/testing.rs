@@ -3,7 +3,7 @@
 use super::facet::FacetGeometry;
 use crate::element::FacetShape;
 use crate::mesh::{self, Facet, Mesh, Surface};
-use crate::model::{Contact, InstabilityCriterion, Model, NormalLaw, Place, Rotation};
+use crate::model::{Contact, Inertia, InstabilityCriterion, Model, NormalLaw, Place, Rotation};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -105,8 +105,14 @@ pub fn flipped(surface: &Surface) -> Surface {
 
 /// A model of nothing but contacts, the part "disc" turning about +z at 5 rad/s where `turning`.
 pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
-    let rotation =
-        Rotation { part: "disc".into(), axis: [0.0, 0.0, 1.0], through: [0.0; 3], speed: 5.0, place: Place::default() };
+    let rotation = Rotation {
+        part: "disc".into(),
+        axis: [0.0, 0.0, 1.0],
+        through: [0.0; 3],
+        speed: 5.0,
+        inertia: Inertia::None,
+        place: Place::default(),
+    };
     Model {
         file: "brake.toml".into(),
         title: String::new(),
@@ -125,6 +131,7 @@ pub fn model(contacts: Vec<Contact>, turning: bool) -> Model {
         loads: Vec::new(),
         band: [0.0, 1.0],
         friction_damping: false,
+        prestress: None,
         criterion: InstabilityCriterion::default(),
         swept: Vec::new(),
         frictions: Vec::new(),

@@ -1,6 +1,7 @@
 //! Checks that an equilibrium makes of itself: forces, moments, torque, contact resultants.
 
 use std::collections::BTreeMap;
+use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
@@ -46,6 +47,15 @@ impl Wrench {
     pub fn about(&self, through: [f64; 3], axis: [f64; 3]) -> f64 {
         let lever = cross(through, self.force);
         dot(sub(self.moment, lever), axis)
+    }
+}
+
+impl AddAssign for Wrench {
+    fn add_assign(&mut self, other: Wrench) {
+        for i in 0..3 {
+            self.force[i] += other.force[i];
+            self.moment[i] += other.moment[i];
+        }
     }
 }
 
@@ -135,6 +145,20 @@ impl Balance {
         let support = Wrench::sum(comm, reactions.iter().map(|&(node, f)| (points[node as usize], f)));
         let pairs = PairForces::all(interface, responses);
         Balance { applied, support, across_gaps, reactions, pairs }
+    }
+
+    /// Adds loads (N) at nodes that this rank owns, each of which one rank has. Collective.
+    pub fn add_body_forces(&mut self, system: &System, points: &[[f64; 3]], forces: &[(u32, [f64; 3])]) {
+        let comm = system.k.comm();
+        let held = |node: u32, f: [f64; 3]| {
+            let dofs = system.dofs.node_dofs(node);
+            [0, 1, 2].map(|i| if dofs[i] < 0 { -f[i] } else { 0.0 })
+        };
+        let at = |(node, force): (u32, [f64; 3])| (points[node as usize], force);
+        self.applied += Wrench::sum(comm, forces.iter().copied().map(at));
+        let reactions: Vec<_> = forces.iter().map(|&(node, force)| (node, held(node, force))).collect();
+        self.support += Wrench::sum(comm, reactions.iter().copied().map(at));
+        self.reactions.extend(reactions);
     }
 
     /// Moment of some nodes' supports about an axis, N m. Collective.

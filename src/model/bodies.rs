@@ -117,6 +117,7 @@ fn rotation(item: &Item, raw: &keys::RotationTable, unit: f64) -> Result<Rotatio
         axis: item.direction(&raw.axis, "axis")?,
         through: through.map(|x| x * unit),
         speed: item.check(&raw.speed, true, "speed", "must be finite", advice)?,
+        inertia: raw.inertia,
         place: item.place(),
     })
 }

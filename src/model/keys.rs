@@ -1,8 +1,8 @@
 //! The keys of a model file as serde sees them; `example.toml` explains each. Values are unchecked, their places are
 //! kept. `schema.json` has the same keys for editors.
 
-use super::InstabilityCriterion;
 use super::item::{Number, Vector};
+use super::{Inertia, InstabilityCriterion};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -170,6 +170,8 @@ tables! {
         pub axis: Vector,
         pub through: Option<Vector>,
         pub speed: Number,
+        #[serde(default)]
+        pub inertia: Inertia,
     }
 
     pub struct ContactTable {
@@ -275,6 +277,7 @@ tables! {
         pub band: Spanned<[f64; 2]>,
         #[serde(default)]
         pub friction_damping: bool,
+        pub prestress: Option<bool>,
         pub unstable: Option<Spanned<InstabilityCriterion>>,
     }
 

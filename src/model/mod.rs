@@ -59,7 +59,9 @@ pub use proposed::ProposedStiffness;
 pub use read::{is_deck, parse, read};
 pub use source::{located, utf8};
 pub use surfaces::softest_young;
-pub use types::{Contact, Fix, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction, Rotation};
+pub use types::{
+    Contact, Fix, Inertia, Load, LoadKind, Material, Model, NormalLaw, Part, Rayleigh, Reduction, Rotation,
+};
 pub use units::UnitSystem;
 pub use write::{isotropic, write};
 

@@ -73,6 +73,7 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
         loads: loads::loads(source, &raw.load, mesh_unit)?,
         band: stability.band(&raw.stability.get_ref().band)?,
         friction_damping: raw.stability.get_ref().friction_damping,
+        prestress: raw.stability.get_ref().prestress,
         criterion: analysis::criterion(&stability, raw.stability.get_ref().unstable.as_ref())?,
         swept: sweep.contacts,
         frictions: sweep.frictions,

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::elasticity::youngs;
 use super::friction::FrictionCurve;
 use super::{Connector, Equation, InstabilityCriterion, Place, PointMass, RigidSet, Tie, names, paths};
+use crate::algebra::{cross, scale, sub};
 use crate::element::ElementKind;
 use crate::{Error, Result};
 
@@ -56,6 +57,8 @@ pub struct Model {
     pub band: [f64; 2],
     /// Whether friction that turns with the velocity damps the modes.
     pub friction_damping: bool,
+    /// Whether the stress of the equilibrium stiffens the modes; where the file does not say, [`Model::has_prestress`].
+    pub prestress: Option<bool>,
     /// What counts as an unstable mode.
     pub criterion: InstabilityCriterion,
     /// Names of the contacts whose friction a sweep changes (all sliding pairs where the file does not say).
@@ -83,6 +86,12 @@ impl Model {
             || self.parts.iter().any(|part| part.rayleigh != Rayleigh::default())
             || self.connectors.iter().any(|connector| connector.damping != [0.0; 3])
             || self.has_structural_damping()
+    }
+
+    /// Whether modes have the geometric stiffness of the equilibrium: as the file says, else where a rotation has
+    /// inertia.
+    pub fn has_prestress(&self) -> bool {
+        self.prestress.unwrap_or(self.rotations.iter().any(|rotation| rotation.inertia != Inertia::None))
     }
 
     /// Whether a material or a connector has a loss factor.
@@ -195,8 +204,35 @@ pub struct Rotation {
     pub through: [f64; 3],
     /// Speed, rad/s, right-handed about the axis.
     pub speed: f64,
+    /// The inertia forces of the rotation.
+    pub inertia: Inertia,
     /// Where it stands.
     pub place: Place,
+}
+
+impl Rotation {
+    /// Velocity (m/s) that the rotation has at a point (m): `Omega x (x - x_0)`.
+    pub fn velocity(&self, x: [f64; 3]) -> [f64; 3] {
+        cross(self.angular_velocity(), sub(x, self.through))
+    }
+
+    /// `Omega`, rad/s.
+    pub fn angular_velocity(&self) -> [f64; 3] {
+        scale(self.speed, self.axis)
+    }
+}
+
+/// Which inertia forces of its rotation a part has, and how its motion is described.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", expecting = "expected \"none\", \"fixed_frame\" or \"rotating_frame\"")]
+pub enum Inertia {
+    /// None: the part turns slowly against its vibrations.
+    #[default]
+    None,
+    /// Those of a solid of revolution about the axis, seen from the fixed frame: its material flows through the mesh.
+    FixedFrame,
+    /// Those of a rotor, seen from a frame that turns with it, together with its mesh, supports and loads.
+    RotatingFrame,
 }
 
 /// A contact pair.

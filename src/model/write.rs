@@ -10,7 +10,7 @@ use nalgebra::Matrix6;
 use super::elasticity::{from_compliance, isotropic_compliance};
 use super::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use super::read::UNITS;
-use super::{Contact, InstabilityCriterion, Material, Model, NormalLaw, ROUGH};
+use super::{Contact, Inertia, InstabilityCriterion, Material, Model, NormalLaw, ROUGH};
 use loads::loads;
 
 /// Elasticities are isotropic to this relative difference.
@@ -40,6 +40,11 @@ pub fn write(model: &Model, mesh_file: &str) -> String {
         out.line("axis", list(&rotation.axis));
         out.line("through", list(&rotation.through.map(|x| x / model.mesh_unit)));
         out.line("speed", number(rotation.speed));
+        match rotation.inertia {
+            Inertia::None => {}
+            Inertia::FixedFrame => out.line("inertia", quoted("fixed_frame")),
+            Inertia::RotatingFrame => out.line("inertia", quoted("rotating_frame")),
+        }
     }
     model.contacts.iter().for_each(|own| contact(&mut out, own, model.mesh_unit));
     joints::write(&mut out, model);
@@ -207,6 +212,7 @@ fn analysis(out: &mut Text, model: &Model) {
     out.table("[stability]");
     out.line("band", list(&model.band));
     out.line("friction_damping", model.friction_damping);
+    model.prestress.into_iter().for_each(|prestress| out.line("prestress", prestress));
     match model.criterion {
         InstabilityCriterion::DampingRatio(ratio) => {
             out.line("unstable", format_args!("{{ damping_ratio = {} }}", number(ratio)));

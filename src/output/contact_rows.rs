@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::model_summary::joined;
-use crate::model::ProposedStiffness;
+use crate::model::{Inertia, ProposedStiffness};
 
 /// A rotation.
 #[derive(Serialize)]
@@ -16,6 +16,14 @@ pub struct RotationRow {
     pub through_m: [f64; 3],
     /// Speed, right-handed about the axis.
     pub speed_rad_per_s: f64,
+    /// Which inertia forces of the rotation the part has.
+    pub inertia: Inertia,
+    /// Its fastest point.
+    pub speed_max_m_per_s: f64,
+    /// `Omega / pi`: a wave of n lengths around the axis splits by n times that, seen from the fixed frame.
+    pub splitting_hz: f64,
+    /// The same relative to the end of the band of modes.
+    pub splitting_of_band: f64,
 }
 
 /// A contact pair.
@@ -76,7 +84,17 @@ impl RotationRow {
     pub(super) fn text(&self) -> String {
         let RotationRow { part, axis: [x, y, z], speed_rad_per_s, .. } = self;
         let through = joined(self.through_m, 1e3, 2, " ");
-        format!("{part} turns about {x:.4} {y:.4} {z:.4} through {through} mm at {speed_rad_per_s} rad/s\n")
+        let inertia = match self.inertia {
+            Inertia::None => "without inertia forces of the rotation",
+            Inertia::FixedFrame => "with the inertia forces of a solid of revolution, seen from the fixed frame",
+            Inertia::RotatingFrame => "with the inertia forces of a rotor, seen from the rotating frame",
+        };
+        let (fastest, splitting, percent) = (self.speed_max_m_per_s, self.splitting_hz, 100.0 * self.splitting_of_band);
+        format!(
+            "{part} turns about {x:.4} {y:.4} {z:.4} through {through} mm at {speed_rad_per_s} rad/s, {inertia}\n\
+             {part}: up to {fastest:.2} m/s; waves of n lengths around split by about n x {splitting:.2} Hz, n x {percent:.2} % \
+             of the band's end\n"
+        )
     }
 }
 

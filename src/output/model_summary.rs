@@ -269,6 +269,7 @@ pub(super) fn joined(x: [f64; 3], unit: f64, decimals: usize, separator: &str) -
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::model::Inertia;
 
     pub(in crate::output) fn summary() -> ModelSummary {
         let part = PartRow {
@@ -328,6 +329,10 @@ pub(super) mod tests {
                 axis: [0.0, 0.0, 1.0],
                 through_m: [0.0; 3],
                 speed_rad_per_s: 5.0,
+                inertia: Inertia::None,
+                speed_max_m_per_s: 0.6,
+                splitting_hz: 1.59,
+                splitting_of_band: 0.00027,
             }],
             pairs: vec![pair],
             layouts: Some(vec![layout]),

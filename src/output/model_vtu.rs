@@ -195,7 +195,7 @@ fn unit_normal(corners: &[[f64; 3]]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Place;
+    use crate::model::{Inertia, Place};
 
     fn square() -> Mesh {
         let x = [[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0], [0.0, 1.0, 1.0]];
@@ -229,7 +229,14 @@ mod tests {
         (boundary.nodes, boundary.triangles) = (mesh.nodes.clone(), vec![[0, 1, 2], [0, 2, 3]]);
         boundary.part = vec![0; 2];
         let (axis, through) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
-        let rotation = Rotation { part: "disc".into(), axis, through, speed: -5.0, place: Place::default() };
+        let rotation = Rotation {
+            part: "disc".into(),
+            axis,
+            through,
+            speed: -5.0,
+            inertia: Inertia::None,
+            place: Place::default(),
+        };
         let mut picture = ModelPicture::default();
         picture.add_axis(&mesh, &boundary, &rotation);
         // The part is 2 m long, and 1 m away from the axis at most.

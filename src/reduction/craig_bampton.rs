@@ -176,7 +176,7 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
     basis.append(&interior.residual_modes(&basis, &motions, &modes)?);
     let [mass, stiffness] = coarse;
     let (mass, stiffness) = (project(mass, &basis, &system.m)?, project(stiffness, &basis, &linear.stiffness)?);
-    let damping = project(none(), &basis, &system.c)?;
+    let damping = project_damping(&basis, system)?;
     let structural = system.g.as_ref().map(|g| project(none(), &basis, g)).transpose()?;
     costs.projection_seconds = start.elapsed().as_secs_f64();
     let load = shadow(&basis, &system.load)?;
@@ -325,6 +325,20 @@ pub(super) fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<
         }
     }
     Ok(product)
+}
+
+/// `T^T C T`, which gyroscopic terms make unsymmetric.
+pub(super) fn project_damping(basis: &Block, system: &System) -> Result<DMatrix<f64>> {
+    if !system.is_gyroscopic {
+        return project(DMatrix::zeros(0, 0), basis, &system.c);
+    }
+    let n = basis.n_columns();
+    let mut product = Vec::with_capacity(n * n);
+    for first in (0..n).step_by(PANEL) {
+        let last = (first + PANEL).min(n);
+        product.extend(basis.gram(&basis.columns(first..last).multiplied_by(&system.c)?));
+    }
+    Ok(DMatrix::from_vec(n, n, product))
 }
 
 /// `T^T f`

@@ -6,8 +6,8 @@
 //!                   parts
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
-//! mass, damping, stiffness      n x n, symmetric; n = 3 n_p + n_m + residual modes; kg, N s/m, N/m at the retained
-//!                               points, unit modal mass
+//! mass, damping, stiffness      n x n, symmetric but for gyroscopic damping; n = 3 n_p + n_m + residual modes; kg,
+//!                               N s/m, N/m at the retained points, unit modal mass
 //! structural_damping            n x n, as stiffness; only where a stiffness has a loss factor
 //! load, preload     n           generalised forces, N
 //! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:

@@ -28,7 +28,7 @@ use crate::assembly::System;
 use crate::contact::{Interface, Response, Status, Tangential};
 use crate::native::{Block, Matrix};
 
-use super::craig_bampton::{project, shadow};
+use super::craig_bampton::{project, project_damping, shadow};
 use super::fixed_interface::make_orthonormal;
 use super::functionals::Functionals;
 use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
@@ -128,7 +128,7 @@ pub fn super_element(system: &System, interface: &Interface, basis: &Block, orig
         points: Vec::new(),
         frequencies: Vec::new(),
         mass: matrix(&system.m)?,
-        damping: matrix(&system.c)?,
+        damping: project_damping(basis, system)?.transpose().as_slice().to_vec(),
         stiffness: matrix(&system.k)?,
         structural_damping: system.g.as_ref().map(matrix).transpose()?,
         preload: vec![0.0; load.len()],

@@ -159,7 +159,7 @@ impl SuperElement {
             points,
             frequencies: reduced.frequencies.clone(),
             mass: reduced.matrices.m.as_slice().to_vec(),
-            damping: reduced.matrices.c.as_slice().to_vec(),
+            damping: reduced.matrices.c.transpose().as_slice().to_vec(),
             stiffness: reduced.matrices.k.as_slice().to_vec(),
             structural_damping: reduced.matrices.g.as_ref().map(|g| g.as_slice().to_vec()),
             load: reduced.load.clone(),
@@ -245,6 +245,12 @@ impl SuperElement {
         Ok(system)
     }
 
+    /// Whether the damping has gyroscopic terms: whether it is not symmetric.
+    pub fn is_gyroscopic(&self) -> bool {
+        let n = self.n_coordinates();
+        (0..n).any(|i| (0..i).any(|j| self.damping[n * i + j] != self.damping[n * j + i]))
+    }
+
     /// Refuses a band that the modes kept do not cover; gives a warning where they cover it poorly.
     ///
     /// # Errors
@@ -314,6 +320,10 @@ impl Connectivity for Member<'_> {
 impl Elements for Member<'_> {
     fn has_structural_damping(&self) -> bool {
         self.element.structural_damping.is_some()
+    }
+
+    fn is_gyroscopic(&self) -> bool {
+        self.element.is_gyroscopic()
     }
 
     fn matrices(&self, _: usize, out: &mut ElementMatrices) {

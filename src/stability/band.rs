@@ -97,7 +97,7 @@ impl BandSolver {
     ///
     /// ```no_run
     /// use squeal::equilibrium::{LinearSystem, Path};
-    /// use squeal::stability::{BandSolver, EigenOptions, Linearised};
+    /// use squeal::stability::{BandSolver, EigenOptions, LinearTerms, Linearised};
     /// use squeal::structure::StructureOptions;
     /// use squeal::{Session, Structure};
     ///
@@ -107,7 +107,7 @@ impl BandSolver {
     /// let mut path = Path::new(&system, brake.interface())?;
     /// let equilibrium = path.advance(0.4, &mut |_, _, _| ())?;
     /// let LinearSystem { contacts, tangent, factor } = path.linear_system();
-    /// let linearised = Linearised::new(&system, contacts, &equilibrium, false, tangent)?;
+    /// let linearised = Linearised::new(&system, contacts, &equilibrium, LinearTerms::default(), tangent)?;
     /// let problem = linearised.problem(&system, contacts, tangent);
     /// let mut solver = BandSolver::new(EigenOptions::default(), system.dofs.labels());
     /// for mode in solver.solve_band(&problem, factor, &[0.0, 6000.0].into(), &mut |_| ())?.modes {

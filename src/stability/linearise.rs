@@ -1,18 +1,30 @@
 //! From an equilibrium to the quadratic eigenproblem about it.
 
 use crate::Result;
-use crate::assembly::System;
+use crate::assembly::{Prestress, System};
 use crate::contact::{Response, Status, Tangent, Tangential};
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::{Matrix, Mck};
 
 use super::{FrozenPoints, QuadraticProblem};
 
+/// What a linearisation has beside the tangents of the contact points.
+#[derive(Clone, Copy, Default)]
+pub struct LinearTerms<'a> {
+    /// Whether friction that turns with the velocity of sliding points damps: [`with_friction_damping`].
+    pub friction_damping: bool,
+    /// The geometric stiffness of the equilibrium, where it is in the problem.
+    pub prestress: Option<&'a Prestress<'a>>,
+}
+
 /// A system linearised about an equilibrium with the status of every point frozen; its stiffness is kept elsewhere.
 #[derive(Default)]
 pub struct Linearised {
     /// `C`, with friction damping where it is asked for.
     pub c: Option<Matrix>,
+    /// `K + K_g + B^T S B` with the tangents S without friction's coupling, where there is a geometric stiffness `K_g`.
+    /// That differs from one equilibrium to the next, so that neither counts nor projections follow the points alone.
+    prestressed: Option<Matrix>,
     /// What each contact point has without friction's coupling.
     symmetric: Vec<Tangent>,
     /// What each contact point does, its tangent that of the stiffness.
@@ -21,8 +33,7 @@ pub struct Linearised {
 
 impl Linearised {
     /// Linearises about `equilibrium`, and writes `k = K + B^T D B`: open points give nothing, closed sliding points
-    /// `(dp/dd)(n n^T + mu t n^T)`, all other closed points stick. With `friction_damping`, C is
-    /// [`with_friction_damping`]. Collective.
+    /// `(dp/dd)(n n^T + mu t n^T)`, all other closed points stick. With prestress `k` has `K_g(u)`, too. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -30,7 +41,7 @@ impl Linearised {
         system: &System,
         contacts: &Contacts,
         equilibrium: &Equilibrium,
-        friction_damping: bool,
+        terms: LinearTerms,
         k: &mut Matrix,
     ) -> Result<Linearised> {
         let interface = contacts.interface();
@@ -48,9 +59,20 @@ impl Linearised {
             Response { tangent, status, ..*response }
         };
         let frozen: Vec<Response> = tangents(&frictions).into_iter().enumerate().map(freeze).collect();
+        let symmetric = tangents(&none);
         k.copy_from(&system.k)?;
+        let prestressed = match terms.prestress {
+            None => None,
+            Some(prestress) => {
+                prestress.add(system, &equilibrium.u, k)?;
+                let mut stiffness = k.duplicate()?;
+                contacts.add_blocks(symmetric.iter().copied(), &mut stiffness)?;
+                Some(stiffness)
+            }
+        };
         contacts.add_blocks(frozen.iter().map(|response| response.tangent), k)?;
-        Ok(Linearised { c: friction_damping.then(damped).transpose()?, symmetric: tangents(&none), frozen })
+        let c = terms.friction_damping.then(damped).transpose()?;
+        Ok(Linearised { c, prestressed, symmetric, frozen })
     }
 
     /// The problem, with the stiffness that [`Linearised::new`] has written.
@@ -61,8 +83,12 @@ impl Linearised {
         k: &'a Matrix,
     ) -> QuadraticProblem<'a> {
         let matrices = Mck { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k, g: system.g.as_ref() };
-        let points = Some(FrozenPoints { contacts, responses: &self.frozen, symmetric: &self.symmetric });
-        QuadraticProblem { matrices, k_symmetric: &system.k, points, symmetric_mc: true }
+        let points = FrozenPoints { contacts, responses: &self.frozen, symmetric: &self.symmetric };
+        let (k_symmetric, points) = match &self.prestressed {
+            Some(stiffness) => (stiffness, None),
+            None => (&system.k, Some(points)),
+        };
+        QuadraticProblem { matrices, k_symmetric, points, symmetric_mc: !system.is_gyroscopic }
     }
 }
 

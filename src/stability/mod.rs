@@ -43,7 +43,7 @@ pub use count::Count;
 pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
 pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
 pub use left::right_vectors;
-pub use linearise::{Linearised, with_friction_damping};
+pub use linearise::{LinearTerms, Linearised, with_friction_damping};
 pub use mode::{Mode, RIGID_RATE};
 pub use options::{BlockedOptions, EigenOptions, Evidence};
 pub use problem::{FrozenPoints, QuadraticProblem};

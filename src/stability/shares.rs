@@ -10,7 +10,8 @@
 //!
 //! which is the balance of power: with the modal energy `E = omega^2 m / 2`, the energy input by friction is
 //! `-omega Im k / 2`, the dissipation by damping `omega^2 c / 2 + omega g / 2`, and what remains is `2 a E`. Both sums
-//! go over parts, connectors and contact pairs, so that the growth rate is a sum over them, too.
+//! go over parts, connectors and contact pairs, so that the growth rate is a sum over them, too. Gyroscopic terms make
+//! c complex and do no work: `a Im c` joins the first term, so that `2 m + Im c / omega` is in the place of `2 m`.
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -41,13 +42,16 @@ pub struct Share {
 pub fn shares(lambda: Complex64, forms: &[Forms]) -> Vec<Share> {
     let m: f64 = forms.iter().map(|form| form.m.re).sum();
     let k: f64 = forms.iter().map(|form| form.k.re).sum();
+    // Im(lambda c) = omega Re c + a Im c, the second of gyroscopic terms.
+    let gyroscopic: f64 = forms.iter().map(|form| form.c.im).sum();
+    let size = 2.0 * m + if lambda.im > 0.0 { gyroscopic / lambda.im } else { 0.0 };
     // What the imaginary part of a stiffness contributes to the growth rate.
-    let imaginary = |k: f64| if lambda.im > 0.0 { -k / (2.0 * lambda.im * m) } else { 0.0 };
+    let imaginary = |k: f64| if lambda.im > 0.0 { -k / (lambda.im * size) } else { 0.0 };
     let share = |form: &Forms| Share {
         kinetic: form.m.re / m,
         strain: form.k.re / k,
         energy_input: imaginary(form.k.im),
-        dissipation: -form.c.re / (2.0 * m) + form.g.map_or(0.0, |g| imaginary(g.re)),
+        dissipation: -form.c.re / size + form.g.map_or(0.0, |g| imaginary(g.re)),
     };
     forms.iter().map(share).collect()
 }
@@ -105,6 +109,25 @@ mod tests {
         let without = shares(lambda, &[Forms { g: None, ..all }])[0].dissipation;
         let loss = share.dissipation - without;
         assert!((loss + 0.1 * 5000.0 / (2.0 * lambda.im * 2.0)).abs() < 1e-11, "{loss}");
+    }
+
+    /// Two masses of 2 kg on springs and dampers, coupled by a gyroscope: in circular motion `x = (1, +-i)` has
+    /// `x^H C x = 2 c -+ 2 i g`.
+    #[test]
+    fn gyroscopic_terms_do_no_work() {
+        let (m, c, k, g) = (2.0, 3.0, 5000.0, 40.0);
+        for sense in [1.0, -1.0] {
+            let coupled = Complex64::new(c, sense * g);
+            let lambda = (-coupled + (coupled * coupled - 4.0 * m * k).sqrt()) / (2.0 * m);
+            let lambda = if lambda.im > 0.0 { lambda } else { -coupled / m - lambda };
+            let of = |c: Complex64, m: f64, k: f64| Forms { m: m.into(), c, k: k.into(), g: None };
+            let damped = shares(
+                lambda,
+                &[of((2.0 * c).into(), 2.0 * m, 2.0 * k), of(Complex64::new(0.0, sense * 2.0 * g), 0.0, 0.0)],
+            );
+            assert!(lambda.im > 0.0 && (damped[0].dissipation - lambda.re).abs() < 1e-11, "{damped:?} {lambda}");
+            assert_eq!(damped[1].dissipation, 0.0);
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::{Linearised, QuadraticProblem, SearchResult, SolverKind};
+use super::{LinearTerms, Linearised, QuadraticProblem, SearchResult, SolverKind};
 use crate::assembly::System;
 use crate::contact::{Interface, Stage};
 use crate::equilibrium::testing::{ALONG_X, belt, blocks, blocks_on_belt, system};
@@ -82,7 +82,8 @@ impl Blocks {
         let responses = contacts.respond(&u, &Stage::Solve { friction: vec![mu] }).unwrap();
         let equilibrium = Equilibrium { u, responses, friction: mu, steps: Vec::new() };
         let mut k = self.system.k.duplicate().unwrap();
-        let linearised = Linearised::new(&self.system, &contacts, &equilibrium, false, &mut k).unwrap();
+        let linearised =
+            Linearised::new(&self.system, &contacts, &equilibrium, LinearTerms::default(), &mut k).unwrap();
         look(&linearised.problem(&self.system, &contacts, &k))
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::assembly::joints::Sets;
-use crate::assembly::{self, Boundary, Connectivity, Elements, Joints, Solids, System};
+use crate::assembly::{self, Boundary, Joints, System, add_prescribed};
 use crate::contact::search::Team;
 use crate::contact::{ContactPair, Interface, Response};
 use crate::deck::DeckSummary;
@@ -46,21 +46,6 @@ pub struct FullModel {
 
 /// An overlap of contact surfaces below this is rounding of the mesh, m: machined surfaces are rougher.
 const SMALLEST_OVERLAP: f64 = 1e-8;
-
-/// The families of elements of a brake.
-pub struct Families<'a> {
-    /// The solid elements.
-    pub solids: Solids<'a>,
-    /// The joints.
-    pub joints: &'a Joints,
-}
-
-impl Families<'_> {
-    /// All of them, as the assembly takes them.
-    pub fn list(&self) -> [&dyn Elements; 2] {
-        [&self.solids, self.joints]
-    }
-}
 
 impl FullModel {
     /// Reads and checks model and mesh and finds the contact points; each rank has its piece of the mesh. Collective:
@@ -247,44 +232,13 @@ impl FullModel {
         Boundary::new(comm, &self.mesh, &self.nodes, &system.dofs)
     }
 
-    /// The families of elements.
-    ///
-    /// # Errors
-    /// [`Error::Input`] where a part has no material.
-    pub fn families(&self) -> Result<Families<'_>> {
-        Ok(Families { solids: Solids::new(&self.model, &self.mesh)?, joints: &self.joints })
-    }
-
-    /// Assembles M, C, K and the load. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn assemble(&self, comm: &Comm, families: &Families) -> Result<System> {
-        self.assemble_families(comm, &families.list())
-    }
-
-    /// As [`FullModel::assemble`], of any families on the brake's nodes. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn assemble_families(&self, comm: &Comm, families: &[&dyn Elements]) -> Result<System> {
-        let contacts: [&dyn Connectivity; 1] = [&self.interface.gap_operator];
-        let mut system = System::assemble(comm, &self.nodes, &self.held, families, &contacts)?;
-        system.add_load(&self.loads)?;
-        system.add_load(&assembly::forces_of_prescribed(families, &self.prescribed))?;
-        Ok(system)
-    }
-
     /// Displacements (m) of an equilibrium at the nodes that this rank has, prescribed ones included. Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn displacements(&self, system: &System, u: &Vector) -> Result<Vec<[f64; 3]>> {
         let mut nodal = system.nodal(&[u])?.remove(0);
-        for (&node, moved) in &self.prescribed {
-            // Where one is not zero, the free ones of the node are zero here.
-            (0..3).for_each(|i| nodal[node as usize][i] += moved[i]);
-        }
+        add_prescribed(&mut nodal, &self.prescribed);
         Ok(nodal)
     }
 

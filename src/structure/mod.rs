@@ -14,6 +14,7 @@ pub mod contact_surface;
 mod digest;
 mod distribution;
 mod equilibrium_checks;
+mod families;
 mod files;
 mod free_motions;
 mod full;
@@ -21,14 +22,16 @@ pub mod plausibility;
 mod ranked;
 mod reduced;
 mod rigid_motions;
+mod rotations;
 mod super_element;
 mod surface_motion;
 
 pub use digest::digest;
 pub use equilibrium_checks::EquilibriumChecks;
+pub use families::Families;
 pub use files::ModelFiles;
 pub use free_motions::{FreeMotion, free_motions};
-pub use full::{Families, FullModel};
+pub use full::FullModel;
 pub use ranked::Ranked;
 pub use reduced::ReducedModel;
 pub use rigid_motions::RigidMotions;
@@ -36,7 +39,7 @@ pub use surface_motion::{SurfaceMotion, coordinates};
 
 use std::path::Path;
 
-use crate::assembly::System;
+use crate::assembly::{Prestress, System};
 use crate::contact::{Interface, Response};
 use crate::equilibrium::Equilibrium;
 use crate::hdf::is_hdf5;
@@ -158,6 +161,17 @@ impl Structure {
         }
     }
 
+    /// What makes the geometric stiffness of an equilibrium; none where modes have none.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a part has no material.
+    pub fn prestress(&self) -> Result<Option<Prestress<'_>>> {
+        match self {
+            Structure::Full(full) => full.prestress(),
+            Structure::Reduced(_) => Ok(None),
+        }
+    }
+
     /// What counts as an unstable mode.
     pub fn criterion(&self) -> InstabilityCriterion {
         match self {
@@ -247,6 +261,7 @@ impl Structure {
     pub fn reduced_about(&self, system: &System, equilibrium: &Equilibrium) -> Result<Structure> {
         match self {
             Structure::Full(full) => {
+                full.require_no_prestress()?;
                 let limit = full.reduction_limit();
                 let (element, surface, _) = full.reduce(system.k.comm(), system, equilibrium, limit, &mut |_| ())?;
                 let reduced = ReducedModel::new(&full.model.file, element, surface, None, 1.0);

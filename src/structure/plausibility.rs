@@ -203,6 +203,7 @@ fn geometry(full: &FullModel, comm: &Comm) -> Vec<String> {
             all.extend(axis(rotation, &full.part_properties(comm, part)));
         }
     }
+    all.extend(full.revolution_warnings(comm));
     all
 }
 
@@ -243,7 +244,7 @@ impl FullModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Place;
+    use crate::model::{Inertia, Place};
 
     #[test]
     fn constant_strain_and_locking_elements_are_named_and_others_are_not() {
@@ -286,6 +287,7 @@ mod tests {
             axis,
             through,
             speed: 5.0,
+            inertia: Inertia::None,
             place: Place::default(),
         };
         let about = |a: [f64; 3], through: [f64; 3]| axis(&rotation(a, through), &disc([0.3, 0.0, 0.5]));

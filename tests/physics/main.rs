@@ -12,6 +12,8 @@ mod friction_law;
 mod galerkin;
 mod joints;
 mod manufactured_solution;
+mod prestress;
+mod rotation;
 mod structural_damping;
 mod super_element;
 #[path = "../support/mod.rs"]

@@ -128,6 +128,7 @@ impl Conversion<'_> {
             loads,
             band: settings.band,
             friction_damping: settings.friction_damping,
+            prestress: None,
             criterion: InstabilityCriterion::default(),
             swept: Vec::new(),
             frictions: Vec::new(),

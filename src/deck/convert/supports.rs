@@ -10,7 +10,7 @@ use crate::Result;
 use crate::algebra::{norm, scale, sub};
 use crate::deck::sets::Kind;
 use crate::deck::types::{Action, ActionKind, Entry, Spin};
-use crate::model::{Equation, Fix, Load, LoadKind, Place, Rotation};
+use crate::model::{Equation, Fix, Inertia, Load, LoadKind, Place, Rotation};
 
 /// A force on a node, by axis, with the step that it began in.
 type Forces = BTreeMap<u32, [(usize, f64); 3]>;
@@ -276,6 +276,7 @@ fn rotation(part: String, spin: Spin, length: f64, time: f64, place: Place) -> R
         axis: scale(1.0 / norm(axis), axis),
         through: spin.from.map(|x| x * length),
         speed: spin.speed / time,
+        inertia: Inertia::None,
         place,
     }
 }

@@ -1,6 +1,7 @@
 //! Whether model file and mesh go together.
 
 mod joints;
+mod rotations;
 
 use super::{Contact, LoadKind, Model, Place, ROUGH, Rotation, names};
 use crate::algebra::{cross, sub};
@@ -17,6 +18,7 @@ impl Model {
         check.parts();
         check.names();
         check.joints();
+        check.rotations();
         check.loads();
         self.contacts.iter().for_each(|contact| check.contact(contact));
         check.sweep();

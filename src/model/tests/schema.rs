@@ -120,6 +120,8 @@ fn what_the_program_refuses_the_schema_refuses() {
         ("axes = \"xyz\"", "axes = \"xyw\""),
         ("band = [0, 6000]", "band = [6000]"),
         ("pressure = 4e6", ""),
+        ("inertia = \"none\"", "inertia = \"fixed\""),
+        ("prestress = false", "prestress = 0"),
         ("contacts = 104", "contacts = 10.4"),
         ("unstable = { damping_ratio = -0.001 }", "unstable = { damping = -0.001 }"),
     ] {
