@@ -181,10 +181,10 @@ struct Run {
     #[arg(long, value_name = "LAW", value_parser = values::law)]
     law: Option<NormalLaw>,
     /// Of a super-element: the loads as a multiple of the model's
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::pressure, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::factor, allow_hyphen_values = true)]
     pressure: f64,
     /// The normal stiffness of the swept contacts as a multiple of the model's
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::pressure, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::factor, allow_hyphen_values = true)]
     contact_stiffness: f64,
     /// Folder of the results (default: the model file's name with the command's)
     #[arg(short, long, value_name = "FOLDER")]

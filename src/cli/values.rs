@@ -1,5 +1,7 @@
 //! Values, bands and laws as people type them.
 
+use std::ops::RangeInclusive;
+
 use crate::model::{InstabilityCriterion, LARGEST_FRICTION, NormalLaw, UnitSystem, spaced};
 
 /// Values of friction or of any parameter, no two of them the same.
@@ -108,11 +110,14 @@ pub fn law(text: &str) -> Result<NormalLaw, String> {
     }
 }
 
-/// A factor on the loads.
-pub fn pressure(text: &str) -> Result<f64, String> {
+/// Factors beyond these are slips of the pen: rounding errors are all that their equilibria have.
+const FACTORS: RangeInclusive<f64> = 1e-6..=1e6;
+
+/// A factor on what the model has.
+pub fn factor(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
-        Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(factor),
-        _ => Err(format!("{text:?} is not a number above 0: give the loads as a multiple of the model's")),
+        Ok(factor) if FACTORS.contains(&factor) => Ok(factor),
+        _ => Err(format!("{text:?} is not a number from 1e-6 to 1e6: give a multiple of what the model has")),
     }
 }
 
@@ -174,7 +179,7 @@ mod tests {
         ] {
             assert!(law(text).unwrap_err().contains(reason), "{text}");
         }
-        assert!(pressure("0").is_err() && pressure("nan").is_err());
-        assert_eq!(pressure("1.5"), Ok(1.5));
+        assert!(["0", "nan", "-1", "1e300", "2e6"].iter().all(|text| factor(text).is_err()));
+        assert_eq!(["1.5", "1e6"].map(factor), [Ok(1.5), Ok(1e6)]);
     }
 }

@@ -231,6 +231,9 @@ impl StepSolver for NewtonSteps<'_, '_> {
 /// Residuals of the first and the last iterates, as text.
 fn history(iterations: &[Iteration]) -> String {
     const SHOWN: usize = 6;
+    if iterations.is_empty() {
+        return "the first one is not a number".into();
+    }
     let text = |part: &[Iteration]| part.iter().map(|it| format!("{:.1e}", it.residual)).collect::<Vec<_>>().join(" ");
     if iterations.len() <= 2 * SHOWN {
         return text(iterations);

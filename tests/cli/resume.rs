@@ -188,7 +188,7 @@ fn a_killed_run_goes_on() {
 fn a_run_that_a_second_signal_has_ended_goes_on() {
     let place = Place::pads();
     let arguments =
-        ["stability", "brake.toml", "--band=0:1500", "--friction=0.1:0.6:0.1", "--no-branches", "-o", "run"];
+        ["stability", "brake.toml", "--band=0:1000", "--friction=0.1:0.6:0.1", "--no-branches", "-o", "run"];
     let finished = place.run(&arguments);
     assert_eq!(finished.code, 0, "{}", finished.err);
     std::fs::rename(place.path("run"), place.path("expected")).unwrap();
@@ -363,9 +363,12 @@ fn a_signal_within_a_long_value_ends_the_run_within_five_seconds() {
     let place = Place::pads();
     let arguments = ["stability", "brake.toml", "--friction=0.4", "--band=0:25000", "--no-branches", "-o", "run", "-v"];
     let mut child = start(&place, 1, &arguments);
-    std::thread::sleep(std::time::Duration::from_secs(2));
+    while !place.path(".run.unfinished").exists() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_secs(2));
     assert!(child.try_wait().unwrap().is_none(), "the value is long enough");
-    let sent = std::time::Instant::now();
+    let sent = Instant::now();
     signal("TERM", child.id());
     let Finished { code, err, .. } = end(child);
     assert!(sent.elapsed().as_secs_f64() < 5.5, "{err}");
