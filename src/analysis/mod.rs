@@ -47,6 +47,7 @@ pub use external_sweep::{ExternalModes, ExternalSweep};
 pub use family::{FrictionFamily, Snapshot, Solutions, Spectrum, Vectors, tracking_options, widened};
 pub use free_modes::{FreeModesOptions, free_modes};
 pub use galerkin::{GalerkinOptions, GalerkinReduction, reduce_galerkin};
+pub use measured::{Measured, read as read_measured};
 pub use observer::{Event, Observer};
 pub use proposal::propose_model;
 pub use reduce::{ReduceOptions, Reduction, reduce, with_reference_contacts};

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 use mutate::Mutator;
 use squeal::deck::KnownUnits;
 use squeal::matrices::Role;
-use squeal::{deck, matrices, mesh, model, reduction, results};
+use squeal::{analysis, deck, matrices, mesh, model, reduction, results};
 
 /// A reader takes no longer for one file.
 const LONGEST: Duration = Duration::from_secs(5);
@@ -122,6 +122,16 @@ fn petsc_matrices() {
 #[test]
 fn matrices_of_abaqus() {
     fuzz("abaqus", "mtx", seeds::abaqus(), |path| matrices::read(path, Role::Stiffness).is_ok());
+}
+
+#[test]
+fn measured_modes() {
+    fuzz("measured", "csv", seeds::measured(), |path| analysis::read_measured(path).is_ok());
+}
+
+#[test]
+fn matrix_families() {
+    fuzz("family", "toml", seeds::families(), |path| matrices::family::read(path).is_ok());
 }
 
 #[test]

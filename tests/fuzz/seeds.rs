@@ -33,7 +33,9 @@ pub fn decks() -> Vec<Vec<u8>> {
     let place = Place::blocks();
     let written = place.run(&["convert", "brake.toml", "-o", "brake.inp"]);
     assert_eq!(written.code, 0, "{}", written.err);
-    let joined = INSTANCES.replace("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\n", JOINTS);
+    let (before, after) = INSTANCES.split_once("*CLEARANCE").unwrap();
+    let (_, after) = after.split_once('\n').unwrap();
+    let joined = format!("{before}{after}").replace("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\n", JOINTS);
     vec![place.read("brake.inp").into_bytes(), INSTANCES.as_bytes().to_vec(), joined.into_bytes()]
 }
 
@@ -49,7 +51,9 @@ const JOINTS: &str = "*NODE, NSET=REFERENCE
 1e-3
 *ELEMENT, TYPE=SPRING1, ELSET=S
 202, 101
-*SPRING, ELSET=S
+*ORIENTATION, NAME=O
+1., 1., 0., -1., 1., 0.
+*SPRING, ELSET=S, ORIENTATION=O
 3, 3
 100.
 *EQUATION
@@ -108,6 +112,7 @@ LOW
 0.3
 *CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE
 TWO.BOTTOM, ONE.TOP
+*CLEARANCE, SLAVE=TWO.BOTTOM, MASTER=ONE.TOP, VALUE=0.001
 *BOUNDARY
 HELD, 1, 3
 *STEP
@@ -120,6 +125,15 @@ TWO.TOP, P, 1.5
 10, 0., 6000.
 *END STEP
 ";
+
+pub fn measured() -> Vec<Vec<u8>> {
+    let rows = "x,y,z,direction,812.5,1930\n0,0,10,z,0.5,-1e-3\n12.5,-3,10,-y,1,0.25\n1,2,3,0.6 0 0.8,-0.5,2\n";
+    vec![rows.as_bytes().to_vec()]
+}
+
+pub fn families() -> Vec<Vec<u8>> {
+    all(&["matrices/bicycle.toml", "matrices/hoffmann.toml", "matrices/sinou.toml"])
+}
 
 pub fn matrix_market() -> Vec<Vec<u8>> {
     all(&["matrices/bicycle_m.mtx", "matrices/qep1_k.mtx", "matrices/sinou_k0.mtx"])
