@@ -52,6 +52,7 @@
 //! | [`mesh`] | nodes, elements by part, surfaces; Gmsh meshes | [`mesh::read`] |
 //! | [`model`] | what is analysed, from the user's file, checked, in SI units | [`model::read`] |
 //! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
+//! | [`explore`] | studies of many parameters: points, probabilities, Sobol indices: pure | [`explore::read`] |
 //! | [`deck`] | input files of Abaqus and CalculiX, read and written | [`deck::read`] |
 //! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
 //! | [`matrices`] | external M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |
@@ -119,6 +120,7 @@ pub mod deck;
 pub mod element;
 pub mod equilibrium;
 pub mod error;
+pub mod explore;
 mod hdf;
 pub mod matrices;
 pub mod mesh;

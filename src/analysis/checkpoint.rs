@@ -34,10 +34,9 @@ use crate::{Error, Result};
 
 use super::family::{Snapshot, Spectrum};
 use super::sweep::Sweep;
+use super::unfinished::Unfinished;
 
 const FORMAT: Format = Format { name: "squeal checkpoint", version: 2, advice: "Begin again with --force" };
-/// What the numbers of a study depend on.
-const STUDY: &str = "study.txt";
 
 /// A finished value as an earlier run has left it.
 pub struct EarlierValue {
@@ -72,7 +71,12 @@ impl Checkpoint {
         force: bool,
     ) -> Result<(Checkpoint, VecDeque<EarlierValue>)> {
         let place = folder::unfinished(target)?.join(RESUME);
-        let n = folder.map_or(Ok(0), |folder| prepare(folder, &place, target, identity, force));
+        let study = Unfinished { target, identity, name: value_name, unit: "friction values" };
+        let check = |n: usize| {
+            require_files(&place, n - 1)?;
+            (0..n).try_for_each(|i| read_value(&place.join(value_name(i))).map(|_| ()))
+        };
+        let n = folder.map_or(Ok(0), |folder| study.prepare(folder, force, check));
         let n_earlier = comm.broadcast_value(0, comm.agree(n)?);
         let earlier = comm.agree((0..n_earlier).map(|i| read_value(&place.join(value_name(i)))).collect())?;
         Ok((Checkpoint { comm: comm.clone(), folder: place, n_earlier, n_done: 0, kept: Vec::new() }, earlier))
@@ -244,43 +248,6 @@ fn draft(place: &Path) -> PathBuf {
 
 fn products_name([left, right]: [usize; 2]) -> String {
     format!("products-{left:04}-{right:04}.h5")
-}
-
-/// Number of finished values in an unfinished folder, which is emptied where they cannot be used.
-fn prepare(folder: &Folder, place: &Path, target: &Path, identity: &[(&str, String)], force: bool) -> Result<usize> {
-    let n = (0..).find(|&i| !place.join(value_name(i)).exists()).expect("numbers do not end");
-    if n > 0 {
-        folder.keep();
-        match usable(place, target, identity, n) {
-            Ok(()) => return Ok(n),
-            Err(error) if !force => return Err(error),
-            Err(_) => (),
-        }
-    }
-    folder.clear()?;
-    let lines: String = identity.iter().map(|(name, value)| format!("{name}: {value}\n")).collect();
-    write_file(&place.join(STUDY), |out| out.write_all(lines.as_bytes()))?;
-    Ok(0)
-}
-
-/// Refuses what another study has left, and what cannot be read.
-fn usable(place: &Path, target: &Path, identity: &[(&str, String)], n: usize) -> Result<()> {
-    let file = place.join(STUDY);
-    let begun = std::fs::read_to_string(&file).map_err(|reason| {
-        Error::input(format!("{} is missing or damaged: {reason}. Use --force to begin again", file.display()))
-    })?;
-    for (name, value) in identity {
-        let before = begun.lines().find_map(|line| line.strip_prefix(&format!("{name}: "))).unwrap_or("unknown");
-        if before != value {
-            let what =
-                format!("{} is unfinished ({n} friction values are done), and was begun otherwise", target.display());
-            let advice =
-                "Continue with the command that began it, use --force to begin again, or --output for another folder";
-            return Err(Error::input(format!("{what}: {name} was {before}, is {value}. {advice}")));
-        }
-    }
-    require_files(place, n - 1)?;
-    (0..n).try_for_each(|i| read_value(&place.join(value_name(i))).map(|_| ()))
 }
 
 /// Refuses an unfinished folder in which files of finished values are missing, or have another length.

@@ -8,6 +8,7 @@
 //! | [`stability`] | a structure | complex modes of a band over the friction coefficient, branches and Hopf points |
 //! | [`reduce`] | a full model | a super-element and its file |
 //! | [`study`] | a model file | contact layouts and super-elements compared with full contact |
+//! | [`explore`] | the file of a study | modes at points of many parameters, and how probable squeal is |
 //! | [`export`] | a structure | M, C, K about an equilibrium as files |
 //! | [`external_modes`] | matrices M, C, K of any program | modes of a band, along a parameter of them |
 //! | [`free_modes`] | one part of a model | free modes, compared with measured ones |
@@ -20,6 +21,7 @@ mod certificate;
 mod check;
 mod checkpoint;
 mod explain;
+mod explore;
 mod export;
 mod external;
 mod external_sweep;
@@ -36,11 +38,13 @@ mod stability;
 mod statics;
 mod study;
 mod sweep;
+mod unfinished;
 #[cfg(test)]
 mod tests;
 
 pub use check::{matrix_summary, model_summary};
 pub use explain::{explain, explain_full};
+pub use explore::{Exploration, explore};
 pub use export::{ExportOptions, Exported, MatrixFormat, export};
 pub use external::{ExternalOptions, external_modes};
 pub use external_sweep::{ExternalModes, ExternalSweep};

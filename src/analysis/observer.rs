@@ -1,6 +1,7 @@
 //! What a caller sees of an analysis while it runs.
 
 use crate::equilibrium::Iteration;
+use crate::explore::PointResult;
 use crate::model::ProposedStiffness;
 use crate::native::Comm;
 use crate::reduction::craig_bampton;
@@ -57,6 +58,15 @@ pub enum Event<'a> {
     Reduction(&'a craig_bampton::Event),
     /// A value is finished.
     Finished(&'a Value),
+    /// A point of a study of many parameters is finished.
+    Point {
+        /// Its number, from 1; 0 for the nominal point.
+        number: usize,
+        /// What was found.
+        point: &'a PointResult,
+        /// Whether an earlier run has found it.
+        is_replayed: bool,
+    },
 }
 
 /// Follows an analysis. Only [`Observer::stop_signal`] has a say in it.

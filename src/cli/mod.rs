@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod completions;
 mod convert;
+mod explore;
 mod export;
 mod interrupt;
 mod man;
@@ -155,6 +156,8 @@ enum Command {
     /// Each model has a folder of its own, as `squeal stability` makes it. Run again, a study makes only what is
     /// missing or out of date.
     Study(study::Study),
+    /// Find the modes at points of many parameters: how probable squeal is, and which parameters matter
+    Explore(explore::Explore),
     /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
     Compare(compare::Compare),
     /// Print the completions of a shell: squeal completions bash > /etc/bash_completion.d/squeal
@@ -309,6 +312,7 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::Report(report) => report::run(shell, report),
         Command::Stability(stability) => stability::run(shell, stability),
         Command::Study(study) => study::run(shell, study),
+        Command::Explore(explore) => explore::run(shell, explore),
         Command::Compare(compare) => compare::run(shell, compare),
         Command::Completions(completions) => completions::run(shell, completions),
         Command::Man(man) => man::run(shell, man),

@@ -2,6 +2,7 @@
 
 use crate::Result;
 use crate::analysis::{Event, Observer};
+use crate::explore::{Outcome, PointResult};
 use crate::model::ProposedStiffness;
 use crate::output::text::friction;
 use crate::reduction::craig_bampton;
@@ -75,6 +76,8 @@ impl Observer for Watch {
             }
             Event::Reduction(step) => self.progress.show(reduction_step(step)),
             Event::Finished(value) => self.progress.advance(&finished(value)),
+            Event::Point { is_replayed: true, .. } => self.progress.skip(true),
+            Event::Point { number, point, .. } => self.progress.advance(&finished_point(number, point)),
         }
     }
 
@@ -89,6 +92,18 @@ fn reduction_step(step: &craig_bampton::Event) -> String {
         craig_bampton::Event::Constraint(done, all) => format!("constraint modes: {done} of {all}"),
         craig_bampton::Event::Fixed(size) => format!("fixed-interface modes: a space of {size} vectors"),
         craig_bampton::Event::Project => "projecting".into(),
+    }
+}
+
+/// A finished point of a study in a few words.
+fn finished_point(number: usize, point: &PointResult) -> String {
+    let name = if number == 0 { "nominal point".to_owned() } else { format!("point {number}") };
+    match &point.outcome {
+        Outcome::Failed(reason) => format!("{name} has failed: {reason}"),
+        Outcome::Modes(modes) => {
+            let n_unstable = modes.iter().filter(|mode| mode.unstable).count();
+            format!("{name}: {} modes, {n_unstable} unstable", modes.len())
+        }
     }
 }
 

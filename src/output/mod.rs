@@ -8,6 +8,7 @@ pub mod contact_cells_vtu;
 mod contact_rows;
 pub mod details;
 pub mod explain;
+pub mod explore;
 pub mod external;
 pub mod fields;
 pub mod files;

@@ -25,6 +25,7 @@ mod rigid_motions;
 mod rotations;
 mod super_element;
 mod surface_motion;
+mod variants;
 
 pub use digest::digest;
 pub use equilibrium_checks::EquilibriumChecks;
@@ -36,6 +37,7 @@ pub use ranked::Ranked;
 pub use reduced::ReducedModel;
 pub use rigid_motions::RigidMotions;
 pub use surface_motion::{SurfaceMotion, coordinates};
+pub use variants::ModelVariants;
 
 use std::path::Path;
 

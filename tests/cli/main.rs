@@ -4,6 +4,7 @@ mod bad_input;
 mod browser;
 mod command_line;
 mod deck;
+mod explore;
 mod external_matrices;
 mod joints;
 mod json;

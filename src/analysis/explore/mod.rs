@@ -1,0 +1,278 @@
+//! Modes at points of many parameters.
+//!
+//! The nominal point is the first one; then come the points of the design, each with a system and factors of its own,
+//! so that a point depends on nothing but its values and the state that it starts from: an equilibrium nearby. So a
+//! study that was interrupted ends with the same numbers.
+
+mod checkpoint;
+mod point;
+mod subject;
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use crate::explore::{Answers, Distribution, Outcome, PointResult, Study, with_mesh};
+use crate::native::{Comm, libraries};
+use crate::output::explore::{Document, WORST, write};
+use crate::output::folder::Folder;
+use crate::results::About;
+use crate::{Error, Result};
+
+use super::observer::{Event, Observer};
+use super::run::Output;
+
+use checkpoint::Points;
+use point::{NominalModes, Request, is_of_point, solve};
+use subject::Subject;
+
+/// What a study of many parameters has found.
+#[derive(Debug, Clone)]
+pub struct Exploration {
+    /// What was analysed.
+    pub about: About,
+    /// The nominal point, then those of the design.
+    pub points: Vec<PointResult>,
+    /// What they say together.
+    pub answers: Answers,
+    /// The model file of the point with the largest growth rate; none of a super-element.
+    pub worst: Option<String>,
+}
+
+/// Finds the modes at the points of a study, follows them to the nominal point, and says how probable squeal is and
+/// which parameters matter. A point that fails is recorded with its reason. With `output` the study is written to a
+/// folder, and continues where an earlier run has ended. Only the root gets the result. Collective.
+///
+/// ```no_run
+/// use squeal::analysis::explore;
+///
+/// let comm = squeal::Session::start(&[])?;
+/// let study = squeal::explore::read("explore.toml".as_ref())?;
+/// let found = explore(&comm, &study, None, &mut ())?.expect("this is the root");
+/// println!("unstable with a probability of {:.2}", found.answers.unstable.value);
+/// # Ok::<(), squeal::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Input`] for a study, model or folder that cannot be used; [`Error::Interrupted`]; the system's.
+pub fn explore(
+    comm: &Comm,
+    study: &Study,
+    output: Option<&Output>,
+    observer: &mut dyn Observer,
+) -> Result<Option<Exploration>> {
+    if !crate::hdf::is_hdf5(&study.model) {
+        let found = Run::new(comm, study, output)?.run(output, observer)?;
+        return Ok(comm.is_root().then_some(found));
+    }
+    // The few dofs of a super-element are not worth sharing.
+    let alone = comm.alone();
+    let mut work = || Run::new(&alone, study, output)?.run(output, observer).map(Some);
+    comm.agree(if comm.is_root() { work() } else { Ok(None) })
+}
+
+/// Displacements are kept of so many bytes.
+const STATES_BYTES: usize = 1 << 30;
+/// Displacements are kept of at most so many points.
+const MAX_STATES: usize = 1000;
+
+/// A study under way.
+struct Run<'s> {
+    comm: Comm,
+    study: &'s Study,
+    subject: Subject<'s>,
+    about: About,
+    request: Request,
+    /// Values of the parameters, the nominal point first.
+    values: Vec<Vec<f64>>,
+    /// Ranges of the parameters over all points.
+    scales: Vec<f64>,
+    folder: Option<Folder>,
+}
+
+impl<'s> Run<'s> {
+    /// Reads and checks everything before anything is computed. Collective.
+    fn new(comm: &Comm, study: &'s Study, output: Option<&Output>) -> Result<Run<'s>> {
+        let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
+        let folder = comm.agree(output.filter(|_| comm.is_root()).map_or(Ok(None), open))?;
+        let subject = Subject::read(comm, study)?;
+        let nominal = subject.nominal();
+        let (structure, _) = subject.structure(comm, &nominal)?;
+        structure.require_mass()?;
+        let band = structure.band(study.band)?;
+        let criterion = study.criterion.unwrap_or(structure.criterion());
+        let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
+        let design = study.design.points(&distributions, &nominal)?;
+        let about = About {
+            program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
+            libraries: libraries(),
+            command: output.map_or_else(String::new, |output| output.command.clone()),
+            n_ranks: comm.size(),
+            band,
+            criterion,
+            ..structure.about(comm)?
+        };
+        let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
+        let request = Request { band, criterion, follow: study.follow };
+        let scales = scales(&values);
+        Ok(Run { comm: comm.clone(), study, subject, about, request, values, scales, folder })
+    }
+
+    /// Solves the points, and writes what they say. Collective.
+    fn run(mut self, output: Option<&Output>, observer: &mut dyn Observer) -> Result<Exploration> {
+        let (comm, place) = (self.comm.clone(), output.map(|output| output.folder.as_path()));
+        let identity = self.identity(output);
+        let force = output.is_some_and(|output| output.force);
+        let mut points = Points::open(&comm, self.folder.as_ref(), place, &identity, force)?;
+        self.announce(&points, place, observer);
+        let mut nominal = points.nominal()?;
+        for number in points.done.len()..self.values.len() {
+            let (point, state) = self.point(number, &points, &mut nominal, observer)?;
+            let n_dofs = comm.sum(state.as_ref().map_or(0, Vec::len));
+            let room = (STATES_BYTES / 8 / n_dofs.max(1)).clamp(1, MAX_STATES);
+            points.commit(point, state.filter(|_| points.n_states() < room))?;
+            self.folder.iter().for_each(Folder::keep);
+            observer.event(Event::Point { number, point: &points.done[number], is_replayed: false });
+            self.stop_if_asked(number, place, observer)?;
+        }
+        self.about.n_dofs = comm.sum(points.n_own_dofs());
+        let answers = Answers::new(self.study, &points.done, self.request.band);
+        let worst = answers.worst.map_or(Ok(None), |number| self.subject.text(&points.done[number].values))?;
+        let found = Exploration { about: self.about, points: points.done, answers, worst };
+        comm.agree(match (self.folder.take(), output) {
+            (Some(folder), Some(output)) => finish(folder, self.study, &found, &output.folder),
+            _ => Ok(()),
+        })?;
+        Ok(found)
+    }
+
+    /// Solves one point; what fails is its result. Collective.
+    fn point(
+        &self,
+        number: usize,
+        points: &Points,
+        nominal: &mut Option<NominalModes>,
+        observer: &mut dyn Observer,
+    ) -> Result<(PointResult, Option<Vec<f64>>)> {
+        let values = self.values[number].clone();
+        let start = points.nearest(&values, &self.scales);
+        let found = self.subject.structure(&self.comm, &values).and_then(|(structure, friction)| {
+            let brake = (&structure, friction);
+            solve(&self.comm, brake, &self.request, start, nominal.as_ref(), observer)
+        });
+        match found {
+            Ok(found) => {
+                if number == 0 {
+                    found.nominal.iter().try_for_each(|modes| points.keep_nominal(modes))?;
+                    *nominal = found.nominal;
+                }
+                let outcome = Outcome::Modes(found.modes);
+                Ok((PointResult { values, outcome }, Some(found.displacements)))
+            }
+            Err(error) if is_of_point(&self.comm, &error) => {
+                // A reason is the same on all ranks.
+                let reason = self.comm.broadcast_value(0, error.to_string());
+                Ok((PointResult { values, outcome: Outcome::Failed(reason) }, None))
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// All that the numbers depend on, by name.
+    fn identity(&self, output: Option<&Output>) -> Vec<(&'static str, String)> {
+        let study = format!("{:?} {:?} {}", self.study.parameters, self.study.design, self.study.follow);
+        let digest: String = Sha256::digest(study).iter().map(|byte| format!("{byte:02x}")).collect();
+        let mut identity = vec![
+            ("program", self.about.program.clone()),
+            ("analysis", "explore".to_owned()),
+            ("SHA-256 of parameters and design", digest),
+            ("band", format!("{:?}", self.request.band)),
+            ("unstable", self.request.criterion.to_string()),
+            ("SHA-256 of the model", self.about.model_digest.clone()),
+            ("SHA-256 of the mesh", self.about.mesh_digest.clone()),
+            ("number of ranks", self.about.n_ranks.to_string()),
+        ];
+        identity.extend(output.into_iter().flat_map(|output| output.identity.iter().cloned()));
+        identity
+    }
+
+    /// Reports what is known before anything is computed.
+    fn announce(&self, points: &Points, place: Option<&Path>, observer: &mut dyn Observer) {
+        self.about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
+        observer.event(Event::Planned(self.values.len()));
+        let n = points.done.len();
+        if let Some(place) = place.filter(|_| n > 0) {
+            observer.event(Event::Resumed { place: &place.display().to_string(), n_values: n });
+        }
+        for (number, point) in points.done.iter().enumerate() {
+            observer.event(Event::Point { number, point, is_replayed: true });
+        }
+    }
+
+    /// Ends the work where a signal has asked any rank for it. Collective.
+    fn stop_if_asked(&self, number: usize, place: Option<&Path>, observer: &mut dyn Observer) -> Result<()> {
+        let signal = self.comm.max(observer.stop_signal().unwrap_or(0));
+        if signal == 0 || number + 1 == self.values.len() {
+            return Ok(());
+        }
+        let to = place.map_or_else(String::new, |place| format!(" to {}", place.display()));
+        let text = format!("stopped after point {number} of {}. The same command continues{to}", self.values.len() - 1);
+        Err(Error::Interrupted { signal, text })
+    }
+}
+
+/// Writes the files of the folder, and gives it its name. Not collective.
+fn finish(folder: Folder, study: &Study, found: &Exploration, place: &Path) -> Result<()> {
+    let document = Document::new(study, &found.about, &found.points, &found.answers, place);
+    write(&folder, &document, &found.points)?;
+    if let Some(worst) = &found.worst {
+        let text = document.worst_head() + &with_mesh(worst, &mesh_from(place, &found.about.mesh))?;
+        folder.write(WORST, |out| out.write_all(text.as_bytes()))?;
+    }
+    folder.finish()
+}
+
+/// The path of a mesh as a model file in a folder gives it: relative where both are known to the system.
+fn mesh_from(folder: &Path, mesh: &str) -> String {
+    let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (Ok(parent), Ok(mesh)) = (parent.canonicalize(), Path::new(mesh).canonicalize()) else {
+        return mesh.to_owned();
+    };
+    let n_common = parent.iter().zip(mesh.iter()).take_while(|(a, b)| a == b).count();
+    // One level more: the folder itself.
+    let up = vec![".."; parent.iter().count() - n_common + 1];
+    let down = mesh.iter().skip(n_common).map(|name| name.to_string_lossy().into_owned());
+    up.into_iter().map(str::to_owned).chain(down).collect::<Vec<_>>().join("/")
+}
+
+/// Ranges of the parameters over all points; 1 where a parameter does not vary.
+fn scales(values: &[Vec<f64>]) -> Vec<f64> {
+    let range = |i: usize| {
+        let own = || values.iter().map(|point| point[i]);
+        own().fold(f64::NEG_INFINITY, f64::max) - own().fold(f64::INFINITY, f64::min)
+    };
+    (0..values[0].len()).map(range).map(|range| if range > 0.0 { range } else { 1.0 }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_is_found_from_the_folder_of_the_results() {
+        let place = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(place.path().join("a/b")).unwrap();
+        std::fs::create_dir_all(place.path().join("c")).unwrap();
+        std::fs::write(place.path().join("a/brake.msh"), "").unwrap();
+        let mesh = place.path().join("a/brake.msh").display().to_string();
+        assert_eq!(mesh_from(&place.path().join("a/b/run"), &mesh), "../../brake.msh");
+        assert_eq!(mesh_from(&place.path().join("c/run"), &mesh), "../../a/brake.msh");
+        assert_eq!(mesh_from(&place.path().join("a/run"), &mesh), "../brake.msh");
+        assert_eq!(mesh_from("run".as_ref(), "no/such.msh"), "no/such.msh");
+    }
+
+    #[test]
+    fn scales_are_ranges() {
+        assert_eq!(scales(&[vec![1.0, 5.0], vec![4.0, 5.0], vec![2.0, 5.0]]), [3.0, 1.0]);
+    }
+}

@@ -1,0 +1,186 @@
+//! Equilibrium and modes at one point.
+
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+use crate::analysis::observer::Observer;
+use crate::analysis::sweep::Sweep;
+use crate::equilibrium::Equilibrium;
+use crate::explore::{ModeProducts, PointMode, link};
+use crate::model::InstabilityCriterion;
+use crate::native::{Block, Comm, Vector};
+use crate::structure::Structure;
+use crate::{Error, ErrorKind, Result};
+
+/// What is computed at every point.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// Frequency band, Hz.
+    pub band: [f64; 2],
+    /// What counts as an unstable mode.
+    pub criterion: InstabilityCriterion,
+    /// Whether modes are followed to the nominal point.
+    pub follow: bool,
+}
+
+/// The modes of the nominal point with M, so that those of other points are recognised.
+pub struct NominalModes {
+    /// `M y`, two columns a mode: real and imaginary part.
+    pub left: Block,
+    /// `M x`
+    pub right: Block,
+    /// `y^H M x` of each mode.
+    pub own: Vec<Complex64>,
+}
+
+/// What is found at a point.
+pub struct Found {
+    /// The modes of the band, by frequency.
+    pub modes: Vec<PointMode>,
+    /// This rank's part of the displacements of the equilibrium.
+    pub displacements: Vec<f64>,
+    /// For the points that follow, where modes are followed and this is the nominal one.
+    pub nominal: Option<NominalModes>,
+}
+
+/// The modes of a structure about its equilibrium at a friction coefficient, which is sought from the displacements
+/// `start` where these are given and it converges from there, else from rest. Without `nominal` this is the nominal
+/// point. Collective.
+///
+/// # Errors
+/// Those of equilibrium and modes.
+pub fn solve(
+    comm: &Comm,
+    (structure, friction): (&Structure, f64),
+    request: &Request,
+    start: Option<&[f64]>,
+    nominal: Option<&NominalModes>,
+    observer: &mut dyn Observer,
+) -> Result<Found> {
+    structure.require_mass()?;
+    let band = structure.band(Some(request.band))?;
+    let system = structure.assemble(comm)?;
+    let mut sweep = Sweep::new(&system, structure.interface(), structure.friction_damping())?;
+    let start = start.filter(|start| comm.min(usize::from(start.len() == system.load.n_local())) == 1);
+    let equilibrium = equilibrium_from(&mut sweep, friction, start, &system.load, observer)?;
+    let found = sweep.modes(&equilibrium, band, observer)?;
+    let mut modes: Vec<PointMode> = found
+        .modes
+        .iter()
+        .map(|mode| PointMode {
+            lambda: mode.lambda,
+            unstable: mode.is_unstable(request.criterion),
+            backward_error: mode.backward_error,
+            link: None,
+        })
+        .collect();
+    let mut own = None;
+    if request.follow && !modes.is_empty() {
+        let vectors = Vectors {
+            left: sweep.left_vectors(&found.modes, |_| ACCURACY)?,
+            right: sweep.right_vectors(&found.modes)?,
+        };
+        let weighted = vectors.weighted(&system.m)?;
+        match nominal {
+            Some(nominal) => vectors.follow(nominal, &weighted, &mut modes),
+            None => own = Some(weighted),
+        }
+    }
+    Ok(Found { modes, displacements: equilibrium.u.to_vec()?, nominal: own })
+}
+
+/// Accuracy of the left vectors that recognise modes.
+const ACCURACY: f64 = 1e-4;
+
+/// The equilibrium from a state nearby, else from rest.
+fn equilibrium_from(
+    sweep: &mut Sweep,
+    friction: f64,
+    start: Option<&[f64]>,
+    like: &Vector,
+    observer: &mut dyn Observer,
+) -> Result<Equilibrium> {
+    if let Some(start) = start {
+        sweep.restore(vec![(friction, Vector::from_local(like.comm(), start)?)], None);
+        match sweep.equilibrium(friction, observer) {
+            Err(error) if error.kind() == ErrorKind::NotConverged => sweep.restore(Vec::new(), None),
+            outcome => return outcome,
+        }
+    }
+    sweep.equilibrium(friction, observer)
+}
+
+/// Left and right vectors of a point's modes.
+struct Vectors {
+    left: Block,
+    right: Block,
+}
+
+impl Vectors {
+    /// With the point's own mass.
+    fn weighted(&self, m: &crate::native::Matrix) -> Result<NominalModes> {
+        let (left, right) = (self.left.multiplied_by(m)?, self.right.multiplied_by(m)?);
+        let n = right.n_columns() / 2;
+        let whole = hermitian(&self.left, &right);
+        Ok(NominalModes { left, right, own: (0..n).map(|i| whole[(i, i)]).collect() })
+    }
+
+    /// Recognises the modes.
+    fn follow(&self, nominal: &NominalModes, weighted: &NominalModes, modes: &mut [PointMode]) {
+        let products = ModeProducts {
+            nominal_left: hermitian(&nominal.left, &self.right),
+            nominal_right: hermitian(&self.left, &nominal.right),
+            nominal_own: nominal.own.clone(),
+            own: weighted.own.clone(),
+        };
+        for (mode, link) in modes.iter_mut().zip(link(&products.shares())) {
+            mode.link = link;
+        }
+    }
+}
+
+/// `y_i^H x_j` of complex vectors that are kept as two columns each. Collective.
+fn hermitian(y: &Block, x: &Block) -> DMatrix<Complex64> {
+    let (m, n) = (y.n_columns(), x.n_columns());
+    let real = DMatrix::from_vec(m, n, y.gram(x));
+    // (y_r - i y_i)^T (x_r + i x_i)
+    DMatrix::from_fn(m / 2, n / 2, |i, j| {
+        let at = |row: usize, column: usize| real[(2 * i + row, 2 * j + column)];
+        Complex64::new(at(0, 0) + at(1, 1), at(0, 1) - at(1, 0))
+    })
+}
+
+/// Whether an error is that of a point, which the study records and continues: of a kind that all ranks have together.
+pub fn is_of_point(comm: &Comm, error: &Error) -> bool {
+    match error.kind() {
+        ErrorKind::Input | ErrorKind::NotConverged | ErrorKind::OutOfMemory | ErrorKind::Singular => true,
+        ErrorKind::Library => comm.size() == 1,
+        ErrorKind::Io | ErrorKind::Interrupted { .. } => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::native::Session;
+
+    #[test]
+    fn products_are_those_of_complex_vectors() {
+        let comm = Session::start(&[]).unwrap();
+        let block = |columns: &[[f64; 2]]| Block::from_columns(&comm, 2, columns.concat());
+        let c = Complex64::new;
+        let (y, x) = ([c(1.0, 2.0), c(-1.0, 0.5)], [c(0.3, -0.7), c(2.0, 1.0)]);
+        let columns = |v: [Complex64; 2]| [[v[0].re, v[1].re], [v[0].im, v[1].im]];
+        let found = hermitian(&block(&columns(y)), &block(&columns(x)))[(0, 0)];
+        assert!((found - (y[0].conj() * x[0] + y[1].conj() * x[1])).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_point_fails_by_what_all_ranks_see() {
+        let comm = Session::start(&[]).unwrap();
+        assert!(is_of_point(&comm, &Error::input("density")) && is_of_point(&comm, &Error::not_converged("0.3")));
+        assert!(is_of_point(&comm, &Error::Singular { found_by: "MUMPS".into() }));
+        assert!(!is_of_point(&comm, &Error::Interrupted { signal: 2, text: String::new() }));
+        assert!(!is_of_point(&comm, &Error::io("disc".as_ref())(std::io::ErrorKind::StorageFull.into())));
+    }
+}

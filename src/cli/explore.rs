@@ -1,0 +1,54 @@
+//! `squeal explore`: modes at points of many parameters, and how probable squeal is.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::Result;
+use crate::analysis::{self, Output};
+use crate::explore::{self, Study};
+use crate::output::explore::Document;
+
+use super::Shell;
+use super::watch::Watch;
+
+/// What `explore` takes.
+#[derive(Args)]
+#[group(skip)]
+pub struct Explore {
+    /// The file of the study (TOML), which names a model file or a super-element, parameters and a design of points
+    study: PathBuf,
+    /// Folder of the results (default: the model file's name with -explore)
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Replace the results of an earlier run, and what another study has left unfinished
+    #[arg(long)]
+    force: bool,
+    /// Print a line for each finished point on standard error, with the time left (a terminal shows a bar anyway)
+    #[arg(short, long)]
+    verbose: bool,
+}
+
+impl Explore {
+    fn output(&self, shell: &Shell, study: &Study) -> Output {
+        let stem = study.model.file_stem().unwrap_or_default().to_string_lossy();
+        let words: Vec<_> = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+        Output {
+            folder: self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-explore"))),
+            force: self.force,
+            command: words.join(" "),
+            identity: vec![("options for PETSc", shell.petsc.join(" "))],
+        }
+    }
+}
+
+pub fn run(shell: &Shell, arguments: &Explore) -> Result<()> {
+    let study = shell.comm.agree(explore::read(&arguments.study))?;
+    let output = arguments.output(shell, &study);
+    let mut watch = Watch::with_signals(shell, arguments.verbose)?;
+    let found = analysis::explore(shell.comm, &study, Some(&output), &mut watch);
+    watch.finish();
+    let Some(found) = found? else { return Ok(()) };
+    let document = Document::new(&study, &found.about, &found.points, &found.answers, &output.folder);
+    shell.print(&document.text(), &document)
+}

@@ -1,0 +1,354 @@
+//! What the points of a study say together.
+
+use serde::Serialize;
+
+use super::design::DesignKind;
+use super::result::{PointMode, PointResult};
+use super::sensitivity::{Bar, Indices, sobol_indices, tornado};
+use super::statistics::{Probability, quantile};
+use super::study::Study;
+
+/// The answers of a study. Points have numbers from 1; the nominal point has number 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Answers {
+    /// Points without the nominal one.
+    pub n_points: usize,
+    /// Points that have failed.
+    pub n_failed: usize,
+    /// Modes whose link to the nominal point is doubtful.
+    pub n_doubtful: usize,
+    /// Whether points represent the distributions of the parameters. If not, probabilities are fractions of the points.
+    pub is_sample: bool,
+    /// That any mode is unstable.
+    pub unstable: Probability,
+    /// Quantiles of the largest growth rate, 1/s.
+    pub growth_rate: Vec<Quantile>,
+    /// The modes of the nominal point that are unstable anywhere, the most probable first, and those that are no mode
+    /// of it.
+    pub instabilities: Vec<Instability>,
+    /// Squeal probability over frequency.
+    pub bins: Vec<Bin>,
+    /// Sobol indices of the largest growth rate, where the design is for them.
+    pub indices: Option<Vec<Indices>>,
+    /// Swings of the largest growth rate, where one parameter varies at a time.
+    pub tornado: Option<Vec<Bar>>,
+    /// The point with the largest growth rate.
+    pub worst: Option<usize>,
+}
+
+/// A quantile of the largest growth rate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quantile {
+    /// Fraction of the points below.
+    pub fraction: f64,
+    /// Growth rate, 1/s.
+    pub growth_rate_per_s: f64,
+}
+
+/// A mode that is unstable at one point at least.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Instability {
+    /// Number of the nominal mode, from 1; none for modes that were not recognised.
+    pub nominal: Option<usize>,
+    /// Its frequency at the nominal point, Hz.
+    pub nominal_frequency_hz: Option<f64>,
+    /// Its growth rate there, 1/s.
+    pub nominal_growth_rate_per_s: Option<f64>,
+    /// That it is unstable.
+    pub probability: Probability,
+    /// Smallest and largest frequency where it is unstable, Hz.
+    pub frequency_range_hz: [f64; 2],
+    /// Its largest growth rate, 1/s.
+    pub largest_growth_rate_per_s: f64,
+    /// The point of that.
+    pub worst: usize,
+}
+
+/// That a mode is unstable in a range of frequencies.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Bin {
+    /// Lower end, Hz, in the range.
+    pub from_hz: f64,
+    /// Upper end, Hz, not in the range.
+    pub to_hz: f64,
+    /// The probability.
+    pub probability: Probability,
+}
+
+/// Fractions at which quantiles are given.
+const FRACTIONS: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
+
+/// The quantity of Sobol indices, tornado and quantiles: the largest growth rate of a point, 1/s.
+pub fn quantity(point: &PointResult) -> Option<f64> {
+    point.critical().map(PointMode::growth_rate)
+}
+
+impl Answers {
+    /// The answers of finished points, the nominal one first, then those of the design in its order. `band` in Hz.
+    ///
+    /// # Panics
+    /// Without a nominal point.
+    pub fn new(study: &Study, points: &[PointResult], band: [f64; 2]) -> Answers {
+        let (nominal, own) = points.split_first().expect("the nominal point");
+        let solved: Vec<(usize, &PointResult)> = (1..).zip(own).filter(|(_, point)| point.modes().is_some()).collect();
+        let sample: Vec<(usize, &PointResult)> =
+            solved.iter().copied().filter(|(number, _)| study.is_independent(number - 1)).collect();
+        let quantities = |points: &[(usize, &PointResult)]| -> Vec<f64> {
+            let mut sorted: Vec<f64> = points.iter().filter_map(|(_, point)| quantity(point)).collect();
+            sorted.sort_by(f64::total_cmp);
+            sorted
+        };
+        let sorted = quantities(&sample);
+        let at = |&fraction: &f64| Some(Quantile { fraction, growth_rate_per_s: quantile(&sorted, fraction)? });
+        let n_unstable = sample.iter().filter(|(_, point)| point.is_unstable()).count();
+        let growth = |(_, point): &&(usize, &PointResult)| quantity(point).unwrap_or(f64::NEG_INFINITY);
+        let worst = solved.iter().max_by(|a, b| growth(a).total_cmp(&growth(b)));
+        Answers {
+            n_points: own.len(),
+            n_failed: own.len() - solved.len(),
+            n_doubtful: solved.iter().flat_map(|(_, point)| doubtful(point)).count(),
+            is_sample: study.design.is_sample(),
+            unstable: Probability::of(n_unstable, sample.len()),
+            growth_rate: FRACTIONS.iter().filter_map(at).collect(),
+            instabilities: instabilities(nominal, &solved, &sample),
+            bins: bins(&sample, band, study.bin),
+            indices: indices(study, own),
+            tornado: bars(study, nominal, &solved),
+            worst: worst.map(|(number, _)| *number),
+        }
+    }
+}
+
+impl Study {
+    /// Whether a point is independent of the others, so that it counts for probabilities: of a design for Sobol indices
+    /// only A and B.
+    fn is_independent(&self, index: usize) -> bool {
+        match self.design.kind {
+            DesignKind::Saltelli { .. } => index % (self.parameters.len() + 2) < 2,
+            _ => true,
+        }
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.parameters.iter().map(|parameter| parameter.name.as_str()).collect()
+    }
+}
+
+fn doubtful(point: &PointResult) -> impl Iterator<Item = &PointMode> {
+    point.modes().into_iter().flatten().filter(|mode| mode.link.is_some_and(|link| link.doubtful))
+}
+
+fn instabilities(
+    nominal: &PointResult,
+    solved: &[(usize, &PointResult)],
+    sample: &[(usize, &PointResult)],
+) -> Vec<Instability> {
+    let unstable = |points: &[(usize, &PointResult)], of: Option<usize>| -> Vec<(usize, PointMode)> {
+        let own = |mode: &&PointMode| mode.unstable && mode.link.map(|link| link.nominal) == of;
+        let modes = |(number, point): &(usize, &PointResult)| {
+            let number = *number;
+            point.modes().into_iter().flatten().filter(own).map(move |mode| (number, *mode)).collect::<Vec<_>>()
+        };
+        points.iter().flat_map(modes).collect()
+    };
+    let n_nominal = nominal.modes().map_or(0, <[PointMode]>::len);
+    let instability = |of: Option<usize>| {
+        let found = unstable(solved, of);
+        let (worst, largest) =
+            found.iter().max_by(|a, b| a.1.growth_rate().total_cmp(&b.1.growth_rate())).map(|(n, mode)| (*n, *mode))?;
+        let mut where_unstable: Vec<usize> = unstable(sample, of).iter().map(|(number, _)| *number).collect();
+        where_unstable.dedup();
+        let frequencies = || found.iter().map(|(_, mode)| mode.frequency());
+        let own = of.and_then(|number| nominal.modes()?.get(number - 1));
+        Some(Instability {
+            nominal: of,
+            nominal_frequency_hz: own.map(PointMode::frequency),
+            nominal_growth_rate_per_s: own.map(PointMode::growth_rate),
+            probability: Probability::of(where_unstable.len(), sample.len()),
+            frequency_range_hz: [
+                frequencies().fold(f64::INFINITY, f64::min),
+                frequencies().fold(f64::NEG_INFINITY, f64::max),
+            ],
+            largest_growth_rate_per_s: largest.growth_rate(),
+            worst,
+        })
+    };
+    let mut all: Vec<Instability> = (1..=n_nominal).map(Some).chain([None]).filter_map(instability).collect();
+    all.sort_by(|a, b| b.probability.value.total_cmp(&a.probability.value));
+    all
+}
+
+fn bins(sample: &[(usize, &PointResult)], band: [f64; 2], width: f64) -> Vec<Bin> {
+    let n = ((band[1] - band[0]) / width).ceil().max(1.0) as usize;
+    let bin = |i: usize| {
+        let [from_hz, to_hz] = [i, i + 1].map(|i| (band[0] + i as f64 * width).min(band[1]));
+        // The last bin has its end.
+        let is_in = |f: f64| f >= from_hz && (f < to_hz || i + 1 == n && f <= to_hz);
+        let squeals = |(_, point): &&(usize, &PointResult)| {
+            point.modes().into_iter().flatten().any(|mode| mode.unstable && is_in(mode.frequency()))
+        };
+        Bin { from_hz, to_hz, probability: Probability::of(sample.iter().filter(squeals).count(), sample.len()) }
+    };
+    (0..n).map(bin).collect()
+}
+
+fn indices(study: &Study, own: &[PointResult]) -> Option<Vec<Indices>> {
+    if !matches!(study.design.kind, DesignKind::Saltelli { .. }) {
+        return None;
+    }
+    let values: Vec<Option<f64>> = own.iter().map(quantity).collect();
+    sobol_indices(&study.names(), &values, study.design.seed)
+}
+
+fn bars(study: &Study, nominal: &PointResult, solved: &[(usize, &PointResult)]) -> Option<Vec<Bar>> {
+    if !matches!(study.design.kind, DesignKind::OneAtATime { .. }) {
+        return None;
+    }
+    let all = solved.iter().map(|(_, point)| *point).chain([nominal]);
+    let points: Vec<(&[f64], f64)> = all.filter_map(|point| Some((&point.values[..], quantity(point)?))).collect();
+    Some(tornado(&study.names(), &nominal.values, &points))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use num_complex::Complex64;
+
+    use super::super::{Design, Distribution, KeyPath, Link, Outcome, Parameter};
+    use super::*;
+
+    fn study(kind: DesignKind, n_parameters: usize) -> Study {
+        let parameter = |i: usize| Parameter {
+            name: format!("p{i}"),
+            keys: vec![KeyPath::parse("friction").unwrap()],
+            is_factor: false,
+            distribution: Distribution::Uniform { from: 0.4, to: 0.9 },
+        };
+        Study {
+            file: "explore.toml".into(),
+            model: "brake.toml".into(),
+            parameters: (0..n_parameters).map(parameter).collect(),
+            design: Design { kind, seed: 1 },
+            band: None,
+            criterion: None,
+            bin: 100.0,
+            follow: true,
+        }
+    }
+
+    fn mode(hertz: f64, growth: f64, nominal: Option<usize>) -> PointMode {
+        PointMode {
+            lambda: Complex64::new(growth, TAU * hertz),
+            unstable: growth > 0.0,
+            backward_error: 0.0,
+            link: nominal.map(|nominal| Link { nominal, share: 0.9, doubtful: nominal == 2 }),
+        }
+    }
+
+    fn point(modes: Vec<PointMode>) -> PointResult {
+        PointResult { values: vec![0.5], outcome: Outcome::Modes(modes) }
+    }
+
+    #[test]
+    fn instabilities_are_counted_by_the_nominal_modes() {
+        let failed = PointResult { values: vec![0.5], outcome: Outcome::Failed("no equilibrium".into()) };
+        let points = [
+            point(vec![mode(150.0, -1.0, Some(1)), mode(250.0, -2.0, Some(2))]),
+            point(vec![mode(160.0, 3.0, Some(1)), mode(250.0, -2.0, Some(2))]),
+            point(vec![mode(140.0, 5.0, Some(1)), mode(255.0, 1.0, None)]),
+            point(vec![mode(150.0, -1.0, Some(1)), mode(250.0, -2.0, Some(2))]),
+            failed,
+        ];
+        let answers = Answers::new(&study(DesignKind::Sobol { n_points: 4 }, 1), &points, [100.0, 300.0]);
+        assert_eq!((answers.n_points, answers.n_failed, answers.n_doubtful, answers.worst), (4, 1, 2, Some(2)));
+        assert_eq!((answers.unstable.n_true, answers.unstable.n_points), (2, 3));
+        let [first, other] = &answers.instabilities[..] else { panic!("{:?}", answers.instabilities) };
+        assert_eq!((first.nominal, first.probability.n_true, first.worst), (Some(1), 2, 2));
+        assert!((first.frequency_range_hz[0] - 140.0).abs() < 1e-9 && first.largest_growth_rate_per_s == 5.0);
+        assert_eq!((other.nominal, other.nominal_frequency_hz, other.probability.n_true), (None, None, 1));
+        let counts: Vec<usize> = answers.bins.iter().map(|bin| bin.probability.n_true).collect();
+        assert_eq!(counts, [2, 1]);
+        let median = answers.growth_rate.iter().find(|quantile| quantile.fraction == 0.5).unwrap();
+        assert_eq!((median.growth_rate_per_s, answers.indices, answers.tornado), (3.0, None, None));
+    }
+
+    /// Hoffmann's model, `lambda^2 = -2 +- sqrt(1 - 4 mu / 3)`, with a stiffness k on both diagonals in place of 2: the
+    /// largest growth rate `a` is `(lambda^2 + sqrt(...))`'s real part, `a = sqrt((|s| - k) / 2)`, `|s|^2 = k^2 + 4 mu
+    /// / 3 - 1`, above mu = 3/4, 0 below.
+    fn hoffmann(mu: f64, k: f64) -> PointMode {
+        let root = Complex64::new(1.0 - 4.0 * mu / 3.0, 0.0).sqrt();
+        let square = Complex64::new(-k, 0.0) + root;
+        let lambda = square.sqrt();
+        let lambda = if lambda.im < 0.0 { -lambda.conj() } else { lambda };
+        let lambda = Complex64::new(lambda.re.abs(), lambda.im);
+        PointMode { lambda, unstable: lambda.re > 1e-9, backward_error: 0.0, link: None }
+    }
+
+    fn explored(kind: DesignKind) -> Answers {
+        let mut study = study(kind, 2);
+        study.parameters[1].distribution = Distribution::Uniform { from: 1.8, to: 2.2 };
+        let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
+        let design = study.design.points(&distributions, &[0.5, 2.0]).unwrap();
+        let all = [vec![0.5, 2.0]].into_iter().chain(design);
+        let points: Vec<PointResult> = all
+            .map(|values| PointResult { outcome: Outcome::Modes(vec![hoffmann(values[0], values[1])]), values })
+            .collect();
+        Answers::new(&study, &points, [0.0, 1.0])
+    }
+
+    /// Mean of a function over mu in (0.4, 0.9) and k in (1.8, 2.2), by the midpoint rule.
+    fn mean(f: impl Fn(f64, f64) -> f64) -> f64 {
+        let n = 1000;
+        let at = |i: usize| (i as f64 + 0.5) / n as f64;
+        let row = |i: usize| (0..n).map(|j| f(0.4 + 0.5 * at(i), 1.8 + 0.4 * at(j))).sum::<f64>();
+        (0..n).map(row).sum::<f64>() / (n * n) as f64
+    }
+
+    /// mu is uniform in (0.4, 0.9), so that the model is unstable with probability (0.9 - 0.75) / 0.5 = 0.3.
+    #[test]
+    fn the_squeal_probability_of_hoffmanns_model_is_exact() {
+        let answers = explored(DesignKind::Sobol { n_points: 1024 });
+        assert!((answers.unstable.value - 0.3).abs() < 2e-3, "{:?}", answers.unstable);
+        assert!(answers.unstable.low < 0.3 && 0.3 < answers.unstable.high);
+        let answers = explored(DesignKind::LatinHypercube { n_points: 1000 });
+        assert!((answers.unstable.value - 0.3).abs() < 2e-3, "{:?}", answers.unstable);
+        // a rises with mu: at k = 2 the quantile 0.95 is that of mu = 0.4 + 0.95 * 0.5.
+        let found = answers.growth_rate.iter().find(|quantile| quantile.fraction == 0.95).unwrap();
+        assert!((found.growth_rate_per_s / hoffmann(0.875, 2.0).lambda.re - 1.0).abs() < 0.02, "{found:?}");
+    }
+
+    #[test]
+    fn the_indices_of_hoffmanns_model_are_those_of_exact_integrals() {
+        let f = |mu: f64, k: f64| hoffmann(mu, k).lambda.re;
+        let whole = mean(f);
+        let variance = mean(|mu, k| (f(mu, k) - whole).powi(2));
+        let n = 400;
+        let over = |low: f64, length: f64, g: &dyn Fn(f64) -> f64| {
+            (0..n).map(|i| g(low + length * (i as f64 + 0.5) / n as f64)).sum::<f64>() / n as f64
+        };
+        let given_mu = |mu: f64| over(1.8, 0.4, &|k| f(mu, k));
+        let given_k = |k: f64| over(0.4, 0.5, &|mu| f(mu, k));
+        let first = [
+            over(0.4, 0.5, &|mu| (given_mu(mu) - whole).powi(2)) / variance,
+            over(1.8, 0.4, &|k| (given_k(k) - whole).powi(2)) / variance,
+        ];
+        let answers = explored(DesignKind::Saltelli { n_base: 1024 });
+        let indices = answers.indices.unwrap();
+        for (i, index) in indices.iter().enumerate() {
+            let total = 1.0 - first[1 - i];
+            assert!((index.first_order.value - first[i]).abs() < 0.02, "{index:?}, exact {}", first[i]);
+            assert!((index.total.value - total).abs() < 0.02, "{index:?}, exact {total}");
+        }
+        assert_eq!(answers.unstable.n_points, 2048, "A and B alone are independent");
+        assert!((answers.unstable.value - 0.3).abs() < 5e-3);
+    }
+
+    #[test]
+    fn one_parameter_at_a_time_makes_a_tornado() {
+        let answers = explored(DesignKind::OneAtATime { n_levels: 2 });
+        let bars = answers.tornado.unwrap();
+        assert_eq!((bars[0].parameter.as_str(), bars[0].highest_at), ("p0", 0.9));
+        assert!(bars[1].highest == 0.0 && !answers.is_sample, "below 3/4 the stiffness alone makes no growth");
+    }
+}

@@ -1,0 +1,32 @@
+//! Studies of many parameters: which points are analysed, and what their modes say about the brake. Pure.
+//!
+//! ```text
+//! explore.toml --read--> Study { parameters, design } --points--> values of the parameters, point by point
+//! model file + values --Template--> text of another model file --(analysis)--> PointResult { modes }
+//! PointResult of all points --Answers::new--> probabilities, quantiles, Sobol indices, tornado, worst point
+//! ```
+//!
+//! A study has a file of its own, which names the model or super-element. So a model file contains what is analysed and
+//! nothing else, one model has many studies, and one study is made of a model and of its super-element.
+
+mod answers;
+mod design;
+mod distribution;
+mod key;
+mod linking;
+mod result;
+mod sensitivity;
+mod statistics;
+mod study;
+mod template;
+
+pub use answers::{Answers, Bin, Instability, quantity};
+pub use design::{Design, DesignKind};
+pub use distribution::Distribution;
+pub use key::KeyPath;
+pub use linking::{ModeProducts, link};
+pub use result::{Link, Outcome, PointMode, PointResult};
+pub use sensitivity::{Bar, Estimate, Indices, sobol_indices, tornado};
+pub use statistics::{Probability, quantile};
+pub use study::{Parameter, Study, read};
+pub use template::{Nominal, Template, with_mesh};

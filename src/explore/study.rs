@@ -1,0 +1,344 @@
+//! The file of a study.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::design::{Design, DesignKind};
+use super::distribution::Distribution;
+use super::key::KeyPath;
+use super::template::{CONTACT_STIFFNESS, FRICTION, PRESSURE};
+use crate::model::{InstabilityCriterion, located, names, utf8};
+use crate::{Error, Result};
+
+/// A study of many parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// The file, as messages name it.
+    pub file: PathBuf,
+    /// Model file or super-element.
+    pub model: PathBuf,
+    /// The parameters, in the order of the file.
+    pub parameters: Vec<Parameter>,
+    /// How points are chosen.
+    pub design: Design,
+    /// Frequency band, Hz; the model's own where there is none.
+    pub band: Option<[f64; 2]>,
+    /// What counts as an unstable mode; the model's own where there is none.
+    pub criterion: Option<InstabilityCriterion>,
+    /// Width of the bins of the squeal probability over frequency, Hz.
+    pub bin: f64,
+    /// Whether modes are followed to the nominal point, which needs their left vectors.
+    pub follow: bool,
+}
+
+/// A parameter: numbers of the model, and the values that they take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Its name in tables.
+    pub name: String,
+    /// The numbers that it changes.
+    pub keys: Vec<KeyPath>,
+    /// Whether its values are factors on the numbers of the model file.
+    pub is_factor: bool,
+    /// Its values.
+    pub distribution: Distribution,
+}
+
+impl Parameter {
+    /// The key that models and super-elements share, where the parameter is one of those.
+    pub fn shared_key(&self) -> Option<&str> {
+        match &self.keys[..] {
+            [key] => [FRICTION, PRESSURE, CONTACT_STIFFNESS].into_iter().find(|shared| key.segments() == [*shared]),
+            _ => None,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    model: String,
+    band: Option<[f64; 2]>,
+    unstable: Option<InstabilityCriterion>,
+    bin: Option<f64>,
+    #[serde(default = "yes")]
+    follow: bool,
+    design: DesignTable,
+    parameter: BTreeMap<Spanned<String>, ParameterTable>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DesignTable {
+    kind: Spanned<String>,
+    points: Option<usize>,
+    levels: Option<usize>,
+    file: Option<String>,
+    #[serde(default)]
+    seed: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParameterTable {
+    key: OneOrMore,
+    #[serde(default)]
+    factor: bool,
+    values: Option<Vec<f64>>,
+    uniform: Option<[f64; 2]>,
+    normal: Option<NormalTable>,
+    lognormal: Option<LogNormalTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum OneOrMore {
+    One(String),
+    More(Vec<String>),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NormalTable {
+    mean: f64,
+    deviation: f64,
+    from: Option<f64>,
+    to: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LogNormalTable {
+    mean: f64,
+    deviation: f64,
+}
+
+/// Kinds of designs by their names.
+const KINDS: [&str; 6] = ["grid", "one-at-a-time", "list", "latin-hypercube", "sobol", "saltelli"];
+/// Width of frequency bins where none is given, Hz.
+const BIN: f64 = 500.0;
+/// Levels of a parameter in a grid where none are given.
+const GRID_LEVELS: usize = 5;
+
+/// Reads and checks the file of a study; the model that it names is looked for beside it.
+///
+/// # Errors
+/// [`Error::Input`] with file and line.
+pub fn read(path: &Path) -> Result<Study> {
+    let bytes = std::fs::read(path)
+        .map_err(|reason| Error::input(format!("{}: cannot read the file of the study: {reason}", path.display())))?;
+    parse(utf8(path, &bytes)?, path)
+}
+
+/// The study of a text.
+fn parse(text: &str, path: &Path) -> Result<Study> {
+    let line = |offset: usize| 1 + text[..offset.min(text.len())].matches('\n').count();
+    let at = |offset: usize, what: String| Error::input(located(path, line(offset), what));
+    let keys: Keys = toml::from_str(text).map_err(|error| {
+        let advice = "A study has model, [design] with kind, and [parameter.NAME] with key and values, uniform, normal \
+                      or lognormal";
+        at(error.span().map_or(0, |span| span.start), format!("{}. {advice}", error.message().trim_end()))
+    })?;
+    let mut tables: Vec<(Spanned<String>, ParameterTable)> = keys.parameter.into_iter().collect();
+    tables.sort_by_key(|(name, _)| name.span().start);
+    let mut parameters = Vec::new();
+    for (name, table) in &tables {
+        let wrong = |what: String| at(name.span().start, format!("parameter {:?}: {what}", name.get_ref()));
+        parameters.push(parameter(name.get_ref(), table).map_err(wrong)?);
+    }
+    let design =
+        design(&keys.design, &parameters, path).map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
+    let bin = keys.bin.unwrap_or(BIN);
+    let [from, to] = keys.band.unwrap_or([0.0, 1.0]);
+    let is_valid = bin > 0.0 && (0.0..to).contains(&from) && !parameters.is_empty();
+    let mistake = keys.unstable.and_then(InstabilityCriterion::mistake);
+    if let (Some(what), _) | (None, Some(what)) = (
+        mistake,
+        (!is_valid)
+            .then_some("there is no parameter, bin is not above 0, or band is not [from, to] with 0 <= from < to"),
+    ) {
+        return Err(Error::input(format!("{}: {what}", path.display())));
+    }
+    Ok(Study {
+        file: path.to_owned(),
+        model: beside(path, &keys.model),
+        parameters,
+        design,
+        band: keys.band,
+        criterion: keys.unstable,
+        bin,
+        follow: keys.follow,
+    })
+}
+
+fn beside(file: &Path, name: &str) -> PathBuf {
+    file.parent().unwrap_or(Path::new("")).join(name)
+}
+
+fn parameter(name: &str, table: &ParameterTable) -> std::result::Result<Parameter, String> {
+    let texts = match &table.key {
+        OneOrMore::One(key) => std::slice::from_ref(key),
+        OneOrMore::More(keys) => keys,
+    };
+    let keys = texts.iter().map(|key| KeyPath::parse(key)).collect::<Result<Vec<_>>>().map_err(|e| e.to_string())?;
+    let distribution = distribution(table)?;
+    let parameter = Parameter { name: name.to_owned(), keys, is_factor: table.factor, distribution };
+    match (parameter.shared_key(), parameter.keys.is_empty()) {
+        (Some(key), _) if table.factor => {
+            Err(format!("factor does not go with {key}: pressure and contact_stiffness are factors, friction is not"))
+        }
+        (_, true) => Err("key is an empty list. Name the keys of the model file that it changes".into()),
+        _ => Ok(parameter),
+    }
+}
+
+fn distribution(table: &ParameterTable) -> std::result::Result<Distribution, String> {
+    let found = match (&table.values, &table.uniform, &table.normal, &table.lognormal) {
+        (Some(values), None, None, None) => Distribution::Values(values.clone()),
+        (None, Some([from, to]), None, None) => Distribution::Uniform { from: *from, to: *to },
+        (None, None, Some(own), None) => Distribution::Normal {
+            mean: own.mean,
+            deviation: own.deviation,
+            from: own.from.unwrap_or(f64::NEG_INFINITY),
+            to: own.to.unwrap_or(f64::INFINITY),
+        },
+        (None, None, None, Some(own)) => Distribution::LogNormal { mean: own.mean, deviation: own.deviation },
+        _ => return Err("give one of values, uniform, normal and lognormal".into()),
+    };
+    let is_valid = match &found {
+        Distribution::Values(values) => !values.is_empty() && values.iter().all(|value| value.is_finite()),
+        Distribution::Uniform { from, to } => from < to && from.is_finite() && to.is_finite(),
+        Distribution::Normal { deviation, from, to, mean } => *deviation > 0.0 && from < to && mean.is_finite(),
+        Distribution::LogNormal { mean, deviation } => *mean > 0.0 && *deviation > 0.0,
+    };
+    let advice = "Give values = [0.3, 0.4], uniform = [from, to] with from < to, normal = { mean, deviation, from, to } \
+                  (from and to may be missing), or lognormal = { mean, deviation }; deviations are above 0";
+    is_valid.then_some(found).ok_or_else(|| format!("no values can be like this. {advice}"))
+}
+
+fn design(table: &DesignTable, parameters: &[Parameter], path: &Path) -> Result<Design> {
+    let count = |given: Option<usize>, key: &str| {
+        let missing = || Error::input(format!("kind {:?} needs {key}, a number above 0", table.kind.get_ref()));
+        given.filter(|n| *n > 0).ok_or_else(missing)
+    };
+    let unused = |wants: [bool; 3]| {
+        let given = [table.points.is_some(), table.levels.is_some(), table.file.is_some()];
+        let keys = ["points", "levels", "file"];
+        let extra = (0..3).find(|&i| given[i] && !wants[i]);
+        extra.map_or(Ok(()), |i| {
+            Err(Error::input(format!("{} does not go with kind {:?}", keys[i], table.kind.get_ref())))
+        })
+    };
+    let kind = match table.kind.get_ref().as_str() {
+        "grid" | "one-at-a-time" => unused([false, true, false]).and_then(|()| {
+            Ok(if table.kind.get_ref() == "grid" {
+                DesignKind::Grid { n_levels: count(table.levels.or(Some(GRID_LEVELS)), "levels")? }
+            } else {
+                DesignKind::OneAtATime { n_levels: count(table.levels.or(Some(2)), "levels")? }
+            })
+        }),
+        "list" => unused([false, false, true]).and_then(|()| {
+            let missing = || Error::input("kind \"list\" needs file, a CSV file with a column for each parameter");
+            let file = table.file.as_ref().ok_or_else(missing)?;
+            Ok(DesignKind::List(read_points(&beside(path, file), parameters)?))
+        }),
+        kind => unused([true, false, false]).and_then(|()| match kind {
+            "latin-hypercube" => Ok(DesignKind::LatinHypercube { n_points: count(table.points, "points")? }),
+            "sobol" => Ok(DesignKind::Sobol { n_points: count(table.points, "points")? }),
+            "saltelli" => Ok(DesignKind::Saltelli { n_base: count(table.points, "points")? }),
+            other => Err(Error::input(format!("there is no kind {other:?}. {}", names::advice(other, KINDS)))),
+        }),
+    };
+    Ok(Design { kind: kind?, seed: table.seed })
+}
+
+/// Points of a CSV file, whose columns are called as the parameters.
+fn read_points(path: &Path, parameters: &[Parameter]) -> Result<Vec<Vec<f64>>> {
+    let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|reason| wrong(reason.to_string()))?;
+    let heads = reader.headers().map_err(|reason| wrong(reason.to_string()))?.clone();
+    let column = |parameter: &Parameter| {
+        heads.iter().position(|head| head == parameter.name).ok_or_else(|| {
+            wrong(format!("there is no column {:?}. {}", parameter.name, names::advice(&parameter.name, heads.iter())))
+        })
+    };
+    let columns = parameters.iter().map(column).collect::<Result<Vec<_>>>()?;
+    let mut points = Vec::new();
+    for (row, record) in reader.records().enumerate() {
+        let record = record.map_err(|reason| wrong(reason.to_string()))?;
+        let number = |&column: &usize| {
+            let text = record.get(column).unwrap_or_default();
+            let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+            value.ok_or_else(|| wrong(format!("row {} has {text:?} in place of a number", row + 2)))
+        };
+        points.push(columns.iter().map(number).collect::<Result<Vec<_>>>()?);
+    }
+    Ok(points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "model = \"brake.toml\"\nbin = 250\n[design]\nkind = \"sobol\"\npoints = 8\nseed = 3\n\
+        [parameter.mu]\nkey = \"friction\"\nuniform = [0.3, 0.6]\n\
+        [parameter.E]\nkey = [\"material.lining.young\", \"material.lining.young_axial\"]\nfactor = true\n\
+        normal = { mean = 1, deviation = 0.1, from = 0.5 }\n";
+
+    fn message(old: &str, new: &str) -> String {
+        assert!(TEXT.contains(old));
+        parse(&TEXT.replacen(old, new, 1), "a/explore.toml".as_ref()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_file_is_read() {
+        let study = parse(TEXT, "a/explore.toml".as_ref()).unwrap();
+        assert_eq!((study.model.as_path(), study.bin, study.follow), ("a/brake.toml".as_ref(), 250.0, true));
+        assert_eq!(study.design, Design { kind: DesignKind::Sobol { n_points: 8 }, seed: 3 });
+        let [mu, modulus] = &study.parameters[..] else { panic!("two parameters, in the order of the file") };
+        assert_eq!((mu.name.as_str(), mu.shared_key(), mu.is_factor), ("mu", Some("friction"), false));
+        assert_eq!((modulus.keys.len(), modulus.shared_key(), modulus.is_factor), (2, None, true));
+        assert!(matches!(modulus.distribution, Distribution::Normal { from: 0.5, to: f64::INFINITY, .. }));
+    }
+
+    #[test]
+    fn mistakes_have_their_line_and_advice() {
+        for (old, new, parts) in [
+            ("sobol", "sobel", ["explore.toml:4", "Did you mean \"sobol\""]),
+            ("points = 8", "levels = 8", ["explore.toml:4", "levels does not go with"]),
+            ("points = 8", "", ["explore.toml:4", "needs points"]),
+            ("[0.3, 0.6]", "[0.6, 0.3]", ["explore.toml:7", "from < to"]),
+            ("uniform = [0.3, 0.6]", "", ["parameter \"mu\"", "give one of values"]),
+            ("uniform", "unifrom", ["explore.toml:9", "unknown field"]),
+            ("key = \"friction\"", "key = \"friction\"\nfactor = true", ["parameter \"mu\"", "friction is not"]),
+            ("bin = 250", "bin = 0", ["explore.toml", "bin is not above 0"]),
+            ("\"friction\"", "\"a..b\"", ["explore.toml:7", "no key of a model file"]),
+        ] {
+            let message = message(old, new);
+            assert!(parts.iter().all(|part| message.contains(part)), "{parts:?} in {message}");
+        }
+    }
+
+    #[test]
+    fn a_list_has_a_column_for_each_parameter() {
+        let place = tempfile::tempdir().unwrap();
+        let text = TEXT.replace("\"sobol\"\npoints = 8", "\"list\"\nfile = \"p.csv\"");
+        let read = |points: &str| {
+            std::fs::write(place.path().join("p.csv"), points).unwrap();
+            parse(&text, &place.path().join("explore.toml"))
+        };
+        let found = read("E, note, mu\n1.5, a, 0.4\n1, b, 0.5\n").unwrap();
+        assert_eq!(found.design.kind, DesignKind::List(vec![vec![0.4, 1.5], vec![0.5, 1.0]]));
+        let missing = read("e,mu\n1,2\n").unwrap_err().to_string();
+        assert!(missing.contains("there is no column \"E\"") && missing.contains("Did you mean"), "{missing}");
+        assert!(read("E,mu\n1,two\n").unwrap_err().to_string().contains("row 2 has \"two\""));
+    }
+}

@@ -1,0 +1,262 @@
+//! A model file in which the parameters of a study are replaced by their values.
+
+use std::path::Path;
+
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, value};
+
+use super::key::{Address, KeyPath, at, number, set};
+use super::study::Parameter;
+use crate::model::{self, Model};
+use crate::{Error, Result};
+
+/// What a model is before any parameter changes it.
+#[derive(Debug, Clone, Copy)]
+pub struct Nominal<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Names of the contacts whose friction coefficient a sweep changes.
+    pub swept: &'a [String],
+}
+
+/// A model file whose numbers can be changed.
+pub struct Template {
+    document: DocumentMut,
+    targets: Vec<Target>,
+    swept: Vec<String>,
+    /// Friction coefficient of the first swept pair.
+    friction: f64,
+}
+
+/// What a parameter changes.
+enum Target {
+    /// Places with their nominal numbers.
+    Numbers { places: Vec<(Address, f64)>, is_factor: bool },
+    /// The friction coefficient of all swept pairs.
+    Friction,
+}
+
+/// Keys that models and super-elements share, as the options of `squeal stability` do.
+pub(super) const FRICTION: &str = "friction";
+pub(super) const PRESSURE: &str = "pressure";
+pub(super) const CONTACT_STIFFNESS: &str = "contact_stiffness";
+
+impl Template {
+    /// Finds the numbers of the parameters in the text of a model file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a key matches no number, or two parameters change the same one.
+    pub fn new(text: &str, parameters: &[Parameter], nominal: Nominal) -> Result<Template> {
+        let document: DocumentMut =
+            text.parse().map_err(|reason| Error::input(format!("{}: {reason}", nominal.model.file.display())))?;
+        let swept = nominal.swept.to_vec();
+        let target = |parameter: &Parameter| target(document.as_item(), parameter, &swept);
+        let targets = parameters.iter().map(target).collect::<Result<Vec<_>>>()?;
+        refuse_doubled(parameters, &targets)?;
+        let own = nominal.model.contacts.iter().find(|contact| swept.first() == Some(&contact.name));
+        Ok(Template { document, targets, friction: own.map_or(0.0, |contact| contact.friction), swept })
+    }
+
+    /// The parameters' values in the model file; 1 of factors, the first number of a group.
+    pub fn nominal(&self) -> Vec<f64> {
+        let of = |target: &Target| match target {
+            Target::Numbers { is_factor: true, .. } => 1.0,
+            Target::Numbers { places, .. } => places[0].1,
+            Target::Friction => self.friction,
+        };
+        self.targets.iter().map(of).collect()
+    }
+
+    /// The text of the model file with other values of the parameters, and a sweep of the one friction coefficient that
+    /// follows from them. `file` is what messages call it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the model file with these values is not valid.
+    pub fn text(&self, values: &[f64], file: &Path) -> Result<String> {
+        let mut document = self.document.clone();
+        let mut friction = None;
+        for (target, value) in self.targets.iter().zip(values) {
+            match target {
+                Target::Friction => friction = Some(*value),
+                Target::Numbers { places, is_factor } => {
+                    for (place, own) in places {
+                        set(document.as_item_mut(), place, if *is_factor { value * own } else { *value });
+                    }
+                }
+            }
+        }
+        document.remove("sweep");
+        let model = model::parse(&document.to_string(), file)?;
+        if let Some((contacts, friction)) = self.sweep(&model, friction) {
+            document.insert("sweep", Item::Table(sweep_table(contacts, friction)));
+        }
+        Ok(document.to_string())
+    }
+
+    /// Contacts of the sweep, and their friction coefficient: all swept pairs where they have one value, else the first
+    /// alone, and the others keep their own.
+    fn sweep(&self, model: &Model, given: Option<f64>) -> Option<(&[String], f64)> {
+        if let Some(friction) = given {
+            return Some((&self.swept, friction));
+        }
+        let own = |name: &String| model.contacts.iter().find(|own| own.name == *name).map(|own| own.friction);
+        let values: Vec<f64> = self.swept.iter().filter_map(own).collect();
+        let first = *values.first()?;
+        let n = if values.iter().all(|value| *value == first) { self.swept.len() } else { 1 };
+        Some((&self.swept[..n], first))
+    }
+}
+
+/// The text of a model file whose mesh has another path.
+///
+/// # Errors
+/// [`Error::Input`] where the text is no model file.
+pub fn with_mesh(text: &str, mesh: &str) -> Result<String> {
+    let mut document: DocumentMut = text.parse().map_err(|reason| Error::input(format!("no model file: {reason}")))?;
+    let table = document.get_mut("mesh").and_then(Item::as_table_like_mut);
+    let table = table.ok_or_else(|| Error::input("the model file has no [mesh]"))?;
+    table.insert("file", value(mesh));
+    Ok(document.to_string())
+}
+
+fn target(document: &Item, parameter: &Parameter, swept: &[String]) -> Result<Target> {
+    let of_parameter = |error: Error| Error::input(format!("parameter {:?}: {error}", parameter.name));
+    let find = |keys: &[KeyPath], is_factor: bool| {
+        let found = keys.iter().map(|key| key.find(document, is_factor)).collect::<Result<Vec<_>>>();
+        let own = |place: Address| {
+            let own = number(at(document, &place)).expect("a number was found");
+            (place, own)
+        };
+        let places = found.map_err(of_parameter)?.concat().into_iter().map(own).collect();
+        Ok(Target::Numbers { places, is_factor })
+    };
+    match parameter.shared_key() {
+        Some(FRICTION) if swept.is_empty() => {
+            let what = "no contact slides, so that there is no friction coefficient";
+            Err(of_parameter(Error::input(format!("{what}. Add the [[rotation]] of the disc"))))
+        }
+        Some(FRICTION) => Ok(Target::Friction),
+        Some(key) => {
+            let keys = shared(key, swept)?;
+            let present = |key: &KeyPath| key.find(document, true).is_ok();
+            let present: Vec<KeyPath> = keys.iter().filter(|key| present(key)).cloned().collect();
+            find(if present.is_empty() { &keys } else { &present }, true)
+        }
+        None => find(&parameter.keys, parameter.is_factor),
+    }
+}
+
+/// The paths of a key that models share with super-elements.
+fn shared(key: &str, swept: &[String]) -> Result<Vec<KeyPath>> {
+    let paths: Vec<String> = match key {
+        PRESSURE => ["force", "moment", "pressure"].map(|kind| format!("load.*.{kind}")).to_vec(),
+        _ => swept
+            .iter()
+            .flat_map(|name| ["linear", "cubic"].map(|law| format!("contact.\"{name}\".law.{law}")))
+            .collect(),
+    };
+    paths.iter().map(|path| KeyPath::parse(path)).collect()
+}
+
+fn refuse_doubled(parameters: &[Parameter], targets: &[Target]) -> Result<()> {
+    let mut seen: Vec<(&Address, &str)> = Vec::new();
+    for (parameter, target) in parameters.iter().zip(targets) {
+        let Target::Numbers { places, .. } = target else { continue };
+        for (place, _) in places {
+            if let Some((_, first)) = seen.iter().find(|(other, _)| *other == place) {
+                let what = format!("parameters {first:?} and {:?} change the same number", parameter.name);
+                return Err(Error::input(format!("{what}. Leave one of them out")));
+            }
+            seen.push((place, &parameter.name));
+        }
+    }
+    Ok(())
+}
+
+/// `[sweep]` with one friction coefficient.
+fn sweep_table(contacts: &[String], friction: f64) -> Table {
+    let mut sweep = InlineTable::new();
+    sweep.insert("contacts", contacts.iter().collect::<Array>().into());
+    sweep.insert("values", [friction].into_iter().collect::<Array>().into());
+    let mut table = Table::new();
+    table.insert("friction", value(sweep));
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Distribution;
+    use super::*;
+
+    const FILE: &str = "tests/data/pads_on_disc.toml";
+
+    fn template(parameters: &[(&str, &str, bool)]) -> Result<Template> {
+        let parameter = |(name, key, is_factor): &(&str, &str, bool)| Parameter {
+            name: (*name).to_owned(),
+            keys: vec![KeyPath::parse(key).unwrap()],
+            is_factor: *is_factor,
+            distribution: Distribution::Values(vec![1.0]),
+        };
+        let parameters: Vec<Parameter> = parameters.iter().map(parameter).collect();
+        let model = model::read(FILE.as_ref()).unwrap();
+        let swept = ["disc / inner pad", "disc / outer pad"].map(String::from);
+        let text = std::fs::read_to_string(FILE).unwrap();
+        Template::new(&text, &parameters, Nominal { model: &model, swept: &swept })
+    }
+
+    fn changed(parameters: &[(&str, &str, bool)], values: &[f64]) -> Model {
+        let text = template(parameters).unwrap().text(values, FILE.as_ref()).unwrap();
+        model::parse(&text, FILE.as_ref()).unwrap()
+    }
+
+    #[test]
+    fn numbers_change_where_the_parameters_are() {
+        let parameters =
+            [("E", "material.lining.young", true), ("rho", "material.iron.density", false), ("mu", "friction", false)];
+        assert_eq!(template(&parameters).unwrap().nominal(), [1.0, 7100.0, 0.4]);
+        let model = changed(&parameters, &[0.5, 7000.0, 0.45]);
+        assert_eq!((model.frictions.as_slice(), model.swept.len()), (&[0.45][..], 2));
+        let part = |name: &str| &model.parts.iter().find(|part| part.name == name).unwrap().material;
+        assert_eq!(part("disc").density, 7000.0);
+        let plain = changed(&[], &[]);
+        assert_ne!(part("lining_inner"), &plain.parts.iter().find(|p| p.name == "lining_inner").unwrap().material);
+        assert_eq!(plain.frictions, [0.4], "a point has one friction coefficient");
+    }
+
+    #[test]
+    fn a_friction_coefficient_of_one_pair_leaves_the_other_alone() {
+        let model = changed(&[("mu", "contact.*inner*.friction", false)], &[0.6]);
+        assert_eq!((model.swept, model.frictions), (vec!["disc / inner pad".to_owned()], vec![0.6]));
+        assert_eq!(model.contacts[1].friction, 0.4);
+    }
+
+    #[test]
+    fn keys_of_super_elements_are_factors_of_models() {
+        let model = changed(&[("p", "pressure", false), ("k", "contact_stiffness", false)], &[2.0, 0.5]);
+        let law = model.contacts[0].law.clone().unwrap();
+        assert_eq!(law, crate::model::NormalLaw::Linear { stiffness: 1e13 });
+        assert!(format!("{:?}", model.loads[0].kind).contains("8000"), "{:?}", model.loads[0].kind);
+    }
+
+    #[test]
+    fn values_that_no_model_can_have_are_refused_with_the_readers_message() {
+        let message = template(&[("rho", "material.iron.density", false)]).unwrap().text(&[-1.0], FILE.as_ref());
+        let message = message.unwrap_err().to_string();
+        assert!(message.contains("pads_on_disc.toml:11") && message.contains("density"), "{message}");
+    }
+
+    #[test]
+    fn a_model_file_may_stand_elsewhere() {
+        let text = with_mesh(&std::fs::read_to_string(FILE).unwrap(), "../data/pads_on_disc.msh").unwrap();
+        let model = model::parse(&text, "tests/data/worst.toml".as_ref()).unwrap();
+        assert_eq!(model.mesh_file, Path::new("tests/data/../data/pads_on_disc.msh"));
+    }
+
+    #[test]
+    fn a_number_has_one_parameter() {
+        let twice = [("a", "material.lining.young", false), ("b", "material.*.young", true)];
+        let message = template(&twice).err().unwrap().to_string();
+        assert!(message.contains("\"a\" and \"b\" change the same number"), "{message}");
+        let message = template(&[("a", "material.lining.yuong", false)]).err().unwrap().to_string();
+        assert!(message.contains("parameter \"a\"") && message.contains("Did you mean \"young\""), "{message}");
+    }
+}

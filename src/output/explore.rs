@@ -1,0 +1,325 @@
+//! A study of many parameters: points and modes as CSV, what they say as JSON and as text.
+
+use std::io::{Result as IoResult, Write};
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::folder::Folder;
+use super::text::{aligned, files, or_dash, plural};
+use crate::Result;
+use crate::explore::{Answers, Bar, Bin, Estimate, Indices, Instability, Outcome, PointMode, PointResult, Study};
+use crate::results::About;
+
+/// Name of the model file of the worst point.
+pub const WORST: &str = "worst.toml";
+/// Bars of the squeal probability have so many signs at 100 %.
+const BAR: f64 = 40.0;
+
+/// What a study says, as one JSON document.
+#[derive(Debug, Serialize)]
+pub struct Document<'a> {
+    title: &'a str,
+    model: String,
+    band_hz: [f64; 2],
+    unstable: String,
+    parameters: Vec<ParameterDocument<'a>>,
+    #[serde(flatten)]
+    answers: &'a Answers,
+    worst_point: Option<PointDocument<'a>>,
+    failures: Vec<FailureDocument<'a>>,
+    folder: String,
+}
+
+#[derive(Debug, Serialize)]
+struct ParameterDocument<'a> {
+    name: &'a str,
+    keys: Vec<&'a str>,
+    factor: bool,
+    nominal: f64,
+}
+
+/// The point with the largest growth rate, and the command that analyses it alone.
+#[derive(Debug, Serialize)]
+struct PointDocument<'a> {
+    point: usize,
+    values: &'a [f64],
+    frequency_hz: f64,
+    growth_rate_per_s: f64,
+    command: String,
+}
+
+#[derive(Debug, Serialize)]
+struct FailureDocument<'a> {
+    point: usize,
+    reason: &'a str,
+}
+
+impl<'a> Document<'a> {
+    /// The document of a study whose results are in a folder.
+    ///
+    /// # Panics
+    /// Where the answers are of other points.
+    pub fn new(
+        study: &'a Study,
+        about: &'a About,
+        points: &'a [PointResult],
+        answers: &'a Answers,
+        folder: &Path,
+    ) -> Document<'a> {
+        let parameter = |(own, nominal): (&'a crate::explore::Parameter, &f64)| ParameterDocument {
+            name: &own.name,
+            keys: own.keys.iter().map(|key| key.text()).collect(),
+            factor: own.is_factor,
+            nominal: *nominal,
+        };
+        let worst = answers.worst.and_then(|point| {
+            let mode = points[point].critical()?;
+            let command = command(study, about, &points[point].values, folder);
+            let (frequency_hz, growth_rate_per_s) = (mode.frequency(), mode.growth_rate());
+            Some(PointDocument { point, values: &points[point].values, frequency_hz, growth_rate_per_s, command })
+        });
+        let failure = |(point, found): (usize, &'a PointResult)| match &found.outcome {
+            Outcome::Failed(reason) => Some(FailureDocument { point, reason }),
+            Outcome::Modes(_) => None,
+        };
+        Document {
+            title: &about.title,
+            model: study.model.display().to_string(),
+            band_hz: about.band,
+            unstable: about.criterion.to_string(),
+            parameters: study.parameters.iter().zip(&points[0].values).map(parameter).collect(),
+            answers,
+            worst_point: worst,
+            failures: points.iter().enumerate().filter_map(failure).collect(),
+            folder: folder.display().to_string(),
+        }
+    }
+
+    /// Comment above the model file of the worst point.
+    pub fn worst_head(&self) -> String {
+        let Some(worst) = &self.worst_point else { return String::new() };
+        let values = self.parameters.iter().zip(worst.values).map(|(own, value)| format!("# {} = {value}\n", own.name));
+        format!(
+            "# Point {} of the study {:?}: {:+.1} 1/s at {:.1} Hz.\n{}",
+            worst.point,
+            self.title,
+            worst.growth_rate_per_s,
+            worst.frequency_hz,
+            values.collect::<String>()
+        )
+    }
+
+    /// The answers for people.
+    pub fn text(&self) -> String {
+        let answers = self.answers;
+        let what = if answers.is_sample { "probability" } else { "fraction of the points" };
+        let mut text = self.head() + &format!("unstable ({}): {what} {}\n", self.unstable, percent(answers.unstable));
+        text += &section("largest growth rate, 1/s", &self.growth_rates());
+        text += &section(&format!("instabilities, by {what}"), &instabilities(&answers.instabilities));
+        text += &section(&format!("{what} of squeal over frequency"), &bins(&answers.bins));
+        let indices = answers.indices.as_deref().map_or_else(String::new, indices);
+        text += &section("Sobol indices of the largest growth rate, with intervals of 95 %", &indices);
+        text += &section("largest growth rate, one parameter at a time", &tornado(answers.tornado.as_deref()));
+        text += &self.worst();
+        let failures: String = self.failures.iter().map(|f| format!("point {}: {}\n", f.point, f.reason)).collect();
+        text + &section("points that have failed", &failures) + &self.files()
+    }
+
+    fn head(&self) -> String {
+        let Answers { n_points, n_failed, n_doubtful, .. } = *self.answers;
+        let n = self.parameters.len();
+        let [from, to] = self.band_hz;
+        let failed = if n_failed > 0 { format!(", {n_failed} failed") } else { String::new() };
+        let doubtful = if n_doubtful > 0 {
+            format!("{n_doubtful} links of modes to the nominal point are doubtful (modes.csv)\n")
+        } else {
+            String::new()
+        };
+        format!(
+            "{}: modes of {from}-{to} Hz at {n_points} point{} of {n} parameter{}{failed}\n{doubtful}",
+            self.title,
+            plural(n_points),
+            plural(n)
+        )
+    }
+
+    fn growth_rates(&self) -> String {
+        let of = &self.answers.growth_rate;
+        let heads: String = of.iter().map(|own| format!("\t{:.0} %", 100.0 * own.fraction)).collect();
+        let row: String = of.iter().map(|own| format!("\t{:.2}", own.growth_rate_per_s)).collect();
+        if of.is_empty() { String::new() } else { aligned(&format!("quantile{heads}"), [format!("value{row}")]) }
+    }
+
+    fn worst(&self) -> String {
+        let Some(worst) = &self.worst_point else { return String::new() };
+        let rows = self.parameters.iter().zip(worst.values);
+        let rows = rows.map(|(own, value)| format!("{}\t{value:.6e}\t{:.6e}", own.name, own.nominal));
+        format!(
+            "\nworst point: {}, {:+.2} 1/s at {:.1} Hz\n{}analyse it by: {}\n",
+            worst.point,
+            worst.growth_rate_per_s,
+            worst.frequency_hz,
+            aligned("parameter\tvalue\tnominal", rows),
+            worst.command
+        )
+    }
+
+    fn files(&self) -> String {
+        let mut list = vec![
+            ("points.csv", "parameters, and the largest growth rate at each point"),
+            ("modes.csv", "modes at each point, with those of the nominal point that they are"),
+            ("summary.json", "the answers, for programs"),
+            ("summary.txt", "this text"),
+        ];
+        if self.worst_point.as_ref().is_some_and(|worst| worst.command.ends_with(WORST)) {
+            list.push((WORST, "the model file of the worst point"));
+        }
+        files(&self.folder, &list)
+    }
+}
+
+/// What analyses a point alone.
+fn command(study: &Study, about: &About, values: &[f64], folder: &Path) -> String {
+    // Of a super-element no text of a model is known.
+    if !about.model_text.is_empty() {
+        return format!("squeal stability {}", folder.join(WORST).display());
+    }
+    let option = |(own, value): (&crate::explore::Parameter, &f64)| {
+        let key = own.shared_key().unwrap_or_default().replace('_', "-");
+        format!(" --{key} {value}")
+    };
+    let options: String = study.parameters.iter().zip(values).map(option).collect();
+    format!("squeal stability {}{options}", study.model.display())
+}
+
+/// Writes tables, answers and summary. Not collective.
+///
+/// # Errors
+/// The system's, with the file's path.
+pub fn write(folder: &Folder, document: &Document, points: &[PointResult]) -> Result<()> {
+    let names: Vec<&str> = document.parameters.iter().map(|own| own.name).collect();
+    folder.write("points.csv", |out| write_points(out, &names, points))?;
+    folder.write("modes.csv", |out| write_modes(out, points))?;
+    folder.write("summary.json", |out| out.write_all(super::json::text(document).as_bytes()))?;
+    folder.write("summary.txt", |out| out.write_all(document.text().as_bytes()))
+}
+
+/// A row for each point: values, largest growth rate, and why it has failed where it has.
+fn write_points(out: &mut dyn Write, names: &[&str], points: &[PointResult]) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let results = ["modes", "unstable_modes", "growth_rate_per_s", "frequency_hz", "failure"];
+    table.write_record(["point"].iter().chain(names).chain(&results))?;
+    for (number, point) in points.iter().enumerate() {
+        let critical =
+            |of: fn(&PointMode) -> f64| point.critical().map_or_else(String::new, |mode| of(mode).to_string());
+        let count = |of: fn(&PointMode) -> bool| {
+            point.modes().map_or_else(String::new, |modes| modes.iter().filter(|mode| of(mode)).count().to_string())
+        };
+        let reason = match &point.outcome {
+            Outcome::Failed(reason) => reason.clone(),
+            Outcome::Modes(_) => String::new(),
+        };
+        let values = point.values.iter().map(f64::to_string);
+        let results = [
+            count(|_| true),
+            count(|mode| mode.unstable),
+            critical(PointMode::growth_rate),
+            critical(PointMode::frequency),
+            reason,
+        ];
+        table.write_record([number.to_string()].into_iter().chain(values).chain(results))?;
+    }
+    table.flush()
+}
+
+/// A row for each mode of each point.
+fn write_modes(out: &mut dyn Write, points: &[PointResult]) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let head = [
+        "point",
+        "mode",
+        "frequency_hz",
+        "growth_rate_per_s",
+        "damping_ratio",
+        "backward_error",
+        "unstable",
+        "nominal_mode",
+        "share",
+        "doubtful",
+    ];
+    table.write_record(head)?;
+    for (number, point) in points.iter().enumerate() {
+        for (mode, own) in (1..).zip(point.modes().into_iter().flatten()) {
+            let link = |of: fn(&crate::explore::Link) -> String| own.link.as_ref().map_or_else(String::new, of);
+            table.write_record([
+                number.to_string(),
+                mode.to_string(),
+                own.frequency().to_string(),
+                own.growth_rate().to_string(),
+                own.damping_ratio().to_string(),
+                own.backward_error.to_string(),
+                own.unstable.to_string(),
+                link(|link| link.nominal.to_string()),
+                link(|link| format!("{:.4}", link.share)),
+                link(|link| link.doubtful.to_string()),
+            ])?;
+        }
+    }
+    table.flush()
+}
+
+/// A heading with what stands below it; nothing where that is empty.
+fn section(heading: &str, body: &str) -> String {
+    if body.is_empty() { String::new() } else { format!("\n{heading}\n{body}") }
+}
+
+fn percent(own: crate::explore::Probability) -> String {
+    let [value, low, high] = [own.value, own.low, own.high].map(|p| 100.0 * p);
+    format!("{value:.1} % (95 %: {low:.1} to {high:.1}), {} of {} points", own.n_true, own.n_points)
+}
+
+fn instabilities(all: &[Instability]) -> String {
+    let row = |own: &Instability| {
+        let [low, high] = own.frequency_range_hz;
+        let p = own.probability;
+        format!(
+            "{}\t{}\t{:.1}\t{:.1}\t{:.1}\t{low:.1}\t{high:.1}\t{:+.2}\t{}",
+            or_dash(own.nominal, |number| number.to_string()),
+            or_dash(own.nominal_frequency_hz, |f| format!("{f:.1}")),
+            100.0 * p.value,
+            100.0 * p.low,
+            100.0 * p.high,
+            own.largest_growth_rate_per_s,
+            own.worst
+        )
+    };
+    let heading = "mode at the\t\t\t95 %\t95 %\tfrequency where unstable\t\tlargest\tat\n\
+                   nominal point\tHz\t%\tfrom\tto\tfrom\tto\tgrowth, 1/s\tpoint";
+    if all.is_empty() { String::new() } else { aligned(heading, all.iter().map(row)) }
+}
+
+/// Bins up to the last one with squeal.
+fn bins(all: &[Bin]) -> String {
+    let n = all.iter().rposition(|bin| bin.probability.n_true > 0).map_or(0, |last| last + 1);
+    let row = |bin: &Bin| {
+        let p = bin.probability;
+        let bar = "#".repeat((BAR * p.value).round() as usize);
+        format!("{:.0}-{:.0} Hz\t{:.1} %\t{bar}", bin.from_hz, bin.to_hz, 100.0 * p.value)
+    };
+    if n == 0 { String::new() } else { aligned("frequency\t", all[..n].iter().map(row)) }
+}
+
+fn indices(all: &[Indices]) -> String {
+    let three = |own: &Estimate| format!("{:.3}\t{:.3}\t{:.3}", own.value, own.low, own.high);
+    let row = |own: &Indices| format!("{}\t{}\t{}", own.parameter, three(&own.first_order), three(&own.total));
+    aligned("parameter\tfirst\tfrom\tto\ttotal\tfrom\tto", all.iter().map(row))
+}
+
+fn tornado(bars: Option<&[Bar]>) -> String {
+    let row = |bar: &Bar| {
+        let Bar { parameter, lowest_at, lowest, highest_at, highest } = bar;
+        format!("{parameter}\t{lowest:.2}\t{lowest_at:.4e}\t{highest:.2}\t{highest_at:.4e}")
+    };
+    bars.map_or_else(String::new, |bars| aligned("parameter\tsmallest\tat\tlargest\tat", bars.iter().map(row)))
+}

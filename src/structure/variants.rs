@@ -1,0 +1,76 @@
+//! One model with other numbers: model file and mesh are read once.
+
+use std::path::{Path, PathBuf};
+
+use crate::mesh::Piece;
+use crate::model::{self, Model};
+use crate::native::Comm;
+use crate::{Error, Result};
+
+use super::FullModel;
+use super::distribution::distribute;
+use super::files::ModelFiles;
+
+/// A model file and this rank's piece of its mesh, of which brakes with other numbers are made.
+pub struct ModelVariants {
+    /// The model file.
+    pub file: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// The model as it stands in the file.
+    pub model: Model,
+    /// Names of the contacts whose friction coefficient a sweep changes.
+    pub swept: Vec<String>,
+    piece: Piece,
+}
+
+impl ModelVariants {
+    /// Reads and checks a model file and its mesh. Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for whatever is wrong with the files, and for decks.
+    pub fn read(comm: &Comm, file: &Path) -> Result<ModelVariants> {
+        let (model, mesh, deck) = ModelFiles::shared(comm, file)?;
+        if deck.is_some() {
+            let what = "a study changes the numbers of a model file with a Gmsh mesh, and this is a deck or has one";
+            return Err(Error::input(format!("{}: {what}. Write it as one by squeal convert", file.display())));
+        }
+        let text = std::fs::read_to_string(file).map_err(Error::io(file));
+        let text = comm.agree(if comm.is_root() { text } else { Ok(String::new()) })?;
+        let text = comm.broadcast_value(0, text);
+        let piece = distribute(comm, || Ok(mesh.expect("the root has read it")))?;
+        comm.agree(model.check_against(&piece.mesh))?;
+        let swept = model.swept_contacts(&piece.mesh).into_iter().map(|i| model.contacts[i].name.clone()).collect();
+        Ok(ModelVariants { file: file.to_owned(), text, model, swept, piece })
+    }
+
+    /// The brake of another text of the model file with the same mesh. Collective: all ranks fail together.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for whatever is wrong with the text, and a part that can move freely.
+    pub fn brake(&self, comm: &Comm, text: &str) -> Result<FullModel> {
+        let model = comm.agree(model::parse(text, &self.file))?;
+        let full = comm.agree(FullModel::new(model, self.piece.clone(), comm))?;
+        full.require_constrained(comm)?;
+        Ok(full)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::native::Session;
+
+    #[test]
+    fn a_variant_is_the_model_with_other_numbers() {
+        let comm = Session::start(&[]).unwrap();
+        let variants = ModelVariants::read(&comm, "tests/data/pads_on_disc.toml".as_ref()).unwrap();
+        assert_eq!(variants.swept, ["disc / inner pad", "disc / outer pad"]);
+        let brake = variants.brake(&comm, &variants.text.replace("young = 8e9", "young = 4e9")).unwrap();
+        let young = |model: &Model| format!("{:?}", model.parts[1].material);
+        assert_ne!(young(&brake.model), young(&variants.model));
+        assert_eq!(brake.interface.points.len(), 236);
+        let free = variants.text.replace("axes = \"xy\"", "axes = \"x\"");
+        assert!(variants.brake(&comm, &free).err().unwrap().to_string().contains("unconstrained"));
+    }
+}
