@@ -19,7 +19,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_btl_vader_single_copy_mechanism := none
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: help install deb demo demo-deck test python-test report-test calculix td1 validation docs full fuzz bench lint setup build clean
+.PHONY: help install deb demo demo-deck explore test python-test report-test calculix td1 validation docs full fuzz bench lint setup build clean
 .DELETE_ON_ERROR:
 
 help: ## print this list
@@ -32,6 +32,10 @@ demo: setup results/demo/report.html ## complex modes of the demo brake (medium 
 demo-deck: setup results/demo-deck/report.html ## the same of an Abaqus deck: the demo brake with a disc of hexahedra
 	@cat results/demo-deck/summary.txt
 	@echo "\nthe deck is meshes/build/brake-hexahedra.inp; open results/demo-deck/report.html in a browser"
+
+explore: setup build meshes/build/brake-small.msh ## vary four parameters of the small demo brake: how probable is squeal?
+	@mkdir -p results
+	$(MPIRUN) $(BINARY) explore meshes/explore.toml --output results/explore --force --verbose
 
 test: setup meshes/build/brake-small.msh meshes/build/td1-coarse.msh ## run all tests
 	@scripts/setup.sh --tests

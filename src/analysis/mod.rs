@@ -8,7 +8,7 @@
 //! | [`stability`] | a structure | complex modes of a band over the friction coefficient, branches and Hopf points |
 //! | [`reduce`] | a full model | a super-element and its file |
 //! | [`study`] | a model file | contact layouts and super-elements compared with full contact |
-//! | [`explore`] | the file of a study | modes at points of many parameters, and how probable squeal is |
+//! | [`explore`] | the file of a study | modes at points of many parameters, and the probability of squeal |
 //! | [`export`] | a structure | M, C, K about an equilibrium as files |
 //! | [`external_modes`] | matrices M, C, K of any program | modes of a band, along a parameter of them |
 //! | [`free_modes`] | one part of a model | free modes, compared with measured ones |

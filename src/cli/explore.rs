@@ -1,4 +1,4 @@
-//! `squeal explore`: modes at points of many parameters, and how probable squeal is.
+//! `squeal explore`: modes at points of many parameters, and the probability of squeal.
 
 use std::path::PathBuf;
 

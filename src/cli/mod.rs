@@ -156,7 +156,7 @@ enum Command {
     /// Each model has a folder of its own, as `squeal stability` makes it. Run again, a study makes only what is
     /// missing or out of date.
     Study(study::Study),
-    /// Find the modes at points of many parameters: how probable squeal is, and which parameters matter
+    /// Find the modes at points of many parameters, the probability of squeal, and the influence of each parameter
     Explore(explore::Explore),
     /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
     Compare(compare::Compare),

@@ -1,4 +1,4 @@
-//! What the points of a study say together.
+//! Results over all points of a study.
 
 use serde::Serialize;
 
@@ -229,7 +229,8 @@ mod tests {
             file: "explore.toml".into(),
             model: "brake.toml".into(),
             parameters: (0..n_parameters).map(parameter).collect(),
-            design: Design { kind, seed: 1 },
+            design: Design { kind, seed: 1, correlation: None },
+            contacts: None,
             band: None,
             criterion: None,
             bin: 100.0,

@@ -4,6 +4,7 @@ use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+use super::correlation::Correlation;
 use super::distribution::Distribution;
 use crate::{Error, Result};
 
@@ -48,6 +49,8 @@ pub struct Design {
     pub kind: DesignKind,
     /// Where chance begins.
     pub seed: u32,
+    /// How the parameters of a Latin hypercube or a Sobol sequence depend on each other.
+    pub correlation: Option<Correlation>,
 }
 
 /// More points than this in one study are taken for a mistake; the Sobol sequence has no more.
@@ -62,7 +65,7 @@ impl Design {
     /// use squeal::explore::{Design, DesignKind, Distribution};
     ///
     /// let friction = Distribution::Uniform { from: 0.3, to: 0.7 };
-    /// let design = Design { kind: DesignKind::Grid { n_levels: 3 }, seed: 1 };
+    /// let design = Design { kind: DesignKind::Grid { n_levels: 3 }, seed: 1, correlation: None };
     /// assert_eq!(design.points(&[&friction], &[0.4])?, [[0.3], [0.5], [0.7]]);
     /// # Ok::<(), squeal::Error>(())
     /// ```
@@ -80,9 +83,11 @@ impl Design {
             DesignKind::OneAtATime { n_levels } => one_at_a_time(parameters, nominal, *n_levels),
             DesignKind::List(points) => points.clone(),
             DesignKind::LatinHypercube { n_points } => {
-                values(parameters, latin_hypercube(*n_points, parameters.len(), self.seed))
+                values(parameters, self.correlated(latin_hypercube(*n_points, parameters.len(), self.seed)))
             }
-            DesignKind::Sobol { n_points } => values(parameters, self.sobol(*n_points, parameters.len())?),
+            DesignKind::Sobol { n_points } => {
+                values(parameters, self.correlated(self.sobol(*n_points, parameters.len())?))
+            }
             DesignKind::Saltelli { n_base } => {
                 let base = self.sobol(*n_base, 2 * parameters.len())?;
                 values(parameters, base.iter().flat_map(|row| saltelli(row)).collect())
@@ -103,6 +108,13 @@ impl Design {
             DesignKind::List(points) => points.len(),
             DesignKind::LatinHypercube { n_points } | DesignKind::Sobol { n_points } => *n_points,
             DesignKind::Saltelli { n_base } => n_base.saturating_mul(parameters.len() + 2),
+        }
+    }
+
+    fn correlated(&self, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        match &self.correlation {
+            None => points,
+            Some(correlation) => points.iter().map(|point| correlation.apply(point)).collect(),
         }
     }
 
@@ -179,7 +191,9 @@ mod tests {
     const UNIT: Distribution = Distribution::Uniform { from: 0.0, to: 1.0 };
 
     fn points(kind: DesignKind, n_parameters: usize) -> Vec<Vec<f64>> {
-        Design { kind, seed: 7 }.points(&vec![&UNIT; n_parameters], &vec![0.5; n_parameters]).unwrap()
+        Design { kind, seed: 7, correlation: None }
+            .points(&vec![&UNIT; n_parameters], &vec![0.5; n_parameters])
+            .unwrap()
     }
 
     /// Number of points in each of n equal intervals of a dimension.
@@ -195,7 +209,7 @@ mod tests {
         assert!((0..3).all(|d| strata(&found, d, 20) == [1; 20]));
         assert_ne!(
             found,
-            Design { kind: DesignKind::LatinHypercube { n_points: 20 }, seed: 8 }
+            Design { kind: DesignKind::LatinHypercube { n_points: 20 }, seed: 8, correlation: None }
                 .points(&[&UNIT; 3], &[0.5; 3])
                 .unwrap()
         );
@@ -221,7 +235,7 @@ mod tests {
     #[test]
     fn a_grid_has_all_combinations() {
         let list = Distribution::Values(vec![7.0, 9.0]);
-        let design = Design { kind: DesignKind::Grid { n_levels: 3 }, seed: 0 };
+        let design = Design { kind: DesignKind::Grid { n_levels: 3 }, seed: 0, correlation: None };
         let found = design.points(&[&list, &UNIT], &[7.0, 0.5]).unwrap();
         assert_eq!(found, [[7.0, 0.0], [7.0, 0.5], [7.0, 1.0], [9.0, 0.0], [9.0, 0.5], [9.0, 1.0]]);
         assert!(!design.is_sample());

@@ -37,7 +37,7 @@ pub enum Distribution {
 /// Ends of a distribution without bounds, as probabilities: what a grid and one-at-a-time designs reach.
 const TAILS: [f64; 2] = [0.05, 0.95];
 /// Probabilities are kept this far from 0 and 1, where quantiles are infinite: half of the resolution of the points.
-const RESOLUTION: f64 = 1.0 / (1 << 25) as f64;
+pub(super) const RESOLUTION: f64 = 1.0 / (1 << 25) as f64;
 
 impl Distribution {
     /// The value below which the fraction `u` of the distribution lies, `F^-1(u)`; `u` in [0, 1].

@@ -1,4 +1,5 @@
-//! Studies of many parameters: which points are analysed, and what their modes say about the brake. Pure.
+//! Studies of many parameters: which points are analysed, and probabilities and indices from their modes.
+//! Pure.
 //!
 //! ```text
 //! explore.toml --read--> Study { parameters, design } --points--> values of the parameters, point by point
@@ -10,7 +11,9 @@
 //! nothing else, one model has many studies, and one study is made of a model and of its super-element.
 
 mod answers;
+mod correlation;
 mod design;
+mod design_table;
 mod distribution;
 mod key;
 mod linking;
@@ -21,6 +24,7 @@ mod study;
 mod template;
 
 pub use answers::{Answers, Bin, Instability, quantity};
+pub use correlation::Correlation;
 pub use design::{Design, DesignKind};
 pub use distribution::Distribution;
 pub use key::KeyPath;
@@ -29,4 +33,4 @@ pub use result::{Link, Outcome, PointMode, PointResult};
 pub use sensitivity::{Bar, Estimate, Indices, sobol_indices, tornado};
 pub use statistics::{Probability, quantile};
 pub use study::{Parameter, Study, read};
-pub use template::{Nominal, Template, with_mesh};
+pub use template::{Nominal, Template, standing_alone};

@@ -105,8 +105,9 @@ fn estimates(rows: &[Vec<f64>], chosen: &[usize]) -> Option<Vec<[f64; 2]>> {
     Some((0..n_parameters).map(of).collect())
 }
 
-/// The bars of a tornado, the longest first: for each parameter the smallest and largest quantity while it alone differs
-/// from its nominal value. `points` are values of the parameters with the quantity there, the nominal point among them.
+/// The bars of a tornado, the longest first: for each parameter the smallest and largest quantity while it alone
+/// differs from its nominal value. `points` are values of the parameters with the quantity there, the nominal point
+/// among them.
 pub fn tornado(parameters: &[&str], nominal: &[f64], points: &[(&[f64], f64)]) -> Vec<Bar> {
     let bar = |(i, parameter): (usize, &&str)| {
         let is_own = |values: &[f64]| (0..nominal.len()).all(|j| j == i || values[j] == nominal[j]);
@@ -133,7 +134,7 @@ mod tests {
     use std::f64::consts::PI;
 
     fn indices(f: impl Fn(&[f64]) -> Option<f64>, of: &[&Distribution], n_base: usize) -> Vec<Indices> {
-        let design = Design { kind: DesignKind::Saltelli { n_base }, seed: 3 };
+        let design = Design { kind: DesignKind::Saltelli { n_base }, seed: 3, correlation: None };
         let points = design.points(of, &vec![0.0; of.len()]).unwrap();
         let values: Vec<Option<f64>> = points.iter().map(|point| f(point)).collect();
         sobol_indices(&["x1", "x2", "x3"][..of.len()], &values, 5).unwrap()

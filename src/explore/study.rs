@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::design::{Design, DesignKind};
+use super::design::Design;
+use super::design_table::{CorrelationTable, DesignTable, beside, correlated, design};
 use super::distribution::Distribution;
 use super::key::KeyPath;
 use super::template::{CONTACT_STIFFNESS, FRICTION, PRESSURE};
-use crate::model::{InstabilityCriterion, located, names, utf8};
+use crate::model::{InstabilityCriterion, located, utf8};
 use crate::{Error, Result};
 
 /// A study of many parameters.
@@ -24,6 +25,8 @@ pub struct Study {
     pub parameters: Vec<Parameter>,
     /// How points are chosen.
     pub design: Design,
+    /// Reference pairs in place of the contact points of the sliding pairs, where there are any.
+    pub contacts: Option<usize>,
     /// Frequency band, Hz; the model's own where there is none.
     pub band: Option<[f64; 2]>,
     /// What counts as an unstable mode; the model's own where there is none.
@@ -66,23 +69,15 @@ struct Keys {
     bin: Option<f64>,
     #[serde(default = "yes")]
     follow: bool,
+    contacts: Option<usize>,
     design: DesignTable,
+    #[serde(default)]
+    correlation: Vec<CorrelationTable>,
     parameter: BTreeMap<Spanned<String>, ParameterTable>,
 }
 
 fn yes() -> bool {
     true
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DesignTable {
-    kind: Spanned<String>,
-    points: Option<usize>,
-    levels: Option<usize>,
-    file: Option<String>,
-    #[serde(default)]
-    seed: u32,
 }
 
 #[derive(Deserialize)]
@@ -120,13 +115,8 @@ struct LogNormalTable {
     deviation: f64,
 }
 
-/// Kinds of designs by their names.
-const KINDS: [&str; 6] = ["grid", "one-at-a-time", "list", "latin-hypercube", "sobol", "saltelli"];
 /// Width of frequency bins where none is given, Hz.
 const BIN: f64 = 500.0;
-/// Levels of a parameter in a grid where none are given.
-const GRID_LEVELS: usize = 5;
-
 /// Reads and checks the file of a study; the model that it names is looked for beside it.
 ///
 /// # Errors
@@ -153,8 +143,9 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
         let wrong = |what: String| at(name.span().start, format!("parameter {:?}: {what}", name.get_ref()));
         parameters.push(parameter(name.get_ref(), table).map_err(wrong)?);
     }
-    let design =
-        design(&keys.design, &parameters, path).map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
+    let design = design(&keys.design, &parameters, path)
+        .and_then(|design| correlated(design, &keys.correlation, &parameters))
+        .map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
     let bin = keys.bin.unwrap_or(BIN);
     let [from, to] = keys.band.unwrap_or([0.0, 1.0]);
     let is_valid = bin > 0.0 && (0.0..to).contains(&from) && !parameters.is_empty();
@@ -171,15 +162,12 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
         model: beside(path, &keys.model),
         parameters,
         design,
+        contacts: keys.contacts,
         band: keys.band,
         criterion: keys.unstable,
         bin,
         follow: keys.follow,
     })
-}
-
-fn beside(file: &Path, name: &str) -> PathBuf {
-    file.parent().unwrap_or(Path::new("")).join(name)
 }
 
 fn parameter(name: &str, table: &ParameterTable) -> std::result::Result<Parameter, String> {
@@ -223,69 +211,9 @@ fn distribution(table: &ParameterTable) -> std::result::Result<Distribution, Str
     is_valid.then_some(found).ok_or_else(|| format!("no values can be like this. {advice}"))
 }
 
-fn design(table: &DesignTable, parameters: &[Parameter], path: &Path) -> Result<Design> {
-    let count = |given: Option<usize>, key: &str| {
-        let missing = || Error::input(format!("kind {:?} needs {key}, a number above 0", table.kind.get_ref()));
-        given.filter(|n| *n > 0).ok_or_else(missing)
-    };
-    let unused = |wants: [bool; 3]| {
-        let given = [table.points.is_some(), table.levels.is_some(), table.file.is_some()];
-        let keys = ["points", "levels", "file"];
-        let extra = (0..3).find(|&i| given[i] && !wants[i]);
-        extra.map_or(Ok(()), |i| {
-            Err(Error::input(format!("{} does not go with kind {:?}", keys[i], table.kind.get_ref())))
-        })
-    };
-    let kind = match table.kind.get_ref().as_str() {
-        "grid" | "one-at-a-time" => unused([false, true, false]).and_then(|()| {
-            Ok(if table.kind.get_ref() == "grid" {
-                DesignKind::Grid { n_levels: count(table.levels.or(Some(GRID_LEVELS)), "levels")? }
-            } else {
-                DesignKind::OneAtATime { n_levels: count(table.levels.or(Some(2)), "levels")? }
-            })
-        }),
-        "list" => unused([false, false, true]).and_then(|()| {
-            let missing = || Error::input("kind \"list\" needs file, a CSV file with a column for each parameter");
-            let file = table.file.as_ref().ok_or_else(missing)?;
-            Ok(DesignKind::List(read_points(&beside(path, file), parameters)?))
-        }),
-        kind => unused([true, false, false]).and_then(|()| match kind {
-            "latin-hypercube" => Ok(DesignKind::LatinHypercube { n_points: count(table.points, "points")? }),
-            "sobol" => Ok(DesignKind::Sobol { n_points: count(table.points, "points")? }),
-            "saltelli" => Ok(DesignKind::Saltelli { n_base: count(table.points, "points")? }),
-            other => Err(Error::input(format!("there is no kind {other:?}. {}", names::advice(other, KINDS)))),
-        }),
-    };
-    Ok(Design { kind: kind?, seed: table.seed })
-}
-
-/// Points of a CSV file, whose columns are called as the parameters.
-fn read_points(path: &Path, parameters: &[Parameter]) -> Result<Vec<Vec<f64>>> {
-    let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|reason| wrong(reason.to_string()))?;
-    let heads = reader.headers().map_err(|reason| wrong(reason.to_string()))?.clone();
-    let column = |parameter: &Parameter| {
-        heads.iter().position(|head| head == parameter.name).ok_or_else(|| {
-            wrong(format!("there is no column {:?}. {}", parameter.name, names::advice(&parameter.name, heads.iter())))
-        })
-    };
-    let columns = parameters.iter().map(column).collect::<Result<Vec<_>>>()?;
-    let mut points = Vec::new();
-    for (row, record) in reader.records().enumerate() {
-        let record = record.map_err(|reason| wrong(reason.to_string()))?;
-        let number = |&column: &usize| {
-            let text = record.get(column).unwrap_or_default();
-            let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-            value.ok_or_else(|| wrong(format!("row {} has {text:?} in place of a number", row + 2)))
-        };
-        points.push(columns.iter().map(number).collect::<Result<Vec<_>>>()?);
-    }
-    Ok(points)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::{Correlation, DesignKind};
     use super::*;
 
     const TEXT: &str = "model = \"brake.toml\"\nbin = 250\n[design]\nkind = \"sobol\"\npoints = 8\nseed = 3\n\
@@ -302,7 +230,7 @@ mod tests {
     fn a_file_is_read() {
         let study = parse(TEXT, "a/explore.toml".as_ref()).unwrap();
         assert_eq!((study.model.as_path(), study.bin, study.follow), ("a/brake.toml".as_ref(), 250.0, true));
-        assert_eq!(study.design, Design { kind: DesignKind::Sobol { n_points: 8 }, seed: 3 });
+        assert_eq!(study.design, Design { kind: DesignKind::Sobol { n_points: 8 }, seed: 3, correlation: None });
         let [mu, modulus] = &study.parameters[..] else { panic!("two parameters, in the order of the file") };
         assert_eq!((mu.name.as_str(), mu.shared_key(), mu.is_factor), ("mu", Some("friction"), false));
         assert_eq!((modulus.keys.len(), modulus.shared_key(), modulus.is_factor), (2, None, true));
@@ -325,6 +253,20 @@ mod tests {
             let message = message(old, new);
             assert!(parts.iter().all(|part| message.contains(part)), "{parts:?} in {message}");
         }
+    }
+
+    #[test]
+    fn correlations_name_two_parameters() {
+        let with = |between: &str, coefficient: f64| {
+            let text = format!("{TEXT}[[correlation]]\nbetween = {between}\ncoefficient = {coefficient}\n");
+            parse(&text, "a/explore.toml".as_ref())
+        };
+        let expected = Correlation::new(2, &[([1, 0], 0.5)]);
+        assert_eq!(with("[\"E\", \"mu\"]", 0.5).unwrap().design.correlation, expected);
+        let message = |between: &str, coefficient| with(between, coefficient).unwrap_err().to_string();
+        assert!(message("[\"e\", \"mu\"]", 0.5).contains("no parameter \"e\". Did you mean \"E\""));
+        assert!(message("[\"E\", \"mu\"]", 1.5).contains("between -1 and 1"));
+        assert!(message("[\"E\", \"E\"]", 0.5).contains("no parameters can have"));
     }
 
     #[test]

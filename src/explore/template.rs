@@ -106,15 +106,19 @@ impl Template {
     }
 }
 
-/// The text of a model file whose mesh has another path.
+/// The text of a model file whose mesh has another path, with the band of a study (Hz).
 ///
 /// # Errors
 /// [`Error::Input`] where the text is no model file.
-pub fn with_mesh(text: &str, mesh: &str) -> Result<String> {
+pub fn standing_alone(text: &str, mesh: &str, band: [f64; 2]) -> Result<String> {
     let mut document: DocumentMut = text.parse().map_err(|reason| Error::input(format!("no model file: {reason}")))?;
     let table = document.get_mut("mesh").and_then(Item::as_table_like_mut);
     let table = table.ok_or_else(|| Error::input("the model file has no [mesh]"))?;
     table.insert("file", value(mesh));
+    let stability = document.get_mut("stability").and_then(Item::as_table_like_mut);
+    stability.into_iter().for_each(|table| {
+        table.insert("band", value(band.into_iter().collect::<Array>()));
+    });
     Ok(document.to_string())
 }
 
@@ -246,9 +250,10 @@ mod tests {
 
     #[test]
     fn a_model_file_may_stand_elsewhere() {
-        let text = with_mesh(&std::fs::read_to_string(FILE).unwrap(), "../data/pads_on_disc.msh").unwrap();
-        let model = model::parse(&text, "tests/data/worst.toml".as_ref()).unwrap();
+        let text = standing_alone(&std::fs::read_to_string(FILE).unwrap(), "../data/pads_on_disc.msh", [0.0, 500.0]);
+        let model = model::parse(&text.unwrap(), "tests/data/worst.toml".as_ref()).unwrap();
         assert_eq!(model.mesh_file, Path::new("tests/data/../data/pads_on_disc.msh"));
+        assert_eq!(model.band, [0.0, 500.0]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! A study of many parameters: points and modes as CSV, what they say as JSON and as text.
+//! A study of many parameters: points and modes as CSV, answers as JSON and as text.
 
 use std::io::{Result as IoResult, Write};
 use std::path::Path;
@@ -16,13 +16,13 @@ pub const WORST: &str = "worst.toml";
 /// Bars of the squeal probability have so many signs at 100 %.
 const BAR: f64 = 40.0;
 
-/// What a study says, as one JSON document.
+/// The answers of a study, as one JSON document.
 #[derive(Debug, Serialize)]
 pub struct Document<'a> {
     title: &'a str,
     model: String,
     band_hz: [f64; 2],
-    unstable: String,
+    criterion: String,
     parameters: Vec<ParameterDocument<'a>>,
     #[serde(flatten)]
     answers: &'a Answers,
@@ -87,7 +87,7 @@ impl<'a> Document<'a> {
             title: &about.title,
             model: study.model.display().to_string(),
             band_hz: about.band,
-            unstable: about.criterion.to_string(),
+            criterion: about.criterion.to_string(),
             parameters: study.parameters.iter().zip(&points[0].values).map(parameter).collect(),
             answers,
             worst_point: worst,
@@ -114,7 +114,7 @@ impl<'a> Document<'a> {
     pub fn text(&self) -> String {
         let answers = self.answers;
         let what = if answers.is_sample { "probability" } else { "fraction of the points" };
-        let mut text = self.head() + &format!("unstable ({}): {what} {}\n", self.unstable, percent(answers.unstable));
+        let mut text = self.head() + &format!("unstable ({}): {what} {}\n", self.criterion, percent(answers.unstable));
         text += &section("largest growth rate, 1/s", &self.growth_rates());
         text += &section(&format!("instabilities, by {what}"), &instabilities(&answers.instabilities));
         text += &section(&format!("{what} of squeal over frequency"), &bins(&answers.bins));
@@ -172,7 +172,7 @@ impl<'a> Document<'a> {
             ("summary.json", "the answers, for programs"),
             ("summary.txt", "this text"),
         ];
-        if self.worst_point.as_ref().is_some_and(|worst| worst.command.ends_with(WORST)) {
+        if self.worst_point.as_ref().is_some_and(|worst| worst.command.contains(WORST)) {
             list.push((WORST, "the model file of the worst point"));
         }
         files(&self.folder, &list)
@@ -183,7 +183,8 @@ impl<'a> Document<'a> {
 fn command(study: &Study, about: &About, values: &[f64], folder: &Path) -> String {
     // Of a super-element no text of a model is known.
     if !about.model_text.is_empty() {
-        return format!("squeal stability {}", folder.join(WORST).display());
+        let contacts = study.contacts.map_or_else(String::new, |n| format!(" --contacts {n}"));
+        return format!("squeal stability {}{contacts}", folder.join(WORST).display());
     }
     let option = |(own, value): (&crate::explore::Parameter, &f64)| {
         let key = own.shared_key().unwrap_or_default().replace('_', "-");
@@ -211,8 +212,7 @@ fn write_points(out: &mut dyn Write, names: &[&str], points: &[PointResult]) -> 
     let results = ["modes", "unstable_modes", "growth_rate_per_s", "frequency_hz", "failure"];
     table.write_record(["point"].iter().chain(names).chain(&results))?;
     for (number, point) in points.iter().enumerate() {
-        let critical =
-            |of: fn(&PointMode) -> f64| point.critical().map_or_else(String::new, |mode| of(mode).to_string());
+        let critical = |of: fn(&PointMode) -> f64| point.critical().map_or_else(String::new, |mode| shown(of(mode)));
         let count = |of: fn(&PointMode) -> bool| {
             point.modes().map_or_else(String::new, |modes| modes.iter().filter(|mode| of(mode)).count().to_string())
         };
@@ -220,7 +220,7 @@ fn write_points(out: &mut dyn Write, names: &[&str], points: &[PointResult]) -> 
             Outcome::Failed(reason) => reason.clone(),
             Outcome::Modes(_) => String::new(),
         };
-        let values = point.values.iter().map(f64::to_string);
+        let values = point.values.iter().map(|value| shown(*value));
         let results = [
             count(|_| true),
             count(|mode| mode.unstable),
@@ -255,10 +255,10 @@ fn write_modes(out: &mut dyn Write, points: &[PointResult]) -> IoResult<()> {
             table.write_record([
                 number.to_string(),
                 mode.to_string(),
-                own.frequency().to_string(),
-                own.growth_rate().to_string(),
-                own.damping_ratio().to_string(),
-                own.backward_error.to_string(),
+                shown(own.frequency()),
+                shown(own.growth_rate()),
+                shown(own.damping_ratio()),
+                shown(own.backward_error),
                 own.unstable.to_string(),
                 link(|link| link.nominal.to_string()),
                 link(|link| format!("{:.4}", link.share)),
@@ -267,6 +267,11 @@ fn write_modes(out: &mut dyn Write, points: &[PointResult]) -> IoResult<()> {
         }
     }
     table.flush()
+}
+
+/// A number to its last digit.
+fn shown(number: f64) -> String {
+    serde_json::Value::from(number).to_string()
 }
 
 /// A heading with what stands below it; nothing where that is empty.

@@ -44,13 +44,15 @@ impl ModelVariants {
         Ok(ModelVariants { file: file.to_owned(), text, model, swept, piece })
     }
 
-    /// The brake of another text of the model file with the same mesh. Collective: all ranks fail together.
+    /// The brake of another text of the model file with the same mesh, with so many reference pairs in place of the
+    /// contact points of the sliding pairs where `contacts` asks for them. Collective: all ranks fail together.
     ///
     /// # Errors
     /// [`Error::Input`] for whatever is wrong with the text, and a part that can move freely.
-    pub fn brake(&self, comm: &Comm, text: &str) -> Result<FullModel> {
+    pub fn brake(&self, comm: &Comm, text: &str, contacts: Option<usize>) -> Result<FullModel> {
         let model = comm.agree(model::parse(text, &self.file))?;
-        let full = comm.agree(FullModel::new(model, self.piece.clone(), comm))?;
+        let mut full = comm.agree(FullModel::new(model, self.piece.clone(), comm))?;
+        contacts.map_or(Ok(()), |n| full.reduce_contacts(n))?;
         full.require_constrained(comm)?;
         Ok(full)
     }
@@ -66,11 +68,12 @@ mod tests {
         let comm = Session::start(&[]).unwrap();
         let variants = ModelVariants::read(&comm, "tests/data/pads_on_disc.toml".as_ref()).unwrap();
         assert_eq!(variants.swept, ["disc / inner pad", "disc / outer pad"]);
-        let brake = variants.brake(&comm, &variants.text.replace("young = 8e9", "young = 4e9")).unwrap();
+        let brake = variants.brake(&comm, &variants.text.replace("young = 8e9", "young = 4e9"), None).unwrap();
         let young = |model: &Model| format!("{:?}", model.parts[1].material);
         assert_ne!(young(&brake.model), young(&variants.model));
         assert_eq!(brake.interface.points.len(), 236);
+        assert_eq!(variants.brake(&comm, &variants.text, Some(12)).unwrap().interface.points.len(), 12);
         let free = variants.text.replace("axes = \"xy\"", "axes = \"x\"");
-        assert!(variants.brake(&comm, &free).err().unwrap().to_string().contains("unconstrained"));
+        assert!(variants.brake(&comm, &free, None).err().unwrap().to_string().contains("unconstrained"));
     }
 }

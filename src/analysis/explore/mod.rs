@@ -12,7 +12,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::explore::{Answers, Distribution, Outcome, PointResult, Study, with_mesh};
+use crate::explore::{Answers, Distribution, Outcome, PointResult, Study, standing_alone};
 use crate::native::{Comm, libraries};
 use crate::output::explore::{Document, WORST, write};
 use crate::output::folder::Folder;
@@ -33,15 +33,15 @@ pub struct Exploration {
     pub about: About,
     /// The nominal point, then those of the design.
     pub points: Vec<PointResult>,
-    /// What they say together.
+    /// Probabilities and indices over all points.
     pub answers: Answers,
     /// The model file of the point with the largest growth rate; none of a super-element.
     pub worst: Option<String>,
 }
 
-/// Finds the modes at the points of a study, follows them to the nominal point, and says how probable squeal is and
-/// which parameters matter. A point that fails is recorded with its reason. With `output` the study is written to a
-/// folder, and continues where an earlier run has ended. Only the root gets the result. Collective.
+/// Finds the modes at the points of a study, follows them to the nominal point, and computes the probability of squeal
+/// and the influence of each parameter. A point that fails is recorded with its reason. With `output` the study is
+/// written to a folder, and continues where an earlier run has ended. Only the root gets the result. Collective.
 ///
 /// ```no_run
 /// use squeal::analysis::explore;
@@ -118,7 +118,7 @@ impl<'s> Run<'s> {
         Ok(Run { comm: comm.clone(), study, subject, about, request, values, scales, folder })
     }
 
-    /// Solves the points, and writes what they say. Collective.
+    /// Solves the points, and writes the folder. Collective.
     fn run(mut self, output: Option<&Output>, observer: &mut dyn Observer) -> Result<Exploration> {
         let (comm, place) = (self.comm.clone(), output.map(|output| output.folder.as_path()));
         let identity = self.identity(output);
@@ -180,7 +180,8 @@ impl<'s> Run<'s> {
 
     /// All that the numbers depend on, by name.
     fn identity(&self, output: Option<&Output>) -> Vec<(&'static str, String)> {
-        let study = format!("{:?} {:?} {}", self.study.parameters, self.study.design, self.study.follow);
+        let study =
+            format!("{:?}", (&self.study.parameters, &self.study.design, self.study.follow, self.study.contacts));
         let digest: String = Sha256::digest(study).iter().map(|byte| format!("{byte:02x}")).collect();
         let mut identity = vec![
             ("program", self.about.program.clone()),
@@ -226,7 +227,8 @@ fn finish(folder: Folder, study: &Study, found: &Exploration, place: &Path) -> R
     let document = Document::new(study, &found.about, &found.points, &found.answers, place);
     write(&folder, &document, &found.points)?;
     if let Some(worst) = &found.worst {
-        let text = document.worst_head() + &with_mesh(worst, &mesh_from(place, &found.about.mesh))?;
+        let text =
+            document.worst_head() + &standing_alone(worst, &mesh_from(place, &found.about.mesh), found.about.band)?;
         folder.write(WORST, |out| out.write_all(text.as_bytes()))?;
     }
     folder.finish()

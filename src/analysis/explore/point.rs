@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use crate::analysis::observer::Observer;
 use crate::analysis::sweep::Sweep;
 use crate::equilibrium::Equilibrium;
-use crate::explore::{ModeProducts, PointMode, link};
+use crate::explore::{Link, ModeProducts, PointMode, link};
 use crate::model::InstabilityCriterion;
 use crate::native::{Block, Comm, Vector};
 use crate::structure::Structure;
@@ -33,8 +33,8 @@ pub struct NominalModes {
     pub own: Vec<Complex64>,
 }
 
-/// What is found at a point.
-pub struct Found {
+/// Equilibrium and modes of a point.
+pub struct PointSolution {
     /// The modes of the band, by frequency.
     pub modes: Vec<PointMode>,
     /// This rank's part of the displacements of the equilibrium.
@@ -56,7 +56,7 @@ pub fn solve(
     start: Option<&[f64]>,
     nominal: Option<&NominalModes>,
     observer: &mut dyn Observer,
-) -> Result<Found> {
+) -> Result<PointSolution> {
     structure.require_mass()?;
     let band = structure.band(Some(request.band))?;
     let system = structure.assemble(comm)?;
@@ -83,10 +83,15 @@ pub fn solve(
         let weighted = vectors.weighted(&system.m)?;
         match nominal {
             Some(nominal) => vectors.follow(nominal, &weighted, &mut modes),
-            None => own = Some(weighted),
+            None => {
+                for (nominal, mode) in (1..).zip(&mut modes) {
+                    mode.link = Some(Link { nominal, share: 1.0, doubtful: false });
+                }
+                own = Some(weighted);
+            }
         }
     }
-    Ok(Found { modes, displacements: equilibrium.u.to_vec()?, nominal: own })
+    Ok(PointSolution { modes, displacements: equilibrium.u.to_vec()?, nominal: own })
 }
 
 /// Accuracy of the left vectors that recognise modes.
@@ -103,7 +108,10 @@ fn equilibrium_from(
     if let Some(start) = start {
         sweep.restore(vec![(friction, Vector::from_local(like.comm(), start)?)], None);
         match sweep.equilibrium(friction, observer) {
-            Err(error) if error.kind() == ErrorKind::NotConverged => sweep.restore(Vec::new(), None),
+            // With all contacts open a part may be unconstrained.
+            Err(error) if [ErrorKind::NotConverged, ErrorKind::Singular].contains(&error.kind()) => {
+                sweep.restore(Vec::new(), None);
+            }
             outcome => return outcome,
         }
     }
@@ -163,6 +171,7 @@ pub fn is_of_point(comm: &Comm, error: &Error) -> bool {
 mod tests {
     use super::*;
     use crate::native::Session;
+    use crate::structure::StructureOptions;
 
     #[test]
     fn products_are_those_of_complex_vectors() {
@@ -173,6 +182,30 @@ mod tests {
         let columns = |v: [Complex64; 2]| [[v[0].re, v[1].re], [v[0].im, v[1].im]];
         let found = hermitian(&block(&columns(y)), &block(&columns(x)))[(0, 0)];
         assert!((found - (y[0].conj() * x[0] + y[1].conj() * x[1])).norm() < 1e-15);
+    }
+
+    /// A start with the pads far away from the disc.
+    #[test]
+    fn an_equilibrium_that_a_neighbour_does_not_lead_to_is_sought_from_rest() {
+        let comm = Session::start(&[]).unwrap();
+        let file = "tests/data/pads_on_disc.toml".as_ref();
+        let brake = Structure::read(&comm, file, &StructureOptions::default()).unwrap();
+        let system = brake.assemble(&comm).unwrap();
+        let from = |start: Option<&[f64]>| {
+            let mut sweep = Sweep::new(&system, brake.interface(), false).unwrap();
+            equilibrium_from(&mut sweep, 0.4, start, &system.load, &mut ()).unwrap()
+        };
+        let rest = from(None);
+        let own = rest.u.to_vec().unwrap();
+        let nearby = from(Some(&own));
+        assert_eq!((nearby.steps.len(), nearby.steps[0].label.as_str()), (1, "friction 0.4000"));
+        let away: Vec<f64> = own.iter().map(|u| -1e4 * u).collect();
+        let again = from(Some(&away));
+        assert!(again.steps.iter().any(|step| step.label == "settle"), "from rest");
+        let largest = own.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        for other in [nearby.u.to_vec().unwrap(), again.u.to_vec().unwrap()] {
+            assert!(own.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-9 * largest));
+        }
     }
 
     #[test]

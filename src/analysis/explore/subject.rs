@@ -14,7 +14,7 @@ use crate::{Error, Result};
 
 /// A model or super-element whose numbers a study changes.
 pub enum Subject<'s> {
-    Full { variants: ModelVariants, template: Template },
+    Full { variants: ModelVariants, template: Template, contacts: Option<usize> },
     Reduced { place: &'s Path, element: Box<SuperElement>, parameters: &'s [Parameter] },
 }
 
@@ -35,6 +35,7 @@ impl<'s> Subject<'s> {
     /// [`Error::Input`] for files that cannot be used, and keys that match nothing.
     pub fn read(comm: &Comm, study: &'s Study) -> Result<Subject<'s>> {
         if is_hdf5(&study.model) {
+            refuse_contacts(study)?;
             let element = Box::new(file::read_element(&study.model)?);
             let parameters = &study.parameters[..];
             parameters.iter().try_for_each(|parameter| require_shared(study, parameter))?;
@@ -44,7 +45,7 @@ impl<'s> Subject<'s> {
         let nominal = Nominal { model: &variants.model, swept: &variants.swept };
         let template = Template::new(&variants.text, &study.parameters, nominal)
             .map_err(|error| Error::input(format!("{}: {error}", study.file.display())))?;
-        Ok(Subject::Full { variants, template })
+        Ok(Subject::Full { variants, template, contacts: study.contacts })
     }
 
     /// The parameters' values in the file.
@@ -66,8 +67,8 @@ impl<'s> Subject<'s> {
     /// [`Error::Input`] where the structure cannot have these values.
     pub fn structure(&self, comm: &Comm, values: &[f64]) -> Result<(Structure, f64)> {
         let structure = match self {
-            Subject::Full { variants, template } => {
-                let full: FullModel = variants.brake(comm, &template.text(values, &variants.file)?)?;
+            Subject::Full { variants, template, contacts } => {
+                let full: FullModel = variants.brake(comm, &template.text(values, &variants.file)?, *contacts)?;
                 Structure::Full(Box::new(full))
             }
             Subject::Reduced { place, element, parameters } => {
@@ -92,7 +93,7 @@ impl<'s> Subject<'s> {
     /// [`Error::Input`] where the model cannot have these values.
     pub fn text(&self, values: &[f64]) -> Result<Option<String>> {
         match self {
-            Subject::Full { variants, template } => template.text(values, &variants.file).map(Some),
+            Subject::Full { variants, template, .. } => template.text(values, &variants.file).map(Some),
             Subject::Reduced { .. } => Ok(None),
         }
     }
@@ -112,6 +113,11 @@ impl ReducedValues {
         }
         Ok(ReducedValues { friction, pressure, contact_stiffness })
     }
+}
+
+fn refuse_contacts(study: &Study) -> Result<()> {
+    let what = "a super-element has its contacts already; contacts is for models";
+    study.contacts.map_or(Ok(()), |_| Err(Error::input(format!("{}: {what}", study.file.display()))))
 }
 
 fn require_shared(study: &Study, parameter: &Parameter) -> Result<()> {

@@ -1,0 +1,130 @@
+//! The tables of a study's file that choose its points.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::correlation::Correlation;
+use super::design::{Design, DesignKind};
+use super::study::Parameter;
+use crate::model::names;
+use crate::{Error, Result};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DesignTable {
+    pub kind: Spanned<String>,
+    points: Option<usize>,
+    levels: Option<usize>,
+    file: Option<String>,
+    #[serde(default)]
+    seed: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CorrelationTable {
+    between: [String; 2],
+    coefficient: f64,
+}
+
+/// Kinds of designs by their names.
+const KINDS: [&str; 6] = ["grid", "one-at-a-time", "list", "latin-hypercube", "sobol", "saltelli"];
+/// Levels of a parameter in a grid where none are given.
+const GRID_LEVELS: usize = 5;
+
+/// A path of the file, seen from the current directory.
+pub(super) fn beside(file: &Path, name: &str) -> PathBuf {
+    file.parent().unwrap_or(Path::new("")).join(name)
+}
+
+/// The design of a table.
+///
+/// # Errors
+/// [`Error::Input`] for keys that are missing, or do not go together, and files that cannot be read.
+pub(super) fn design(table: &DesignTable, parameters: &[Parameter], path: &Path) -> Result<Design> {
+    let count = |given: Option<usize>, key: &str| {
+        let missing = || Error::input(format!("kind {:?} needs {key}, a number above 0", table.kind.get_ref()));
+        given.filter(|n| *n > 0).ok_or_else(missing)
+    };
+    let unused = |wants: [bool; 3]| {
+        let given = [table.points.is_some(), table.levels.is_some(), table.file.is_some()];
+        let keys = ["points", "levels", "file"];
+        let extra = (0..3).find(|&i| given[i] && !wants[i]);
+        extra.map_or(Ok(()), |i| {
+            Err(Error::input(format!("{} does not go with kind {:?}", keys[i], table.kind.get_ref())))
+        })
+    };
+    let kind = match table.kind.get_ref().as_str() {
+        "grid" | "one-at-a-time" => unused([false, true, false]).and_then(|()| {
+            Ok(if table.kind.get_ref() == "grid" {
+                DesignKind::Grid { n_levels: count(table.levels.or(Some(GRID_LEVELS)), "levels")? }
+            } else {
+                DesignKind::OneAtATime { n_levels: count(table.levels.or(Some(2)), "levels")? }
+            })
+        }),
+        "list" => unused([false, false, true]).and_then(|()| {
+            let missing = || Error::input("kind \"list\" needs file, a CSV file with a column for each parameter");
+            let file = table.file.as_ref().ok_or_else(missing)?;
+            Ok(DesignKind::List(read_points(&beside(path, file), parameters)?))
+        }),
+        kind => unused([true, false, false]).and_then(|()| match kind {
+            "latin-hypercube" => Ok(DesignKind::LatinHypercube { n_points: count(table.points, "points")? }),
+            "sobol" => Ok(DesignKind::Sobol { n_points: count(table.points, "points")? }),
+            "saltelli" => Ok(DesignKind::Saltelli { n_base: count(table.points, "points")? }),
+            other => Err(Error::input(format!("there is no kind {other:?}. {}", names::advice(other, KINDS)))),
+        }),
+    };
+    Ok(Design { kind: kind?, seed: table.seed, correlation: None })
+}
+
+/// A design with the correlations of its parameters.
+///
+/// # Errors
+/// [`Error::Input`] for unknown names, and coefficients that cannot be.
+pub(super) fn correlated(design: Design, tables: &[CorrelationTable], parameters: &[Parameter]) -> Result<Design> {
+    if tables.is_empty() {
+        return Ok(design);
+    }
+    if !matches!(design.kind, DesignKind::Sobol { .. } | DesignKind::LatinHypercube { .. }) {
+        let what = "[[correlation]] goes with the kinds \"sobol\" and \"latin-hypercube\" alone";
+        return Err(Error::input(what));
+    }
+    let place = |name: &String| {
+        let names = || parameters.iter().map(|own| own.name.as_str());
+        let unknown = || Error::input(format!("correlation: no parameter {name:?}. {}", names::advice(name, names())));
+        names().position(|own| own == name).ok_or_else(unknown)
+    };
+    let pair =
+        |table: &CorrelationTable| Ok(([place(&table.between[0])?, place(&table.between[1])?], table.coefficient));
+    let pairs = tables.iter().map(pair).collect::<Result<Vec<_>>>()?;
+    let correlation = Correlation::new(parameters.len(), &pairs).filter(|_| pairs.iter().all(|([i, j], _)| i != j));
+    let impossible = || Error::input("no parameters can have these correlations. Give coefficients between -1 and 1");
+    Ok(Design { correlation: Some(correlation.ok_or_else(impossible)?), ..design })
+}
+
+/// Points of a CSV file, whose columns are called as the parameters.
+fn read_points(path: &Path, parameters: &[Parameter]) -> Result<Vec<Vec<f64>>> {
+    let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|reason| wrong(reason.to_string()))?;
+    let heads = reader.headers().map_err(|reason| wrong(reason.to_string()))?.clone();
+    let column = |parameter: &Parameter| {
+        heads.iter().position(|head| head == parameter.name).ok_or_else(|| {
+            wrong(format!("there is no column {:?}. {}", parameter.name, names::advice(&parameter.name, heads.iter())))
+        })
+    };
+    let columns = parameters.iter().map(column).collect::<Result<Vec<_>>>()?;
+    let mut points = Vec::new();
+    for (row, record) in reader.records().enumerate() {
+        let record = record.map_err(|reason| wrong(reason.to_string()))?;
+        let number = |&column: &usize| {
+            let text = record.get(column).unwrap_or_default();
+            let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+            value.ok_or_else(|| wrong(format!("row {} has {text:?} in place of a number", row + 2)))
+        };
+        points.push(columns.iter().map(number).collect::<Result<Vec<_>>>()?);
+    }
+    Ok(points)
+}
