@@ -101,8 +101,8 @@ impl Answers {
         let sorted = quantities(&sample);
         let at = |&fraction: &f64| Some(Quantile { fraction, growth_rate_per_s: quantile(&sorted, fraction)? });
         let n_unstable = sample.iter().filter(|(_, point)| point.is_unstable()).count();
-        let growth = |(_, point): &&(usize, &PointResult)| quantity(point).unwrap_or(f64::NEG_INFINITY);
-        let worst = solved.iter().max_by(|a, b| growth(a).total_cmp(&growth(b)));
+        let growth = |(number, point): &(usize, &PointResult)| Some((*number, quantity(point)?));
+        let worst = solved.iter().filter_map(growth).max_by(|a, b| a.1.total_cmp(&b.1));
         Answers {
             n_points: own.len(),
             n_failed: own.len() - solved.len(),

@@ -326,5 +326,6 @@ fn tornado(bars: Option<&[Bar]>) -> String {
         let Bar { parameter, lowest_at, lowest, highest_at, highest } = bar;
         format!("{parameter}\t{lowest:.2}\t{lowest_at:.4e}\t{highest:.2}\t{highest_at:.4e}")
     };
-    bars.map_or_else(String::new, |bars| aligned("parameter\tsmallest\tat\tlargest\tat", bars.iter().map(row)))
+    bars.filter(|bars| !bars.is_empty())
+        .map_or_else(String::new, |bars| aligned("parameter\tsmallest\tat\tlargest\tat", bars.iter().map(row)))
 }

@@ -197,8 +197,8 @@ fn two_ranks_find_what_one_finds() {
 
 #[test]
 fn a_super_element_has_friction_loads_and_contact_stiffness() {
-    let study = "model = \"brake.se.h5\"\n[design]\nkind = \"one-at-a-time\"\n\
-        [parameter.mu]\nkey = \"friction\"\nuniform = [0.2, 0.8]\n\
+    let study = "model = \"brake.se.h5\"\nband = [0, 60000]\n[design]\nkind = \"one-at-a-time\"\n\
+        [parameter.mu]\nkey = \"friction\"\nuniform = [0.2, 0.5]\n\
         [parameter.p]\nkey = \"pressure\"\nvalues = [0.5, 2]\n\
         [parameter.k]\nkey = \"contact_stiffness\"\nvalues = [0.5, 2]\n";
     let reduction = "[reduction]\ncontacts = 4\nband = [0, 240000]\n";
@@ -215,7 +215,7 @@ fn a_super_element_has_friction_loads_and_contact_stiffness() {
     assert_eq!(points.len(), 7);
     let row = points.iter().find(|row| number(row, "k") == 2.0).unwrap();
     let options = ["--friction", &row["mu"], "--pressure", &row["p"], "--contact-stiffness", &row["k"]];
-    done(place.run(&[&["stability", "brake.se.h5", "-o", "alone"], &options[..]].concat()));
+    done(place.run(&[&["stability", "brake.se.h5", "--band=0:60000", "-o", "alone"], &options[..]].concat()));
     let modes = table(&place, "alone/modes.csv");
     let own = table(&place, "run/modes.csv").into_iter().filter(|mode| mode["point"] == row["point"]);
     let own: Vec<_> = own.collect();
@@ -230,7 +230,7 @@ fn a_study_that_cannot_be_made_writes_nothing() {
     let place = place_with(&swap(STUDY, "material.iron.density", "material.iron.densty"));
     assert_refused(&place.run(&EXPLORE), &["explore.toml", "parameter \"density\"", "Did you mean \"density\""]);
     place.write("explore.toml", swap(STUDY, "\"sobol\"", "\"sobl\""));
-    assert_refused(&place.run(&EXPLORE), &["explore.toml:4", "Did you mean \"sobol\""]);
+    assert_refused(&place.run(&EXPLORE), &["explore.toml:5", "Did you mean \"sobol\""]);
     place.write("explore.toml", swap(STUDY, "brake.toml", "bake.toml"));
     assert_refused(&place.run(&EXPLORE), &["bake.toml", "cannot read the model file"]);
     assert!(!place.path("run").exists() && !place.path(".run.unfinished").exists());
