@@ -38,9 +38,9 @@ mod stability;
 mod statics;
 mod study;
 mod sweep;
-mod unfinished;
 #[cfg(test)]
 mod tests;
+mod unfinished;
 
 pub use check::{matrix_summary, model_summary};
 pub use explain::{explain, explain_full};

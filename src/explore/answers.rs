@@ -114,7 +114,7 @@ impl Answers {
             bins: bins(&sample, band, study.bin),
             indices: indices(study, own),
             tornado: bars(study, nominal, &solved),
-            worst: worst.map(|(number, _)| *number),
+            worst: worst.map(|(number, _)| number),
         }
     }
 }

@@ -14,8 +14,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
-use crate::analysis::checkpoint::Unfinished;
+use crate::analysis::unfinished::Unfinished;
 use crate::explore::PointResult;
 use crate::hdf::{self, Format, array, list, values};
 use crate::native::{Block, Comm};
@@ -26,6 +27,13 @@ use crate::{Error, Result};
 use super::point::NominalModes;
 
 const FORMAT: Format = Format { name: "squeal study", version: 1, advice: "Begin again with --force" };
+
+/// A finished point, and whether there are files with its displacements.
+#[derive(Serialize, Deserialize)]
+struct KeptPoint {
+    has_state: bool,
+    point: PointResult,
+}
 
 /// The finished points of a study, and its files where it has a folder.
 pub struct Points {
@@ -53,13 +61,17 @@ impl Points {
         let Some(target) = target else { return Ok(points) };
         let place = folder::unfinished(target)?.join(RESUME);
         let study = Unfinished { target, identity, name: point_name, unit: "points" };
-        let check = |path: &Path| read_point(path).map(|_| ());
+        let check = |n: usize| (0..n).try_for_each(|i| read_point(&place.join(point_name(i))).map(|_| ()));
         let n = folder.map_or(Ok(0), |folder| study.prepare(folder, force, check));
         let n = comm.broadcast_value(0, comm.agree(n)?);
-        points.done = comm.agree((0..n).map(|i| read_point(&place.join(point_name(i)))).collect())?;
-        let state = |i: usize| Some((i, place.join(own_name("state", i, comm)))).filter(|(_, path)| path.exists());
-        let states = (0..n).filter_map(state).map(|(i, path)| Ok((i, read_list(&path)?))).collect::<Result<_>>();
-        points.states = comm.agree(states)?;
+        for number in 0..n {
+            let kept = comm.agree(read_point(&place.join(point_name(number))))?;
+            if kept.has_state {
+                let state = comm.agree(read_list(&place.join(own_name("state", number, comm))))?;
+                points.states.insert(number, state);
+            }
+            points.done.push(kept.point);
+        }
         points.place = Some(place);
         Ok(points)
     }
@@ -76,7 +88,8 @@ impl Points {
                 self.comm.agree(hdf::create_passing(&path, &FORMAT, |file| list(file, "u", state)))?;
             }
             let path = place.join(point_name(number));
-            let bytes = postcard::to_stdvec(&point).map_err(Error::library("postcard"))?;
+            let kept = KeptPoint { has_state: state.is_some(), point: point.clone() };
+            let bytes = postcard::to_stdvec(&kept).map_err(Error::library("postcard"))?;
             let write = || write_whole(&path, |out| out.write_all(&bytes));
             self.comm.agree(if self.comm.is_root() { write() } else { Ok(()) })?;
         }
@@ -145,7 +158,7 @@ fn nominal_name(comm: &Comm) -> String {
     format!("nominal.{}.h5", comm.rank())
 }
 
-fn read_point(path: &Path) -> Result<PointResult> {
+fn read_point(path: &Path) -> Result<KeptPoint> {
     let bytes = std::fs::read(path).map_err(Error::io(path))?;
     postcard::from_bytes(&bytes).map_err(|reason| hdf::damaged(path, &FORMAT, reason))
 }
@@ -205,6 +218,9 @@ mod tests {
         assert_eq!((&again.done, &again.states), (&points.done, &points.states));
         let kept = again.nominal().unwrap().unwrap();
         assert!(kept.left.values() == nominal.left.values() && kept.own == nominal.own);
+        let state = folder.draft().join(".resume/state-000000.0.h5");
+        std::fs::rename(&state, state.with_extension("away")).unwrap();
+        assert!(open("1", false).is_err(), "a state is missing");
         let message = open("2", false).err().unwrap().to_string();
         assert!(message.contains("2 points are done") && message.contains("seed was 1, is 2"), "{message}");
         std::fs::write(folder.draft().join(".resume/point-000001.bin"), [1, 2]).unwrap();
