@@ -59,8 +59,8 @@ pub fn solve(
 ) -> Result<PointSolution> {
     structure.require_mass()?;
     let band = structure.band(Some(request.band))?;
-    let system = structure.assemble(comm)?;
-    let mut sweep = Sweep::new(&system, structure.interface(), structure.friction_damping())?;
+    let (system, prestress) = (structure.assemble(comm)?, structure.prestress()?);
+    let mut sweep = Sweep::of(structure, &system, prestress.as_ref())?;
     let start = start.filter(|start| comm.min(usize::from(start.len() == system.load.n_local())) == 1);
     let equilibrium = equilibrium_from(&mut sweep, friction, start, &system.load, observer)?;
     let found = sweep.modes(&equilibrium, band, observer)?;
