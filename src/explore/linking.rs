@@ -68,7 +68,7 @@ pub fn link(shares: &DMatrix<f64>) -> Vec<Option<Link>> {
     for (i, j) in columns.into_iter().enumerate().filter(|&(i, j)| share(i, j) > 0.0) {
         let found = shares[(i, j)];
         // Beyond 1 the vectors are those of a coalescence.
-        let doubtful = found < CLEAR_SHARE || found > 1.0 / CLEAR_SHARE;
+        let doubtful = !(CLEAR_SHARE..=1.0 / CLEAR_SHARE).contains(&found);
         links[j] = Some(Link { nominal: i + 1, share: found, doubtful });
     }
     links

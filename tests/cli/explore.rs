@@ -128,8 +128,9 @@ fn a_point_that_fails_is_recorded_and_the_study_continues() {
     let design = "kind = \"list\"\nfile = \"points.csv\"\n";
     let place = place_with(&STUDY.replace("kind = \"sobol\"\npoints = 6\nseed = 2\n", design));
     place.write("points.csv", "mu,load,density\n0.4,1,7000\n3,1,7000\n0.5,1,-7\n0.3,2,7000\n");
-    let out = done(place.run(&EXPLORE)).out;
-    assert!(out.contains("4 points of 3 parameters, 2 failed") && out.contains("point 2: "), "{out}");
+    let finished = done(place.run(&[&EXPLORE[..], &["--json"]].concat()));
+    let text = place.read("run/summary.txt");
+    assert!(text.contains("4 points of 3 parameters, 2 failed") && text.contains("point 2: "), "{text}");
     let points = table(&place, "run/points.csv");
     assert_eq!(points.len(), 5);
     assert!(points[2]["failure"].contains("friction") && points[2]["growth_rate_per_s"].is_empty());
@@ -137,6 +138,7 @@ fn a_point_that_fails_is_recorded_and_the_study_continues() {
     assert!(points[4]["failure"].is_empty() && number(&points[4], "modes") > 0.0);
     let json: serde_json::Value = serde_json::from_str(&place.read("run/summary.json")).unwrap();
     assert_eq!((&json["n_failed"], &json["unstable"]["n_points"]), (&2.into(), &2.into()));
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&finished.out).unwrap(), json, "standard output is the file");
 }
 
 /// Points that an unfinished study has finished.

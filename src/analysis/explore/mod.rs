@@ -200,6 +200,11 @@ impl<'s> Run<'s> {
     /// Reports what is known before anything is computed.
     fn announce(&self, points: &Points, place: Option<&Path>, observer: &mut dyn Observer) {
         self.about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
+        for own in &self.about.pairs {
+            own.proposed_stiffness
+                .into_iter()
+                .for_each(|stiffness| observer.event(Event::Proposed { pair: &own.name, stiffness }));
+        }
         observer.event(Event::Planned(self.values.len()));
         let n = points.done.len();
         if let Some(place) = place.filter(|_| n > 0) {

@@ -14,7 +14,7 @@ use crate::{Error, Result};
 
 /// A model or super-element whose numbers a study changes.
 pub enum Subject<'s> {
-    Full { variants: ModelVariants, template: Template, contacts: Option<usize> },
+    Full { variants: Box<ModelVariants>, template: Box<Template>, contacts: Option<usize> },
     Reduced { place: &'s Path, element: Box<SuperElement>, parameters: &'s [Parameter] },
 }
 
@@ -45,7 +45,7 @@ impl<'s> Subject<'s> {
         let nominal = Nominal { model: &variants.model, swept: &variants.swept };
         let template = Template::new(&variants.text, &study.parameters, nominal)
             .map_err(|error| Error::input(format!("{}: {error}", study.file.display())))?;
-        Ok(Subject::Full { variants, template, contacts: study.contacts })
+        Ok(Subject::Full { variants: Box::new(variants), template: Box::new(template), contacts: study.contacts })
     }
 
     /// The parameters' values in the file.
