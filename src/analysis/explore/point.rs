@@ -15,7 +15,7 @@ use crate::{Error, ErrorKind, Result};
 /// What is computed at every point.
 #[derive(Debug, Clone, Copy)]
 pub struct Request {
-    /// Frequency band, Hz.
+    /// Frequency band, Hz, which the structure covers.
     pub band: [f64; 2],
     /// What counts as an unstable mode.
     pub criterion: InstabilityCriterion,
@@ -58,12 +58,11 @@ pub fn solve(
     observer: &mut dyn Observer,
 ) -> Result<PointSolution> {
     structure.require_mass()?;
-    let band = structure.band(Some(request.band))?;
     let (system, prestress) = (structure.assemble(comm)?, structure.prestress()?);
     let mut sweep = Sweep::of(structure, &system, prestress.as_ref())?;
     let start = start.filter(|start| comm.min(usize::from(start.len() == system.load.n_local())) == 1);
     let equilibrium = equilibrium_from(&mut sweep, friction, start, &system.load, observer)?;
-    let found = sweep.modes(&equilibrium, band, observer)?;
+    let found = sweep.modes(&equilibrium, request.band, observer)?;
     let mut modes: Vec<PointMode> = found
         .modes
         .iter()
