@@ -223,6 +223,13 @@ fn a_super_element_has_friction_loads_and_contact_stiffness() {
     let own: Vec<_> = own.collect();
     assert_eq!(own.len(), modes.len());
     own.iter().zip(&modes).for_each(|(a, b)| assert_same(lambda(a), lambda(b)));
+    // Each rank has points of its own.
+    done(place.run_on(2, &["explore", "explore.toml", "-o", "two"]));
+    let two = table(&place, "two/modes.csv");
+    let one = table(&place, "run/modes.csv");
+    assert_eq!(one.len(), two.len());
+    one.iter().zip(&two).for_each(|(a, b)| assert_same(lambda(a), lambda(b)));
+    assert!(one.iter().zip(&two).all(|(a, b)| a["nominal_mode"] == b["nominal_mode"]));
     place.write("explore.toml", swap(study, "\"pressure\"", "\"material.iron.young\""));
     assert_refused(&place.run(&EXPLORE[..2]), &["a super-element has no key", "friction, pressure, contact_stiffness"]);
 }

@@ -76,6 +76,12 @@ impl Points {
         Ok(points)
     }
 
+    /// Gives all ranks the points of the first one, where each rank has whole displacements. Collective.
+    pub fn share(&mut self, world: &Comm) {
+        self.done = world.broadcast_value(0, std::mem::take(&mut self.done));
+        self.states = world.broadcast_value(0, std::mem::take(&mut self.states));
+    }
+
     /// Keeps a finished point; its displacements, where there is room for them. Collective.
     ///
     /// # Errors

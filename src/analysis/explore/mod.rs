@@ -13,6 +13,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use crate::explore::{Answers, Distribution, Outcome, PointResult, Study, standing_alone};
+use crate::hdf::is_hdf5;
 use crate::native::{Comm, libraries};
 use crate::output::explore::{Document, WORST, write};
 use crate::output::folder::Folder;
@@ -61,14 +62,8 @@ pub fn explore(
     output: Option<&Output>,
     observer: &mut dyn Observer,
 ) -> Result<Option<Exploration>> {
-    if !crate::hdf::is_hdf5(&study.model) {
-        let found = Run::new(comm, study, output)?.run(output, observer)?;
-        return Ok(comm.is_root().then_some(found));
-    }
-    // The few dofs of a super-element are not worth sharing.
-    let alone = comm.alone();
-    let mut work = || Run::new(&alone, study, output)?.run(output, observer).map(Some);
-    comm.agree(if comm.is_root() { work() } else { Ok(None) })
+    let found = Run::new(comm, study, output)?.run(output, observer)?;
+    Ok(comm.is_root().then_some(found))
 }
 
 /// Displacements are kept of so many bytes.
@@ -76,8 +71,15 @@ const STATES_BYTES: usize = 1 << 30;
 /// Displacements are kept of at most so many points.
 const MAX_STATES: usize = 1000;
 
+/// A point with this rank's displacements.
+type Solved = (PointResult, Option<Vec<f64>>);
+
 /// A study under way.
 struct Run<'s> {
+    /// All ranks.
+    world: Comm,
+    /// The ranks of a point: all of them, or each alone where the study is of a super-element, whose few dofs are not
+    /// worth sharing.
     comm: Comm,
     study: &'s Study,
     subject: Subject<'s>,
@@ -92,14 +94,17 @@ struct Run<'s> {
 
 impl<'s> Run<'s> {
     /// Reads and checks everything before anything is computed. Collective.
-    fn new(comm: &Comm, study: &'s Study, output: Option<&Output>) -> Result<Run<'s>> {
+    fn new(world: &Comm, study: &'s Study, output: Option<&Output>) -> Result<Run<'s>> {
         let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
-        let folder = comm.agree(output.filter(|_| comm.is_root()).map_or(Ok(None), open))?;
-        let subject = Subject::read(comm, study)?;
+        let folder = world.agree(output.filter(|_| world.is_root()).map_or(Ok(None), open))?;
+        let comm = if is_hdf5(&study.model) { world.alone() } else { world.clone() };
+        let subject = world.agree(Subject::read(&comm, study))?;
         let nominal = subject.nominal();
-        let (structure, _) = subject.structure(comm, &nominal)?;
+        let (structure, _) = subject.structure(&comm, &nominal)?;
         structure.require_mass()?;
-        let band = structure.band(study.band)?;
+        // The root alone prints a warning.
+        let band = world.agree(if world.is_root() { structure.band(study.band) } else { Ok([0.0; 2]) })?;
+        let band = world.broadcast_value(0, band);
         let criterion = study.criterion.unwrap_or(structure.criterion());
         let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
         let design = study.design.points(&distributions, &nominal)?;
@@ -107,43 +112,81 @@ impl<'s> Run<'s> {
             program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
             libraries: libraries(),
             command: output.map_or_else(String::new, |output| output.command.clone()),
-            n_ranks: comm.size(),
+            n_ranks: world.size(),
             band,
             criterion,
-            ..structure.about(comm)?
+            ..structure.about(&comm)?
         };
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
         let request = Request { band, criterion, follow: study.follow };
         let scales = scales(&values);
-        Ok(Run { comm: comm.clone(), study, subject, about, request, values, scales, folder })
+        Ok(Run { world: world.clone(), comm, study, subject, about, request, values, scales, folder })
     }
 
     /// Solves the points, and writes the folder. Collective.
     fn run(mut self, output: Option<&Output>, observer: &mut dyn Observer) -> Result<Exploration> {
-        let (comm, place) = (self.comm.clone(), output.map(|output| output.folder.as_path()));
-        let identity = self.identity(output);
-        let force = output.is_some_and(|output| output.force);
-        let mut points = Points::open(&comm, self.folder.as_ref(), place, &identity, force)?;
+        let place = output.map(|output| output.folder.as_path());
+        let (mut points, mut nominal) = self.open(output)?;
         self.announce(&points, place, observer);
-        let mut nominal = points.nominal()?;
-        for number in points.done.len()..self.values.len() {
-            let (point, state) = self.point(number, &points, &mut nominal, observer)?;
-            let n_dofs = comm.sum(state.as_ref().map_or(0, Vec::len));
-            let room = (STATES_BYTES / 8 / n_dofs.max(1)).clamp(1, MAX_STATES);
-            points.commit(point, state.filter(|_| points.n_states() < room))?;
-            self.folder.iter().for_each(Folder::keep);
-            observer.event(Event::Point { number, point: &points.done[number], is_replayed: false });
-            self.stop_if_asked(number, place, observer)?;
+        while points.done.len() < self.values.len() {
+            for (point, state) in self.next(&points, &mut nominal, observer)? {
+                let n_dofs = self.comm.sum(state.as_ref().map_or(0, Vec::len));
+                let room = (STATES_BYTES / 8 / n_dofs.max(1)).clamp(1, MAX_STATES);
+                let number = points.done.len();
+                points.commit(point, state.filter(|_| points.n_states() < room))?;
+                self.folder.iter().for_each(Folder::keep);
+                observer.event(Event::Point { number, point: &points.done[number], is_replayed: false });
+            }
+            self.stop_if_asked(points.done.len() - 1, place, observer)?;
         }
-        self.about.n_dofs = comm.sum(points.n_own_dofs());
+        self.about.n_dofs = self.comm.sum(points.n_own_dofs());
         let answers = Answers::new(self.study, &points.done, self.request.band);
         let worst = answers.worst.map_or(Ok(None), |number| self.subject.text(&points.done[number].values))?;
         let found = Exploration { about: self.about, points: points.done, answers, worst };
-        comm.agree(match (self.folder.take(), output) {
+        self.world.agree(match (self.folder.take(), output) {
             (Some(folder), Some(output)) => finish(folder, self.study, &found, &output.folder),
             _ => Ok(()),
         })?;
         Ok(found)
+    }
+
+    /// The points that an earlier run has finished, and its nominal modes, on all ranks. Collective.
+    fn open(&self, output: Option<&Output>) -> Result<(Points, Option<NominalModes>)> {
+        let (identity, force) = (self.identity(output), output.is_some_and(|output| output.force));
+        // A rank alone does not write.
+        let is_writer = self.world.is_root() || !self.is_divided();
+        let place = output.filter(|_| is_writer).map(|output| output.folder.as_path());
+        let mut points = self.world.agree(Points::open(&self.comm, self.folder.as_ref(), place, &identity, force))?;
+        let mut nominal = self.world.agree(points.nominal())?;
+        if self.is_divided() {
+            points.share(&self.world);
+            nominal = NominalModes::shared(&self.world, &self.comm, nominal);
+        }
+        Ok((points, nominal))
+    }
+
+    /// Whether each rank has points of its own.
+    fn is_divided(&self) -> bool {
+        self.comm.size() < self.world.size()
+    }
+
+    /// Solves the next points: one, or one for each rank where each rank has points of its own. All ranks need the
+    /// nominal point, and each solves it. Collective.
+    fn next(
+        &self,
+        points: &Points,
+        nominal: &mut Option<NominalModes>,
+        observer: &mut dyn Observer,
+    ) -> Result<Vec<Solved>> {
+        let first = points.done.len();
+        if first == 0 || !self.is_divided() {
+            let solved = self.point(first, points, nominal, observer);
+            return Ok(vec![if self.is_divided() { self.world.agree(solved)? } else { solved? }]);
+        }
+        let own = first + self.world.rank();
+        let solved = (own < self.values.len()).then(|| self.point(own, points, nominal, observer));
+        let solved = self.world.agree(solved.transpose())?;
+        Ok(self.world.join_values(solved).into_iter().flatten().collect())
     }
 
     /// Solves one point; what fails is its result. Collective.
@@ -153,7 +196,7 @@ impl<'s> Run<'s> {
         points: &Points,
         nominal: &mut Option<NominalModes>,
         observer: &mut dyn Observer,
-    ) -> Result<(PointResult, Option<Vec<f64>>)> {
+    ) -> Result<Solved> {
         let values = self.values[number].clone();
         let start = points.nearest(&values, &self.scales);
         let found = self.subject.structure(&self.comm, &values).and_then(|(structure, friction)| {
@@ -217,7 +260,7 @@ impl<'s> Run<'s> {
 
     /// Ends the work where a signal has asked any rank for it. Collective.
     fn stop_if_asked(&self, number: usize, place: Option<&Path>, observer: &mut dyn Observer) -> Result<()> {
-        let signal = self.comm.max(observer.stop_signal().unwrap_or(0));
+        let signal = self.world.max(observer.stop_signal().unwrap_or(0));
         if signal == 0 || number + 1 == self.values.len() {
             return Ok(());
         }

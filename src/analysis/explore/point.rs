@@ -33,6 +33,16 @@ pub struct NominalModes {
     pub own: Vec<Complex64>,
 }
 
+impl NominalModes {
+    /// The modes that the first rank has, on every rank, each of which has whole vectors. Collective.
+    pub fn shared(world: &Comm, alone: &Comm, own: Option<NominalModes>) -> Option<NominalModes> {
+        let raw = own.map(|own| (own.left.n_local(), own.left.values().to_vec(), own.right.values().to_vec(), own.own));
+        let (n, left, right, own) = world.broadcast_value(0, raw)?;
+        let block = |values| Block::from_columns(alone, n, values);
+        Some(NominalModes { left: block(left), right: block(right), own })
+    }
+}
+
 /// Equilibrium and modes of a point.
 pub struct PointSolution {
     /// The modes of the band, by frequency.
