@@ -1,5 +1,6 @@
 #include "wrapper.h"
 #include <malloc.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -49,6 +50,20 @@ int squeal_take_blas_buffer(void)
   munmap(room, size);
   BLAStrsm_("L", "L", "N", "N", &n, &n, &one, &one, &n, &x, &n);
   return 1;
+}
+
+static struct sigaction kept[2];
+
+void squeal_keep_handlers(void)
+{
+  sigaction(SIGTERM, NULL, &kept[0]);
+  sigaction(SIGABRT, NULL, &kept[1]);
+}
+
+void squeal_restore_handlers(void)
+{
+  sigaction(SIGTERM, &kept[0], NULL);
+  sigaction(SIGABRT, &kept[1], NULL);
 }
 
 void squeal_give_memory_back(void)

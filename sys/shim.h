@@ -27,6 +27,9 @@ void squeal_libraries(char *text, size_t size);
 const char *squeal_blas_kernels(void);
 /* Has BLAS take its buffer of at most 160 MB of address space; 0 where there is no room for it. */
 int squeal_take_blas_buffer(void);
+/* METIS has handlers of its own for SIGTERM and SIGABRT while it works, and gives others back with other flags. */
+void squeal_keep_handlers(void);
+void squeal_restore_handlers(void);
 /* BLAS and LAPACK that PETSc's headers leave out. */
 void dtrsv_(const char *uplo, const char *trans, const char *diag, const int *n, const double *a, const int *lda,
             double *x, const int *incx);

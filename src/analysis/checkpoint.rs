@@ -98,6 +98,7 @@ impl Checkpoint {
     /// The system's and HDF5's, with the path.
     pub fn commit(&mut self, value: &Value, sweep: &Sweep, mut snapshot: Option<&mut Snapshot>) -> Result<()> {
         let number = self.n_done;
+        self.comm.agree(self.require_folder(number))?;
         snapshot.as_mut().into_iter().for_each(|snapshot| snapshot.number = number);
         let snapshot = snapshot.as_deref();
         self.comm.agree(self.write_own(number, sweep, snapshot))?;
@@ -128,13 +129,18 @@ impl Checkpoint {
         })
     }
 
-    /// Writes which files of results there are, unless those of the value before have been removed.
+    /// Refuses to go on where what the value before has left is gone.
+    fn require_folder(&self, number: usize) -> Result<()> {
+        if !self.comm.is_root() || number == 0 || self.folder.join(list_name(number - 1)).exists() {
+            return Ok(());
+        }
+        let what = "has been removed or emptied while this run was writing it";
+        Err(Error::input(format!("{} {what}. Give the command again", draft(&self.folder).display())))
+    }
+
+    /// Writes which files of results there are.
     fn write_list(&self, number: usize) -> Result<()> {
         let draft = draft(&self.folder);
-        if number > 0 && !self.folder.join(list_name(number - 1)).exists() {
-            let what = "has been removed or emptied while this run was writing it";
-            return Err(Error::input(format!("{} {what}. Give the command again", draft.display())));
-        }
         let size = |name: &String| draft.join(name).metadata().map_err(Error::io(&draft)).map(|data| data.len());
         let lines =
             entries(&draft)?.iter().map(|name| Ok(format!("{}\t{name}\n", size(name)?))).collect::<Result<String>>()?;

@@ -202,7 +202,11 @@ fn a_run_that_a_second_signal_has_ended_goes_on() {
     assert!((2..6).contains(&n) && !place.path("run").exists(), "{n}");
     let finished = place.run(&arguments);
     assert!(finished.code == 0 && finished.out.contains("that an earlier run has found"), "{}", finished.err);
-    assert_same(&results(&place, "run"), &results(&place, "expected"));
+    let [found, expected] = ["run", "expected"].map(|folder| results(&place, folder));
+    assert_eq!((found.values.len(), expected.values.len()), (6, 6));
+    let pairs = found.values.iter().zip(&expected.values).flat_map(|(a, b)| a.modes.iter().zip(&b.modes));
+    let error = pairs.map(|(x, y)| (x.lambda - y.lambda).norm() / y.lambda.norm()).fold(0.0, f64::max);
+    assert!(error < 1e-9, "{error}");
     let equal = |mu: f64| rows(&place, "run", mu) == rows(&place, "expected", mu);
     assert!(equal(0.1) && equal(0.2) && !rows(&place, "run", 0.1).is_empty());
 }
