@@ -11,7 +11,7 @@ use squeal::analysis::{Snapshot, Sweep, explain_full};
 use squeal::assembly::System;
 use squeal::contact::Tangential;
 use squeal::equilibrium::Equilibrium;
-use squeal::model::Rayleigh;
+use squeal::model::{Inertia, Rayleigh};
 use squeal::native::{Comm, Session};
 use squeal::results::{Kind, Source};
 use squeal::stability::{Band, Complex, Mode};
@@ -59,6 +59,20 @@ fn source<'a>(sources: &'a [Source], name: &str) -> &'a Source {
 
 #[test]
 fn energies_balance_and_sensitivities_are_derivatives() {
+    explain(damped);
+}
+
+/// Gyroscopic terms do no work, and are in the left vectors' self-product.
+#[test]
+fn the_same_holds_where_the_disc_has_inertia_forces() {
+    explain(|comm| {
+        let mut brake = damped(comm);
+        (brake.model.rotations[0].inertia, brake.model.rotations[0].speed) = (Inertia::FixedFrame, 500.0);
+        brake
+    });
+}
+
+fn explain(damped: impl Fn(&Comm) -> FullModel) {
     let comm = Session::start(&[]).unwrap();
     let brake = damped(&comm);
     let system = assembled(&comm, &brake);

@@ -188,6 +188,24 @@ fn loss_factors_are_in_the_super_element() {
     }
 }
 
+/// The gyroscopic terms of the disc are in the super-element: eigenvalues to 1e-9 with all modes kept, to 1e-3 with
+/// those up to 100 kHz.
+#[test]
+fn inertia_forces_of_the_disc_are_in_the_super_element() {
+    let comm = Session::start(&[]).unwrap();
+    let fast = model().replace("speed = ", "inertia = \"fixed_frame\"\nspeed = 3e3 # ");
+    let (full, still) = (Full::new(&comm, &fast, FRICTION), Full::new(&comm, &model(), FRICTION));
+    let difference = largest_error(&full.eigenvalues, &still.eigenvalues);
+    assert!(difference > 1e-5, "the terms count: {difference}");
+    for (limit, allowed) in [(f64::INFINITY, 1e-9), (100e3, 1e-3)] {
+        let (_, element) = full.reduce(limit);
+        assert!(element.is_gyroscopic());
+        let error = largest_error(&analyse(&comm, &element, None, FRICTION).2, &full.eigenvalues);
+        println!("{limit} Hz: largest error {error:.1e}");
+        assert!(error < allowed, "{error} up to {limit} Hz");
+    }
+}
+
 /// A tie, a rigid set, a mass, springs to the ground and an equation in place of the piston's contact and supports.
 fn with_joints() -> String {
     let text = model();
