@@ -59,20 +59,22 @@ fn source<'a>(sources: &'a [Source], name: &str) -> &'a Source {
 
 #[test]
 fn energies_balance_and_sensitivities_are_derivatives() {
-    explain(damped);
+    explain(damped, &["disc", "lining_inner"]);
 }
 
 /// Gyroscopic terms do no work, and are in the left vectors' self-product.
 #[test]
 fn the_same_holds_where_the_disc_has_inertia_forces() {
-    explain(|comm| {
+    let turning = |comm: &Comm| {
         let mut brake = damped(comm);
         (brake.model.rotations[0].inertia, brake.model.rotations[0].speed) = (Inertia::FixedFrame, 500.0);
         brake
-    });
+    };
+    explain(turning, &[]);
 }
 
-fn explain(damped: impl Fn(&Comm) -> FullModel) {
+/// Explains all modes, and differentiates one by friction and by constants of some parts.
+fn explain(damped: impl Fn(&Comm) -> FullModel, parts: &[&str]) {
     let comm = Session::start(&[]).unwrap();
     let brake = damped(&comm);
     let system = assembled(&comm, &brake);
@@ -86,7 +88,7 @@ fn explain(damped: impl Fn(&Comm) -> FullModel) {
         let sources = explain_full(&brake, &mut sweep, &equilibrium, mode, Some(left)).unwrap();
         balance(mode, &sources);
         if i == worst(&band) {
-            differences(&sources, equilibrium.friction, |change| {
+            differences(&sources, equilibrium.friction, parts, |change| {
                 let mut brake = damped(&comm);
                 let mut equilibrium = Equilibrium {
                     u: equilibrium.u.duplicate().unwrap(),
@@ -130,6 +132,7 @@ fn balance(mode: &Mode, sources: &[Source]) {
 fn differences(
     sources: &[Source],
     friction: f64,
+    parts: &[&str],
     solve: impl Fn(&mut dyn FnMut(&mut FullModel, &mut Equilibrium)) -> Complex64,
 ) {
     let check = |what: &str, exact: Complex64, h: f64, change: &dyn Fn(f64, &mut FullModel, &mut Equilibrium)| {
@@ -142,7 +145,7 @@ fn differences(
     let by_friction = sources.iter().filter_map(|source| source.friction).sum();
     check("friction", by_friction, 4e-4, &|h, _, equilibrium| equilibrium.friction = friction + h);
     let part = |brake: &mut FullModel, name: &str| brake.model.parts.iter().position(|part| part.name == name).unwrap();
-    for name in ["disc", "lining_inner"] {
+    for &name in parts {
         let exact = source(sources, name).sensitivity.unwrap();
         check(&format!("damping of {name}"), exact.damping, 0.05, &|h, brake, _| {
             let i = part(brake, name);
