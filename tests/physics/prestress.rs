@@ -63,8 +63,8 @@ fn first(comm: &Comm, kind: ElementKind, pull: f64) -> f64 {
     band.modes[0].lambda.im.powi(2)
 }
 
-/// Tension of one Euler load and compression of half of it, with all kinds of element that bend: to 4e-3 [3.0e-3], of which
-/// the beam's shear is 1e-4 and the rest the elements.
+/// Tension of one Euler load and compression of half of it, with all kinds of element that bend: to 4e-3 [3.0e-3], of
+/// which the beam's shear is 1e-4 and the rest the elements.
 #[test]
 fn an_axial_force_changes_the_frequency_of_a_beam_as_theory_has_it() {
     let comm = Session::start(&[]).unwrap();
@@ -77,5 +77,32 @@ fn an_axial_force_changes_the_frequency_of_a_beam_as_theory_has_it() {
             let found = first(&comm, kind, load * euler * LENGTH) / at_rest;
             assert_close(&format!("{kind:?} under {load} Euler loads"), found, 1.0 + load, 4e-3);
         }
+    }
+}
+
+/// With prestress the Sturm count is of `K + K_g`, and nothing follows the contact points alone from one equilibrium to
+/// the next; without it, all stays as it is. A super-element has no `K_g`.
+#[test]
+fn the_count_has_the_geometric_stiffness_and_a_reduction_refuses_it() {
+    let comm = Session::start(&[]).unwrap();
+    for is_on in [true, false] {
+        let text = BEAM.replace("PULL", "1e-4").replace("prestress = true", &format!("prestress = {is_on}"));
+        let mut mesh = Mesh::default();
+        let map = |x: [f64; 3]| [LENGTH * x[0], 0.02 * x[1], THICKNESS * x[2]];
+        Block { part: "beam", cells: [4, 1, 1], wraps: false, map: &map }.add_solids_to(&mut mesh, ElementKind::C3D20R);
+        let beam = brake(&text, mesh);
+        let system = beam.assemble(&comm, &beam.families().unwrap()).unwrap();
+        let prestress = beam.prestress().unwrap();
+        let mut sweep = Sweep::new(&system, &beam.interface, false).unwrap().with_prestress(prestress.as_ref());
+        let equilibrium = sweep.equilibrium(0.0, &mut ()).unwrap();
+        let changes = sweep.linearise(&equilibrium, |problem| {
+            assert_eq!(problem.points.is_none(), is_on);
+            let mut change = problem.symmetric_stiffness()?;
+            change.axpy(-1.0, &system.k)?;
+            Ok(change.norm_inf()? > 0.0)
+        });
+        assert_eq!(changes.unwrap(), is_on);
+        let refusal = beam.require_no_prestress().err().map(|error| error.to_string());
+        assert_eq!(refusal.is_some_and(|text| text.contains("Set prestress = false in [stability]")), is_on);
     }
 }
