@@ -1,25 +1,37 @@
 //! What explains a mode of a brake, by part, joint and contact pair.
 
+use num_complex::Complex64;
+
 use crate::Result;
-use crate::assembly::{JointKind, TurningSolids};
+use crate::assembly::{JointKind, System, TurningSolids};
 use crate::equilibrium::Equilibrium;
-use crate::reduction::super_element::Member;
+use crate::model::Rayleigh;
+use crate::native::lapack;
+use crate::reduction::parts::PartMatrices;
+use crate::reduction::super_element::SuperElement;
 use crate::results::{Kind, Source};
 use crate::stability::{Complex, Forms, Mode, Sources, of_contacts, of_elements, self_product, sensitivity, shares};
-use crate::structure::{FullModel, Structure};
+use crate::structure::{FullModel, Structure, coordinates};
 
 use super::sweep::Sweep;
 
+/// The sources of M, C, K and G, and the forms that they have with two vectors. Collective.
+pub struct SourceForms<'a> {
+    /// What they are.
+    pub named: &'a [(Kind, String)],
+    /// Their forms, in the same order.
+    pub forms: &'a dyn Fn(&System, [Complex; 2]) -> Result<Vec<Forms>>,
+}
+
 impl Sweep<'_> {
-    /// Explains a mode about an equilibrium by families of elements, the source of each member among `named`, and by
-    /// the contact pairs. With its left vector sensitivities come along. Shares add up to 1, what is fed in and taken
+    /// Explains a mode about an equilibrium by the sources of the system's matrices and by the contact pairs. With its left vector sensitivities come along. Shares add up to 1, what is fed in and taken
     /// out to the growth rate. Sensitivities are at the equilibrium's contact status. Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn explain(
         &mut self,
-        (families, named): (&[Sources], &[(Kind, String)]),
+        sources_of: &SourceForms,
         turning: Option<&TurningSolids>,
         equilibrium: &Equilibrium,
         mode: &Mode,
@@ -27,15 +39,15 @@ impl Sweep<'_> {
     ) -> Result<Vec<Source>> {
         let (lambda, right) = (mode.lambda, Complex { re: &mode.re, im: &mode.im });
         let pairs = &self.path.contacts().interface().pairs;
-        let names = named.iter().cloned().chain(pairs.iter().map(|pair| (Kind::Contact, pair.name.clone())));
-        let mut own = self.forms(families, named.len(), equilibrium, [right, right])?;
+        let names = sources_of.named.iter().cloned().chain(pairs.iter().map(|pair| (Kind::Contact, pair.name.clone())));
+        let mut own = self.forms(sources_of, equilibrium, [right, right])?;
         own.extend(self.gyroscopic_form(turning, [right, right])?);
         let mut sources: Vec<Source> = names
             .zip(shares(lambda, &own))
             .map(|((kind, name), share)| Source { kind, name, share, sensitivity: None, friction: None })
             .collect();
         let Some(left) = left else { return Ok(sources) };
-        let mut forms = self.forms(families, named.len(), equilibrium, [left, right])?;
+        let mut forms = self.forms(sources_of, equilibrium, [left, right])?;
         forms.extend(self.gyroscopic_form(turning, [left, right])?);
         let product = self_product(lambda, &forms);
         for (source, form) in sources.iter_mut().zip(&forms) {
@@ -47,15 +59,9 @@ impl Sweep<'_> {
         Ok(sources)
     }
 
-    /// Sources of elements, then contact pairs.
-    fn forms(
-        &mut self,
-        families: &[Sources],
-        n_named: usize,
-        equilibrium: &Equilibrium,
-        vectors: [Complex; 2],
-    ) -> Result<Vec<Forms>> {
-        let mut forms = of_elements(self.system, families, n_named, vectors)?;
+    /// Sources of the system's matrices, then contact pairs.
+    fn forms(&mut self, sources: &SourceForms, equilibrium: &Equilibrium, vectors: [Complex; 2]) -> Result<Vec<Forms>> {
+        let mut forms = (sources.forms)(self.system, vectors)?;
         let contacts = self.path.contacts();
         let frictions = contacts.interface().frictions_at(equilibrium.friction);
         forms.extend(of_contacts(contacts, equilibrium, &frictions, self.terms.friction_damping, vectors)?);
@@ -96,9 +102,11 @@ pub fn explain(
     match structure {
         Structure::Full(full) => explain_full(full, sweep, equilibrium, mode, left),
         Structure::Reduced(reduced) => {
-            let named = [(Kind::Part, "super-element".to_owned())];
-            let member = Member::new(&reduced.element);
-            sweep.explain((&[(&member, &|_| 0)], &named), None, equilibrium, mode, left)
+            let element = &reduced.element;
+            let parts = element.parts.iter().map(|part| (Kind::Part, part.name.clone()));
+            let named: Vec<_> = parts.chain(element.rest.iter().map(|rest| (Kind::Rest, rest.clone()))).collect();
+            let forms = |system: &System, vectors: [Complex; 2]| part_forms(element, system, vectors);
+            sweep.explain(&SourceForms { named: &named, forms: &forms }, None, equilibrium, mode, left)
         }
     }
 }
@@ -121,7 +129,44 @@ pub fn explain_full(
     let joint = |e: usize| full.mesh.parts.len() + full.joints.elements[e].joint;
     let families = full.families()?;
     let sources: [Sources; 2] = [(&families.solids, &part), (families.joints, &joint)];
-    sweep.explain((&sources, &named), Some(&families.turning), equilibrium, mode, left)
+    let forms = |system: &System, vectors: [Complex; 2]| of_elements(system, &sources, named.len(), vectors);
+    sweep.explain(&SourceForms { named: &named, forms: &forms }, Some(&families.turning), equilibrium, mode, left)
+}
+
+/// The forms of the parts of a super-element, and of its rest where it has one.
+fn part_forms(element: &SuperElement, system: &System, [y, x]: [Complex; 2]) -> Result<Vec<Forms>> {
+    let n = element.n_coordinates();
+    let columns = |v: Complex| -> Result<Vec<f64>> {
+        Ok(coordinates(system, &[v.re, v.im])?.iter().flat_map(|column| &column[..n]).copied().collect())
+    };
+    let (y, x) = (columns(y)?, columns(x)?);
+    let form = |a: &[f64]| hermitian(a, &y, &x);
+    let structural = |g: &dyn Fn() -> Complex64| element.structural_damping.is_some().then(g);
+    let of_part = |part: &PartMatrices| {
+        let (m, k, Rayleigh { alpha, beta }) = (form(&part.mass), form(&part.stiffness), part.rayleigh);
+        Forms { m, c: alpha * m + beta * k, k, g: structural(&|| part.loss_factor * k) }
+    };
+    let mut forms: Vec<Forms> = element.parts.iter().map(of_part).collect();
+    if element.rest.is_some() {
+        let [m, c, k] = [&element.mass, &element.damping, &element.stiffness].map(|a| form(a));
+        let total = Forms { m, c, k, g: element.structural_damping.as_ref().map(|g| form(g)) };
+        let less = |rest: Forms, own: &Forms| {
+            let g = rest.g.zip(own.g).map(|(rest, own)| rest - own);
+            Forms { m: rest.m - own.m, c: rest.c - own.c, k: rest.k - own.k, g }
+        };
+        forms.push(forms.iter().fold(total, less));
+    }
+    Ok(forms)
+}
+
+/// `y^H A x` of a matrix by rows; real parts, then imaginary parts of the vectors.
+fn hermitian(a: &[f64], y: &[f64], x: &[f64]) -> Complex64 {
+    let n = x.len() / 2;
+    let mut image = vec![0.0; 2 * n];
+    lapack::multiply(true, [n, n, 2], a, x, &mut image);
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let ([y_re, y_im], [a_re, a_im]) = ([&y[..n], &y[n..]], [&image[..n], &image[n..]]);
+    Complex64::new(dot(y_re, a_re) + dot(y_im, a_im), dot(y_re, a_im) - dot(y_im, a_re))
 }
 
 /// A joint as results call it.

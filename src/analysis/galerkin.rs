@@ -19,7 +19,7 @@ use super::certificate::Whole;
 use super::family::widened;
 use super::observer::{Event, Observer};
 use super::reduce::SuperElementPlace;
-use super::sweep::Sweep;
+use super::sweep::{Costs, Sweep};
 
 /// Accuracy of left vectors that join the basis.
 const LEFT_ACCURACY: f64 = 1e-5;
@@ -33,12 +33,25 @@ const NEGLIGIBLE_OF_EQUILIBRIA: f64 = 1e-6;
 const NEGLIGIBLE_OF_MODES: f64 = 1e-3;
 const NEGLIGIBLE_OF_ANSWERS: f64 = 0.03;
 
+/// Equilibria of some samples without those that are multiples of another sample's equilibrium: where contact is
+/// homogeneous ([`crate::contact::Interface::is_homogeneous`]), equilibria are proportional to the loads.
+fn independent(equilibria: &[Sample], modes: &[Sample], is_homogeneous: bool) -> Vec<Sample> {
+    let is_multiple = |a: &Sample, b: &Sample| Sample { pressure: b.pressure, ..*a } == *b;
+    let mut independent: Vec<Sample> = Vec::new();
+    for sample in equilibria {
+        if !is_homogeneous || !modes.iter().chain(&independent).any(|other| is_multiple(sample, other)) {
+            independent.push(*sample);
+        }
+    }
+    independent
+}
+
 /// What [`reduce_galerkin`] does.
 #[derive(Debug, Clone)]
 pub struct GalerkinOptions {
     /// Where the basis takes equilibrium and modes.
     pub modes: Vec<Sample>,
-    /// Where it takes the equilibrium alone.
+    /// Where it takes the equilibrium alone, unless that is a multiple of another sample's.
     pub equilibria: Vec<Sample>,
     /// What modes add less than this part of themselves is left out, 1e-7 or more: eigenvalues at the samples have its
     /// square as their error.
@@ -108,6 +121,8 @@ struct Snapshots {
     states: Vec<State>,
     /// Right and left vectors, real and imaginary parts, of the modes at a sample.
     modes: Vec<Block>,
+    /// Spent on equilibria, modes and left vectors, s.
+    seconds: [f64; 3],
 }
 
 /// Reduces a model with all of its contacts to a Galerkin super-element ([`galerkin`]), and writes its file.
@@ -132,31 +147,36 @@ pub fn reduce_galerkin(
     let mut system = model.assemble(comm, &model.families()?)?;
     let end = widened(model.model.band)[1];
     let snapshots = Snapshots::take(model, &mut system, options, end, observer)?;
-    let sample_seconds = start.elapsed().as_secs_f64();
 
     observer.event(Event::Stage("making the basis"));
+    let clock = Instant::now();
     let k_ref = snapshots.reference_stiffness(model, &system, options.modes[options.modes.len() / 2])?;
     let mut factor = Factor::new(FactorKind::Symmetric);
     factor.factorise(&k_ref)?;
     let mut basis = Basis::new(&k_ref, &snapshots.modes[0], options.max_coordinates);
-    let report = snapshots.span(model, &system, &factor, options.negligible, &mut basis)?;
+    let mut report = snapshots.span(model, &system, &factor, options.negligible, &mut basis)?;
+    report.basis_seconds = clock.elapsed().as_secs_f64();
 
     observer.event(Event::Stage("projecting the matrices"));
+    let clock = Instant::now();
     let (element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
     place.write(comm, &element, &surface)?;
+    report.projection_seconds = clock.elapsed().as_secs_f64();
 
     observer.event(Event::Stage("comparing with the full model between the samples"));
+    let clock = Instant::now();
     let reduced = ReducedModel::new(&options.file, element.clone(), OuterSurface::default(), None, 1.0);
     let reduced = Structure::Reduced(Box::new(reduced));
     let whole = Whole { system: &system, interface: &model.interface, basis: basis.vectors(), factor: &factor };
     let certify = |friction: f64| whole.certify(&reduced, friction, model.model.band);
     let certificates = snapshots.test_values(options).into_iter().map(certify).collect::<Result<_>>()?;
-    let report = BasisReport { sample_seconds, seconds: start.elapsed().as_secs_f64(), ..report };
+    report.test_seconds = clock.elapsed().as_secs_f64();
+    report.seconds = start.elapsed().as_secs_f64();
     Ok(GalerkinReduction { element, report, certificates })
 }
 
 impl Snapshots {
-    /// Solves the full model at all samples, one path for each load and contact stiffness.
+    /// Solves the full model at all samples, one path for each load and contact stiffness; the model's own first.
     fn take(
         model: &FullModel,
         system: &mut System,
@@ -165,9 +185,10 @@ impl Snapshots {
         observer: &mut dyn Observer,
     ) -> Result<Snapshots> {
         let modes = options.modes.iter().map(|&sample| (sample, Some(end)));
+        let equilibria = independent(&options.equilibria, &options.modes, model.interface.is_homogeneous());
         let mut all: Vec<(Sample, Option<f64>)> =
-            modes.chain(options.equilibria.iter().map(|&sample| (sample, None))).collect();
-        let rank = |sample: &Sample| (sample.pressure, sample.contact_stiffness, sample.friction);
+            modes.chain(equilibria.into_iter().map(|sample| (sample, None))).collect();
+        let rank = |s: &Sample| (!is_own(s), s.pressure, s.contact_stiffness, s.friction);
         all.sort_by(|(a, _), (b, _)| rank(a).partial_cmp(&rank(b)).expect("samples are finite"));
         let mut snapshots = Snapshots::default();
         let is_one_path =
@@ -181,7 +202,9 @@ impl Snapshots {
         Ok(snapshots)
     }
 
-    /// Solves at the friction values of a path, for modes below a frequency (Hz) where there is one.
+    /// Solves at the friction values of a path, for modes below a frequency (Hz) where there is one. Under other loads
+    /// or contact stiffnesses each equilibrium starts from the model's own at the same friction value, where that is
+    /// known.
     fn follow(
         &mut self,
         model: &FullModel,
@@ -193,6 +216,9 @@ impl Snapshots {
         interface.scale_contact_stiffness(path[0].0.contact_stiffness);
         let mut sweep = Sweep::new(system, &interface, model.model.friction_damping)?;
         for &(sample, end) in path {
+            if let Some(own) = self.states.iter().find(|state| state.sample == Sample::at(sample.friction)) {
+                sweep.restore(vec![(sample.friction, own.u.duplicate()?)], None);
+            }
             let equilibrium = sweep.equilibrium(sample.friction, observer)?;
             if let Some(end) = end {
                 let band = sweep.modes(&equilibrium, [0.0, end], observer)?;
@@ -203,6 +229,9 @@ impl Snapshots {
             let Equilibrium { u, responses, .. } = equilibrium;
             self.states.push(State { sample, u, responses });
         }
+        let Costs { equilibria_seconds, modes_seconds, left_seconds, .. } = sweep.costs();
+        let seconds = [equilibria_seconds, modes_seconds, left_seconds];
+        self.seconds.iter_mut().zip(seconds).for_each(|(sum, seconds)| *sum += seconds);
         Ok(())
     }
 
@@ -231,8 +260,15 @@ impl Snapshots {
         negligible: f64,
         basis: &mut Basis,
     ) -> Result<BasisReport> {
-        let mut report =
-            BasisReport { equilibria: self.states.len(), mode_samples: self.modes.len(), ..BasisReport::default() };
+        let [equilibrium_seconds, mode_seconds, left_seconds] = self.seconds;
+        let mut report = BasisReport {
+            equilibria: self.states.len(),
+            mode_samples: self.modes.len(),
+            equilibrium_seconds,
+            mode_seconds,
+            left_seconds,
+            ..BasisReport::default()
+        };
         for state in &self.states {
             let u = Block::from_columns(state.u.comm(), state.u.n_local(), state.u.to_vec()?);
             report.coordinates_of_equilibria += basis.add(u, NEGLIGIBLE_OF_EQUILIBRIA)?;
@@ -251,9 +287,8 @@ impl Snapshots {
 
     /// Friction values without an equilibrium, near the middle between samples of modes.
     fn test_values(&self, options: &GalerkinOptions) -> Vec<f64> {
-        let own = |sample: &Sample| *sample == Sample::at(sample.friction);
         let sorted = |samples: &mut dyn Iterator<Item = Sample>| {
-            let mut values: Vec<f64> = samples.filter(own).map(|sample| sample.friction).collect();
+            let mut values: Vec<f64> = samples.filter(is_own).map(|sample| sample.friction).collect();
             values.sort_by(f64::total_cmp);
             values
         };
@@ -261,6 +296,11 @@ impl Snapshots {
         let states = sorted(&mut self.states.iter().map(|state| state.sample));
         modes.windows(2).filter_map(|ends| empty_middle(&states, 0.5 * (ends[0] + ends[1]))).collect()
     }
+}
+
+/// Whether a sample has the model's own loads and contact stiffness.
+fn is_own(sample: &Sample) -> bool {
+    *sample == Sample::at(sample.friction)
 }
 
 /// The middle between the two neighbours in a rising list that a value lies between, or is the first of.
@@ -287,6 +327,18 @@ mod tests {
         assert_eq!(empty_middle(&states, 0.2), Some(0.5 * (0.2 + 0.3)));
         assert_eq!(empty_middle(&states, 0.36), Some(0.35));
         assert_eq!(empty_middle(&states, 0.5), None);
+    }
+
+    /// Equilibria at other loads join the basis only where they are no multiples of others.
+    #[test]
+    fn proportional_equilibria_are_left_out() {
+        let options = GalerkinOptions::over(&[0.2, 0.22], PathBuf::new());
+        let kept = |is_homogeneous| independent(&options.equilibria, &options.modes, is_homogeneous);
+        assert_eq!(kept(false), options.equilibria);
+        assert!(kept(true).len() == 4 && kept(true).iter().all(|sample| sample.pressure == 1.0));
+        let at = |friction, pressure| Sample { pressure, ..Sample::at(friction) };
+        let equilibria = [at(0.2, 1.5), at(0.4, 1.5), at(0.4, 0.5)];
+        assert_eq!(independent(&equilibria, &options.modes, true), [at(0.4, 1.5)]);
     }
 
     #[test]

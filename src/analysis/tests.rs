@@ -47,6 +47,8 @@ fn pressed_by(force: f64) -> Structure {
         damping: matrices.c,
         stiffness: matrices.k,
         structural_damping: matrices.g,
+        parts: Vec::new(),
+        rest: Some("blocks".into()),
         load,
         preload: vec![0.0; 6 * N],
         pairs: belt.pairs.clone(),

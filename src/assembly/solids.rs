@@ -43,9 +43,50 @@ impl<'a> Solids<'a> {
         solid::von_mises(&stress)
     }
 
+    /// The elements of a part of the mesh, by its place in the mesh's list.
+    pub fn of_part(&self, part: usize) -> PartSolids<'_> {
+        let members = (0..self.len()).filter(|&e| self.mesh.elements.get(e).part as usize == part).collect();
+        PartSolids { solids: self, members }
+    }
+
+    /// The parts of the model in the mesh's order.
+    pub fn parts(&self) -> &[&'a Part] {
+        &self.parts
+    }
+
     /// Model part of element `e`.
     pub fn part(&self, e: usize) -> &'a Part {
         self.parts[self.mesh.elements.get(e).part as usize]
+    }
+}
+
+/// The solid elements of one part.
+pub struct PartSolids<'a> {
+    solids: &'a Solids<'a>,
+    members: Vec<usize>,
+}
+
+impl Connectivity for PartSolids<'_> {
+    fn len(&self) -> usize {
+        self.members.len()
+    }
+
+    fn nodes(&self, e: usize) -> &[u32] {
+        self.solids.nodes(self.members[e])
+    }
+}
+
+impl Elements for PartSolids<'_> {
+    fn mass_couples_axes(&self) -> bool {
+        self.solids.mass_couples_axes()
+    }
+
+    fn has_structural_damping(&self) -> bool {
+        self.solids.has_structural_damping()
+    }
+
+    fn matrices(&self, e: usize, out: &mut ElementMatrices) {
+        self.solids.matrices(self.members[e], out);
     }
 }
 

@@ -9,6 +9,9 @@ use crate::mesh::Mesh;
 use crate::model::{Model, NormalLaw, names};
 use std::ops::Range;
 
+/// Initial gaps up to this are rounding of the mesh, m.
+const GAP_ROUNDING: f64 = 1e-12;
+
 /// Contact as the equations see it: points, their laws, and the gap operator that ties them to the bodies.
 #[derive(Debug, Clone, Default)]
 pub struct Interface {
@@ -193,6 +196,16 @@ impl Interface {
                 pair.name
             ))),
         }
+    }
+
+    /// Whether forces are proportional to displacements, `f(s g) = s f(g)` for all `s > 0`, with the same status: normal
+    /// laws are linear, initial gaps are zero where points may open, and friction does not depend on the pressure. Then
+    /// an equilibrium without prescribed displacements is proportional to the loads, `u(s F) = s u(F)`.
+    pub fn is_homogeneous(&self) -> bool {
+        let has_offset = |point: &ContactPoint| point.law.penetration([0.0; 3]).abs() > GAP_ROUNDING;
+        let is_linear = |point: &ContactPoint| matches!(point.law.normal_law, NormalLaw::Linear { .. });
+        self.points.iter().all(|point| is_linear(point) && !has_offset(point))
+            && !self.pairs.iter().any(|pair| pair.friction_law.depends_on_pressure())
     }
 
     /// The true laws with the swept pairs' friction at one value.

@@ -130,7 +130,12 @@ impl<'a> GalerkinDocument<'a> {
              {:4} of the right and left modes below {} Hz at {} samples\n\
              {:4} of static answers at {} points that open or close\n\n\
              between the samples, estimated by the full model's residuals:\n{tests}\n\
-             equilibria and modes   {:8.1} s\n\
+             equilibria             {:8.1} s\n\
+             modes                  {:8.1} s\n\
+             their left vectors     {:8.1} s\n\
+             basis                  {:8.1} s\n\
+             projection, file       {:8.1} s\n\
+             tests                  {:8.1} s\n\
              in all                 {:8.1} s\n\n\
              results in {file}\n",
             self.origin.title,
@@ -145,7 +150,12 @@ impl<'a> GalerkinDocument<'a> {
             report.mode_samples,
             report.coordinates_of_static_answers,
             report.switching_points,
-            report.sample_seconds,
+            report.equilibrium_seconds,
+            report.mode_seconds,
+            report.left_seconds,
+            report.basis_seconds,
+            report.projection_seconds,
+            report.test_seconds,
             report.seconds,
         )
     }

@@ -1,14 +1,16 @@
 //! The file of a super-element, HDF5.
 //!
 //! ```text
-//! /                 attributes: format "squeal super-element", version 4
+//! /                 attributes: format "squeal super-element", version 5
 //! about             text, TOML: [origin] model, mesh with hash, friction, bands, samples; [[pair]] the pairs kept;
-//!                   parts
+//!                   parts; [[part_matrices]] name and damping of each part; rest, what is in no part
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
 //! mass, damping, stiffness      n x n, symmetric but for gyroscopic damping; n = 3 n_p + n_m + residual modes; kg,
 //!                               N s/m, N/m at the retained points, unit modal mass
 //! structural_damping            n x n, as stiffness; only where a stiffness has a loss factor
+//! part_masses, part_stiffnesses n_p x n^2: what each part adds to mass and stiffness; to damping it adds alpha and
+//!                   beta times these, to structural_damping its loss factor times its stiffness
 //! load, preload     n           generalised forces, N
 //! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:
 //!                   frictionless), weight (m2), gap (m), touching (0 or 1), displacement (m) and normal_force (N) at
@@ -29,89 +31,43 @@ use hdf5::{File, Group};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
-use crate::contact::interface::{ContactPair, Statistics, TangentialKind};
+use crate::contact::interface::ContactPair;
 use crate::contact::surface_points::Place;
-use crate::contact::{ContactPoint, FrictionLaw, PointLaw, Tangential};
+use crate::contact::{ContactPoint, PointLaw, Tangential};
 use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
-use crate::model::{NormalLaw, is_pressure_table};
+use crate::model::Rayleigh;
 
+use super::pair_text::{PairText, pair_texts, pairs};
+use super::parts::PartMatrices;
 use super::recovery::OuterSurface;
 use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
 
 const FORMAT: Format =
-    Format { name: "squeal super-element", version: 4, advice: "Make the super-element again with `squeal reduce`" };
+    Format { name: "squeal super-element", version: 5, advice: "Make the super-element again with `squeal reduce`" };
 
 /// The name of the matrix that only some have.
 const STRUCTURAL_DAMPING: &str = "structural_damping";
+/// The matrices of the parts, one after the other.
+const PART_MASSES: &str = "part_masses";
+const PART_STIFFNESSES: &str = "part_stiffnesses";
 
 /// What is told in words.
 #[derive(Serialize, Deserialize)]
 struct About {
     origin: Origin,
     parts: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rest: Option<String>,
     pair: Vec<PairText>,
+    part_matrices: Vec<PartText>,
 }
 
-/// A pair.
+/// A part of which the file has the matrices.
 #[derive(Serialize, Deserialize)]
-struct PairText {
+struct PartText {
     name: String,
-    slave: String,
-    master: String,
-    #[serde(default)]
-    kind: KindText,
-    /// One number: linear, N/m3; two: cubic, N/m3 and N/m5.
-    law: Vec<f64>,
-    friction: f64,
-    separation: bool,
-    swept: bool,
-    area: f64,
-    n_contacts: usize,
-    /// Without a user's own function.
-    #[serde(default)]
-    friction_law: FrictionLaw,
-}
-
-/// What acts in the tangent plane of a pair.
-#[derive(Serialize, Deserialize, Clone, Copy, Default)]
-#[serde(rename_all = "snake_case")]
-enum KindText {
-    #[default]
-    Sliding,
-    Frictionless,
-    /// With this stiffness while it sticks, N/m3.
-    StickSlip(f64),
-}
-
-impl KindText {
-    fn of(pair: &ContactPair, contacts: &[NodeContact]) -> KindText {
-        let stick = |contact: &NodeContact| match contact.point.law.tangential {
-            Tangential::StickSlip { stick } => Some(stick),
-            _ => None,
-        };
-        match (pair.kind, contacts[pair.points.clone()].iter().find_map(stick)) {
-            (TangentialKind::Sliding, _) => KindText::Sliding,
-            (_, Some(stick)) => KindText::StickSlip(stick),
-            (_, None) => KindText::Frictionless,
-        }
-    }
-
-    fn kind(self) -> TangentialKind {
-        match self {
-            KindText::Sliding => TangentialKind::Sliding,
-            KindText::Frictionless => TangentialKind::Frictionless,
-            KindText::StickSlip(_) => TangentialKind::StickSlip,
-        }
-    }
-
-    /// What acts at a point under which the master slides along a direction with a speed.
-    fn tangential(self, direction: [f64; 3], speed: f64) -> Tangential {
-        match self {
-            KindText::StickSlip(stick) => Tangential::StickSlip { stick },
-            KindText::Sliding if speed != 0.0 => Tangential::Sliding { direction, speed },
-            _ => Tangential::Frictionless,
-        }
-    }
+    rayleigh: Rayleigh,
+    loss_factor: f64,
 }
 
 /// Whether a file is a super-element, of whatever version. Not collective.
@@ -128,7 +84,13 @@ pub fn write(path: &Path, element: &SuperElement, surface: &OuterSurface) -> Res
 }
 
 fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hdf5::Result<()> {
-    let about = About { origin: element.origin.clone(), parts: surface.parts.clone(), pair: pair_texts(element) };
+    let about = About {
+        origin: element.origin.clone(),
+        parts: surface.parts.clone(),
+        rest: element.rest.clone(),
+        pair: pair_texts(element),
+        part_matrices: element.parts.iter().map(part_text).collect(),
+    };
     let about = toml::to_string(&about).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
     text(file, "about", &about)?;
     let n = element.n_coordinates();
@@ -138,6 +100,9 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
     table(file, "damping", n, &element.damping)?;
     table(file, "stiffness", n, &element.stiffness)?;
     element.structural_damping.iter().try_for_each(|g| table(file, STRUCTURAL_DAMPING, n, g))?;
+    table(file, PART_MASSES, n * n, &element.parts.iter().flat_map(|part| part.mass.clone()).collect::<Vec<_>>())?;
+    let stiffnesses: Vec<f64> = element.parts.iter().flat_map(|part| part.stiffness.clone()).collect();
+    table(file, PART_STIFFNESSES, n * n, &stiffnesses)?;
     list(file, "load", &element.load)?;
     list(file, "preload", &element.preload)?;
     let group = file.create_group("contacts")?;
@@ -150,6 +115,10 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
     table(&group, "triangles", 3, surface.triangles.as_flattened())?;
     list(&group, "part", &surface.part)?;
     table(&group, "basis", 3 * surface.nodes.len(), &surface.basis)
+}
+
+fn part_text(part: &PartMatrices) -> PartText {
+    PartText { name: part.name.clone(), rayleigh: part.rayleigh, loss_factor: part.loss_factor }
 }
 
 fn write_contacts(group: &Group, contacts: &[NodeContact]) -> hdf5::Result<()> {
@@ -169,27 +138,6 @@ fn write_contacts(group: &Group, contacts: &[NodeContact]) -> hdf5::Result<()> {
     list(group, "touching", &contacts.iter().map(|c| u8::from(c.point.law.touching)).collect::<Vec<_>>())?;
     table(group, "displacement", 3, &vectors(&|c| c.displacement))?;
     list(group, "normal_force", &scalars(&|c| c.normal_force))
-}
-
-fn pair_texts(element: &SuperElement) -> Vec<PairText> {
-    let of = |pair: &ContactPair| PairText {
-        name: pair.name.clone(),
-        slave: pair.slave.clone(),
-        master: pair.master.clone(),
-        kind: KindText::of(pair, &element.contacts),
-        law: match &pair.law {
-            NormalLaw::Linear { stiffness } => vec![*stiffness],
-            NormalLaw::Cubic { k1, k3 } => vec![*k1, *k3],
-            NormalLaw::Table { rows } => rows.concat(),
-        },
-        friction: pair.friction,
-        separation: pair.separation,
-        swept: pair.swept,
-        area: pair.statistics.area,
-        n_contacts: pair.points.len(),
-        friction_law: pair.friction_law.storable(),
-    };
-    element.pairs.iter().map(of).collect()
 }
 
 /// Reads a super-element and its surface. Not collective.
@@ -232,8 +180,11 @@ fn read_body(file: &File) -> hdf5::Result<SuperElement> {
         true => ContactMotion::Rows(values(&group, "motion")?),
         false => ContactMotion::Nodes,
     };
+    let parts = read_parts(file, about.part_matrices)?;
     Ok(SuperElement {
         origin: about.origin,
+        parts,
+        rest: about.rest,
         points: triples(file, "points")?,
         frequencies: values(file, "frequencies")?,
         mass: values(file, "mass")?,
@@ -251,6 +202,20 @@ fn read_body(file: &File) -> hdf5::Result<SuperElement> {
     })
 }
 
+fn read_parts(file: &File, texts: Vec<PartText>) -> hdf5::Result<Vec<PartMatrices>> {
+    let (masses, stiffnesses): (Vec<f64>, Vec<f64>) = (values(file, PART_MASSES)?, values(file, PART_STIFFNESSES)?);
+    let length = masses.len() / texts.len().max(1);
+    if masses.len() != stiffnesses.len() || masses.len() != length * texts.len() {
+        return Err("the matrices of the parts differ in size".into());
+    }
+    let part = |(i, text): (usize, PartText)| {
+        let own = |all: &[f64]| all[i * length..(i + 1) * length].to_vec();
+        let PartText { name, rayleigh, loss_factor } = text;
+        PartMatrices { name, mass: own(&masses), stiffness: own(&stiffnesses), rayleigh, loss_factor }
+    };
+    Ok(texts.into_iter().enumerate().map(part).collect())
+}
+
 fn read_surface(file: &File) -> hdf5::Result<OuterSurface> {
     let surface = file.group("surface")?;
     Ok(OuterSurface {
@@ -260,35 +225,6 @@ fn read_surface(file: &File) -> hdf5::Result<OuterSurface> {
         parts: read_about(file)?.parts,
         basis: values(&surface, "basis")?,
     })
-}
-
-fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
-    let mut first = 0;
-    let of = |text: &PairText| {
-        let points = first..first + text.n_contacts;
-        first = points.end;
-        ContactPair {
-            name: text.name.clone(),
-            slave: text.slave.clone(),
-            master: text.master.clone(),
-            law: match text.law[..] {
-                [k1, k3] => NormalLaw::Cubic { k1, k3 },
-                ref rows if is_pressure_table(rows.as_chunks().0) => {
-                    NormalLaw::Table { rows: rows.as_chunks().0.to_vec() }
-                }
-                [stiffness] => NormalLaw::Linear { stiffness },
-                _ => NormalLaw::Linear { stiffness: f64::NAN },
-            },
-            friction: text.friction,
-            friction_law: text.friction_law.clone(),
-            kind: text.kind.kind(),
-            separation: text.separation,
-            swept: text.swept,
-            points,
-            statistics: Statistics { area: text.area, ..Statistics::default() },
-        }
-    };
-    texts.iter().map(of).collect()
 }
 
 fn read_contacts(group: &Group, pairs: &[ContactPair], texts: &[PairText]) -> hdf5::Result<Vec<NodeContact>> {
@@ -334,6 +270,8 @@ fn inconsistency(element: &SuperElement) -> Option<String> {
     }
     let matrices = [("mass", &element.mass), ("damping", &element.damping), ("stiffness", &element.stiffness)];
     let matrices = matrices.into_iter().chain(element.structural_damping.iter().map(|g| (STRUCTURAL_DAMPING, g)));
+    let parts = element.parts.iter().flat_map(|part| [(PART_MASSES, &part.mass), (PART_STIFFNESSES, &part.stiffness)]);
+    let matrices = matrices.chain(parts);
     let vectors = [("load", &element.load), ("preload", &element.preload)];
     let sized = matrices.map(|(name, m)| (name, m, n * n)).chain(vectors.map(|(name, v)| (name, v, n)));
     for (name, values, length) in sized {

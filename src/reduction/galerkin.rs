@@ -26,11 +26,12 @@ use serde::Serialize;
 use crate::Result;
 use crate::assembly::System;
 use crate::contact::{Interface, Response, Status, Tangential};
-use crate::native::{Block, Matrix};
+use crate::native::{Block, Matrix, Mck};
 
-use super::craig_bampton::{project, project_damping, shadow};
+use super::craig_bampton::shadow;
 use super::fixed_interface::make_orthonormal;
 use super::functionals::Functionals;
+use super::parts::MatricesByPart;
 use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
 
 /// A basis V with `V^T K_ref V = I`, which grows.
@@ -84,8 +85,18 @@ pub struct BasisReport {
     pub coordinates_of_modes: usize,
     /// Coordinates that static answers gave.
     pub coordinates_of_static_answers: usize,
-    /// Spent on equilibria and modes, s.
-    pub sample_seconds: f64,
+    /// Spent on equilibria, s.
+    pub equilibrium_seconds: f64,
+    /// Spent on modes, s.
+    pub mode_seconds: f64,
+    /// Spent on their left vectors, s.
+    pub left_seconds: f64,
+    /// Spent on the basis, s.
+    pub basis_seconds: f64,
+    /// Spent on the projection of the matrices and of the surface, and on the file, s.
+    pub projection_seconds: f64,
+    /// Spent on the comparison with the full model, s.
+    pub test_seconds: f64,
     /// All of it, s.
     pub seconds: f64,
 }
@@ -111,26 +122,35 @@ pub fn switching_forces(interface: &Interface, equilibria: &[&[Response]]) -> Ve
     (0..interface.points.len()).filter(switches).flat_map(forces).collect()
 }
 
-/// The super-element of a structure in a basis, with all contact points of its interface. Collective.
+/// The super-element of a structure in a basis, with the matrices that it has there and with all contact points of its
+/// interface. Collective.
 ///
 /// # Errors
 /// PETSc's.
-pub fn super_element(system: &System, interface: &Interface, basis: &Block, origin: Origin) -> Result<SuperElement> {
-    let matrix = |a: &Matrix| Ok(project(DMatrix::zeros(0, 0), basis, a)?.as_slice().to_vec());
+pub fn super_element(
+    system: &System,
+    interface: &Interface,
+    basis: &Block,
+    matrices: MatricesByPart,
+    origin: Origin,
+) -> Result<SuperElement> {
     let contact = |(a, point): (usize, &crate::contact::ContactPoint)| {
         let mut point = point.clone();
         point.nodes = vec![a as u32];
         NodeContact { point, displacement: [0.0; 3], normal_force: 0.0 }
     };
     let load = shadow(basis, &system.load)?;
+    let Mck { m, c, k, g } = matrices.total();
     Ok(SuperElement {
         origin,
         points: Vec::new(),
         frequencies: Vec::new(),
-        mass: matrix(&system.m)?,
-        damping: project_damping(basis, system)?.transpose().as_slice().to_vec(),
-        stiffness: matrix(&system.k)?,
-        structural_damping: system.g.as_ref().map(matrix).transpose()?,
+        mass: m,
+        damping: c,
+        stiffness: k,
+        structural_damping: g,
+        rest: matrices.has_rest().then_some(matrices.rest_name),
+        parts: matrices.parts,
         preload: vec![0.0; load.len()],
         load,
         pairs: interface.pairs.clone(),
@@ -151,6 +171,7 @@ mod tests {
     use crate::equilibrium::testing::{ALONG_X, blocks_on_belt};
     use crate::equilibrium::{Equilibrium, Path};
     use crate::native::{Comm, Session};
+    use crate::reduction::craig_bampton::project;
     use crate::reduction::super_element::Sample;
 
     const N: usize = 4;
@@ -231,7 +252,13 @@ mod tests {
         };
         let all: Vec<_> = (0..3 * N).map(|i| std::array::from_fn(|j| f64::from(u8::from(i == j)))).collect();
         for (basis, mu) in [(few, 0.3), (columns(&comm, &all), 0.3), (columns(&comm, &all), 0.5)] {
-            let element = super_element(&system, &interface, &basis, origin()).unwrap();
+            let projected = |a: &Matrix| project(DMatrix::zeros(0, 0), &basis, a).unwrap().as_slice().to_vec();
+            let matrices = MatricesByPart {
+                parts: Vec::new(),
+                rest: system.matrices().map(projected),
+                rest_name: "blocks".into(),
+            };
+            let element = super_element(&system, &interface, &basis, matrices, origin()).unwrap();
             let contacts = element.interface(None);
             let reduced = element.assemble(&comm, &contacts, 1.0).unwrap();
             let q = at(&reduced, &contacts, mu).u.to_vec().unwrap();

@@ -14,5 +14,7 @@ pub mod functionals;
 pub mod galerkin;
 pub mod layout;
 mod linear;
+mod pair_text;
+pub mod parts;
 pub mod recovery;
 pub mod super_element;

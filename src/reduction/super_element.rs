@@ -20,11 +20,12 @@ use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
 use crate::contact::interface::ContactPair;
 use crate::contact::{ContactPoint, GapOperator, Interface};
 use crate::mesh::Numbering;
-use crate::model::{InstabilityCriterion, NormalLaw};
+use crate::model::{InstabilityCriterion, NormalLaw, Rayleigh, names};
 use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
 use super::craig_bampton::{Reduced, Structure};
+use super::parts::{PartMatrices, add};
 
 /// Where a super-element comes from.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -116,6 +117,10 @@ pub struct SuperElement {
     pub stiffness: Vec<f64>,
     /// Structural damping, where a stiffness has a loss factor.
     pub structural_damping: Option<Vec<f64>>,
+    /// What each part adds to these matrices.
+    pub parts: Vec<PartMatrices>,
+    /// What else adds to them, in words; none where there is nothing else.
+    pub rest: Option<String>,
     /// Generalised forces of the loads.
     pub load: Vec<f64>,
     /// Generalised forces of the contacts that were linearised.
@@ -129,11 +134,18 @@ pub struct SuperElement {
 }
 
 impl SuperElement {
-    /// Puts together what was reduced; `loaded` are the positions of the load points. Collective.
+    /// Puts together what was reduced, with what the parts add to it; `loaded` are the positions of the load points.
+    /// Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn new(origin: Origin, structure: &Structure, reduced: &Reduced, loaded: &[[f64; 3]]) -> Result<SuperElement> {
+    pub fn new(
+        origin: Origin,
+        structure: &Structure,
+        reduced: &Reduced,
+        parts: Vec<PartMatrices>,
+        loaded: &[[f64; 3]],
+    ) -> Result<SuperElement> {
         let interface = structure.interface;
         let gaps = crate::equilibrium::Contacts::new(interface, structure.system)?.gaps(&structure.equilibrium.u)?;
         let mut pairs: Vec<ContactPair> = Vec::new();
@@ -162,12 +174,29 @@ impl SuperElement {
             damping: reduced.matrices.c.transpose().as_slice().to_vec(),
             stiffness: reduced.matrices.k.as_slice().to_vec(),
             structural_damping: reduced.matrices.g.as_ref().map(|g| g.as_slice().to_vec()),
+            parts,
+            rest: Some("joints and other contacts".into()),
             load: reduced.load.clone(),
             preload: reduced.preload.clone(),
             pairs,
             contacts,
             motion: ContactMotion::Nodes,
         })
+    }
+
+    /// Gives a part another Rayleigh damping.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where no part has this name.
+    pub fn set_rayleigh(&mut self, part: &str, rayleigh: Rayleigh) -> Result<()> {
+        let Some(own) = self.parts.iter_mut().find(|own| own.name == part) else {
+            let advice = names::advice(part, self.parts.iter().map(|own| own.name.as_str()));
+            return Err(Error::input(format!("no part of the super-element is called {part:?}. {advice}")));
+        };
+        let before = std::mem::replace(&mut own.rayleigh, rayleigh);
+        add(&mut self.damping, rayleigh.alpha - before.alpha, &own.mass);
+        add(&mut self.damping, rayleigh.beta - before.beta, &own.stiffness);
+        Ok(())
     }
 
     /// Whether the coordinates are those of a Galerkin basis.

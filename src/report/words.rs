@@ -151,7 +151,7 @@ fn remedies(sources: &[Source]) -> Vec<String> {
 fn changes(source: &Source) -> Vec<(f64, String)> {
     let name = &source.name;
     let mut all = Vec::new();
-    if let Some(s) = source.sensitivity.filter(|_| !source.kind.is_penalty()) {
+    if let Some(s) = source.sensitivity.filter(|_| !source.kind.is_fixed()) {
         let percent = 100.0 * CHANGE;
         let stiffer = sign(s.stiffness.re < 0.0);
         all.push((-CHANGE * s.stiffness.re.abs(), format!("stiffness of {name} {stiffer}{percent} %")));
@@ -276,7 +276,7 @@ mod tests {
         let part = sources.find(|source| source.kind == Kind::Part && source.sensitivity.is_some()).unwrap();
         let n_changes = |kind| changes(&Source { kind, ..part.clone() }).len();
         assert_eq!([Kind::Part, Kind::Mass, Kind::Connector].map(n_changes), [3, 3, 2]);
-        assert_eq!([Kind::Tie, Kind::Rigid, Kind::Equation].map(n_changes), [0, 0, 0]);
+        assert_eq!([Kind::Tie, Kind::Rigid, Kind::Equation, Kind::Rest].map(n_changes), [0, 0, 0, 0]);
     }
 
     #[test]

@@ -24,12 +24,14 @@ pub enum Kind {
     Mass,
     /// A contact pair.
     Contact,
+    /// What no part and no contact pair of a super-element has: its joints, and contacts that were linearised.
+    Rest,
 }
 
 impl Kind {
-    /// Whether its stiffness is a penalty and no property of the brake.
-    pub fn is_penalty(self) -> bool {
-        matches!(self, Kind::Tie | Kind::Rigid | Kind::Equation)
+    /// Whether its stiffness is no property of the brake that could be changed: a penalty, or a sum over several things.
+    pub fn is_fixed(self) -> bool {
+        matches!(self, Kind::Tie | Kind::Rigid | Kind::Equation | Kind::Rest)
     }
 }
 

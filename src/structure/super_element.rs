@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 
 use crate::Result;
-use crate::assembly::System;
+use crate::assembly::{Elements, Solids, System};
 use crate::equilibrium::Equilibrium;
-use crate::native::{Block, Comm};
+use crate::native::{Block, Comm, Mck};
 use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::galerkin;
+use crate::reduction::parts::{MatricesByPart, PartMatrices, Place};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Origin, Sample, SuperElement};
 
@@ -32,7 +33,8 @@ impl FullModel {
         let reduced = craig_bampton::reduce(&structure, limit, progress)?;
         let centres: Vec<[f64; 3]> = loaded.iter().map(|nodes| self.centre(nodes)).collect();
         let origin = comm.agree(self.origin(comm, system, equilibrium.friction, limit))?;
-        let element = SuperElement::new(origin, &structure, &reduced, &centres)?;
+        let parts = self.project_parts(&reduced.basis)?;
+        let element = SuperElement::new(origin, &structure, &reduced, parts, &centres)?;
         let boundary = self.boundary(comm, system);
         let surface = OuterSurface::new(boundary, &self.mesh.parts, system, &reduced.basis)?;
         Ok((element, surface, reduced.costs))
@@ -53,9 +55,39 @@ impl FullModel {
     ) -> Result<(SuperElement, OuterSurface)> {
         let origin = comm.agree(self.origin(comm, system, self.own_friction(), limit))?;
         let origin = Origin { samples: samples.to_vec(), ..origin };
-        let element = galerkin::super_element(system, &self.interface, basis, origin)?;
+        let matrices = self.matrices_by_part(basis)?;
+        let element = galerkin::super_element(system, &self.interface, basis, matrices, origin)?;
         let surface = OuterSurface::new(self.boundary(comm, system), &self.mesh.parts, system, basis)?;
         Ok((element, surface))
+    }
+
+    /// What each part adds to the matrices of a super-element in a basis. Collective.
+    fn project_parts(&self, basis: &Block) -> Result<Vec<PartMatrices>> {
+        let solids = Solids::new(&self.model, &self.mesh)?;
+        let place = self.place(basis);
+        let of = |(i, part): (usize, &&_)| place.project_part(part, &solids.of_part(i));
+        solids.parts().iter().enumerate().map(of).collect()
+    }
+
+    /// The same with what joints and the inertia forces of rotations add. Collective.
+    fn matrices_by_part(&self, basis: &Block) -> Result<MatricesByPart> {
+        let families = self.families()?;
+        let all: [(&dyn Elements, bool, &str); 2] = [
+            (families.joints, !self.joints.names.is_empty(), "joints"),
+            (&families.turning, !families.turning.is_none(), "inertia of rotations"),
+        ];
+        let rest: Vec<_> = all.iter().filter(|(_, is_there, _)| *is_there).collect();
+        let names: Vec<&str> = rest.iter().map(|(_, _, name)| *name).collect();
+        let zeros = || vec![0.0; basis.n_columns().pow(2)];
+        let rest = match rest[..] {
+            [] => Mck::from([zeros(), zeros(), zeros()]),
+            _ => self.place(basis).project(&rest.iter().map(|(family, ..)| *family).collect::<Vec<_>>())?,
+        };
+        Ok(MatricesByPart { parts: self.project_parts(basis)?, rest, rest_name: names.join(" and ") })
+    }
+
+    fn place<'a>(&'a self, basis: &'a Block) -> Place<'a> {
+        Place { nodes: &self.nodes, held: &self.held, basis }
     }
 
     /// Fixed-interface modes are kept below this, Hz: the end of the model's reduction band, else twice its band's.

@@ -20,6 +20,27 @@ const BETWEEN: [f64; 2] = [0.3, 0.5];
 /// Hz: the lower half of the reference's modes, among them an instability.
 const BAND: [f64; 2] = [0.0, 3000.0];
 
+/// Around the instability, Hz.
+const AROUND_INSTABILITY: [f64; 2] = [1000.0, 1500.0];
+
+/// Parts and contacts of the super-element have the shares of the full model in its unstable mode at 0.6, whose vector
+/// is as exact as the basis, to 1e-5.
+fn same_shares(full: &Results, reduced: &Results) {
+    let sources = |results: &Results| {
+        let (_, _, mode) = results.modes().find(|(friction, _, mode)| *friction == 0.6 && mode.unstable).unwrap();
+        mode.sources.clone()
+    };
+    let (expected, found) = (sources(full), sources(reduced));
+    assert!(expected.len() > 3 && expected.len() == found.len());
+    for (expected, found) in expected.iter().zip(&found) {
+        assert_eq!((expected.kind, &expected.name), (found.kind, &found.name));
+        let (a, b) = (expected.share, found.share);
+        let errors = [a.kinetic - b.kinetic, a.strain - b.strain, (a.energy_input - b.energy_input) / 1e3];
+        println!("{}: {errors:?}", found.name);
+        assert!(errors.iter().all(|error| error.abs() < 1e-5), "{expected:?} {found:?}");
+    }
+}
+
 fn eigenvalues(reference: &Value, friction: f64) -> Vec<Complex64> {
     let all = reference["results"][format!("{friction:.1}")]["eigenvalues"].as_array().unwrap();
     let number = |value: &Value| value.as_f64().unwrap();
@@ -63,4 +84,7 @@ fn a_galerkin_super_element_has_the_eigenvalues_of_full_contact() {
     for (friction, tolerance) in [(0.2, 1e-8), (0.6, 1e-8), (0.4, 1e-5)] {
         assert!(error(&results, &reference, friction) < tolerance, "at {friction}");
     }
+    let full = StabilityOptions { friction_values: Some(vec![0.6]), band: Some(AROUND_INSTABILITY), ..options };
+    let full = stability(&comm, &Structure::Full(Box::new(model)), &full, &mut ()).unwrap();
+    same_shares(&full, &results);
 }

@@ -114,7 +114,7 @@ impl Full {
             samples: Vec::new(),
             criterion: brake.model.criterion,
         };
-        let element = SuperElement::new(origin, &structure, &reduced, &[[0.0; 3]]).unwrap();
+        let element = SuperElement::new(origin, &structure, &reduced, Vec::new(), &[[0.0; 3]]).unwrap();
         (reduced, element)
     }
 }

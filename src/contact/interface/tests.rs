@@ -154,6 +154,28 @@ fn pairs_at_rest_stick_and_each_pair_has_its_own_friction() {
 }
 
 #[test]
+fn forces_are_proportional_to_displacements_without_gaps_under_linear_laws() {
+    let built =
+        |contact: Contact, turning| Interface::build(&model(vec![contact], turning), &plates(0.0), &Alone).unwrap();
+    let stuck = Contact { stick: Some(1e13), ..pad() };
+    for interface in [built(pad(), true), built(stuck, false)] {
+        assert!(interface.is_homogeneous());
+        let at = |s: f64| interface.respond(0, [1e-8, 2e-9, -2e-8].map(|g| s * g), &interface.stage(0.3));
+        let (one, many) = (at(1.0), at(7.0));
+        assert_eq!(one.status, many.status);
+        assert!((0..3).all(|i| (many.force[i] - 7.0 * one.force[i]).abs() < 1e-12 * many.normal_force));
+    }
+    let wide = Contact { clearance: Some(1e-9), ..pad() };
+    assert!(!built(wide.clone(), true).is_homogeneous());
+    assert!(built(Contact { separation: false, ..wide }, true).is_homogeneous(), "its gap counts as zero");
+    let cubic = Contact { law: Some(NormalLaw::Cubic { k1: 1e13, k3: 1e25 }), ..pad() };
+    assert!(!built(cubic, true).is_homogeneous());
+    let mut falling = built(pad(), true);
+    falling.pairs[0].friction_law = FrictionLaw::Missing;
+    assert!(!falling.is_homogeneous(), "friction may depend on the pressure");
+}
+
+#[test]
 fn points_at_a_distance_do_not_touch() {
     let wide = Contact { search_distance: Some(1.0), ..pad() };
     let interface = Interface::build(&model(vec![wide], true), &plates(0.01), &Alone).unwrap();

@@ -65,6 +65,16 @@ impl FrictionLaw {
     pub fn storable(&self) -> FrictionLaw {
         if let FrictionLaw::User(_) = self { FrictionLaw::Missing } else { self.clone() }
     }
+
+    /// Whether the friction coefficient may change with the pressure.
+    pub fn depends_on_pressure(&self) -> bool {
+        match self {
+            FrictionLaw::Constant => false,
+            FrictionLaw::Curve(FrictionCurve::Decay(_) | FrictionCurve::Stribeck(_)) => false,
+            FrictionLaw::Curve(FrictionCurve::Table(table)) => table.pressures.len() > 1,
+            FrictionLaw::User(_) | FrictionLaw::Missing => true,
+        }
+    }
 }
 
 /// The friction of a pair: friction value and law.

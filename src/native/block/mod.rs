@@ -208,7 +208,7 @@ impl Block {
     }
 
     /// Some rows of this rank. Not collective.
-    fn of_rows(&self, rows: &[usize]) -> Block {
+    pub fn of_rows(&self, rows: &[usize]) -> Block {
         let values = (0..self.n_columns).flat_map(|j| rows.iter().map(move |row| self.column(j)[*row])).collect();
         Block { comm: self.comm.clone(), n_local: rows.len(), n_columns: self.n_columns, values }
     }
