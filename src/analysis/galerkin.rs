@@ -13,6 +13,7 @@ use crate::reduction::galerkin::{self, Basis, BasisReport};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Sample, SuperElement};
 use crate::results::Certificate;
+use crate::stability::EigenOptions;
 use crate::structure::{FullModel, ReducedModel, Structure};
 
 use super::certificate::Whole;
@@ -21,8 +22,10 @@ use super::observer::{Event, Observer};
 use super::reduce::SuperElementPlace;
 use super::sweep::{Costs, Sweep};
 
-/// Accuracy of left vectors that join the basis.
-const LEFT_ACCURACY: f64 = 1e-5;
+/// Accuracy of modes that join the basis, relative to what they may leave out.
+const VECTOR_ACCURACY: f64 = 0.1;
+/// Static answers that join the basis together: less memory than all at once.
+const PANEL: usize = 256;
 /// Friction values of equilibria are no farther apart.
 const EQUILIBRIUM_STEP: f64 = 0.05;
 /// Equilibria under these factors on the loads and on the contact stiffness join the basis, too.
@@ -86,6 +89,13 @@ impl GalerkinOptions {
     }
 }
 
+impl GalerkinOptions {
+    /// Accuracy of the modes' vectors.
+    fn vector_accuracy(&self) -> f64 {
+        VECTOR_ACCURACY * self.negligible
+    }
+}
+
 /// Values between neighbours of a list, evenly spaced and no farther apart than [`EQUILIBRIUM_STEP`].
 fn values_between(values: &[f64]) -> Vec<f64> {
     let mut values = values.to_vec();
@@ -146,7 +156,7 @@ pub fn reduce_galerkin(
     observer.event(Event::Stage("assembling"));
     let mut system = model.assemble(comm, &model.families()?)?;
     let end = widened(model.model.band)[1];
-    let snapshots = Snapshots::take(model, &mut system, options, end, observer)?;
+    let mut snapshots = Snapshots::take(model, &mut system, options, end, observer)?;
 
     observer.event(Event::Stage("making the basis"));
     let clock = Instant::now();
@@ -196,7 +206,7 @@ impl Snapshots {
         for path in all.chunk_by(|(a, _), (b, _)| is_one_path(a, b)) {
             let pressure = path[0].0.pressure;
             system.load.scale(pressure)?;
-            snapshots.follow(model, system, path, observer)?;
+            snapshots.follow(model, system, path, options.vector_accuracy(), observer)?;
             system.load.scale(1.0 / pressure)?;
         }
         Ok(snapshots)
@@ -210,20 +220,22 @@ impl Snapshots {
         model: &FullModel,
         system: &System,
         path: &[(Sample, Option<f64>)],
+        accuracy: f64,
         observer: &mut dyn Observer,
     ) -> Result<()> {
         let mut interface = model.interface.clone();
         interface.scale_contact_stiffness(path[0].0.contact_stiffness);
         let mut sweep = Sweep::new(system, &interface, model.model.friction_damping)?;
+        sweep.search_by(EigenOptions::with_vector_accuracy(accuracy));
         for &(sample, end) in path {
-            if let Some(own) = self.states.iter().find(|state| state.sample == Sample::at(sample.friction)) {
-                sweep.restore(vec![(sample.friction, own.u.duplicate()?)], None);
-            }
-            let equilibrium = sweep.equilibrium(sample.friction, observer)?;
+            let equilibrium = match self.states.iter().find(|state| state.sample == Sample::at(sample.friction)) {
+                Some(own) => sweep.equilibrium_near(own.u.duplicate()?, sample.friction, observer)?,
+                None => sweep.equilibrium(sample.friction, observer)?,
+            };
             if let Some(end) = end {
                 let band = sweep.modes(&equilibrium, [0.0, end], observer)?;
                 let mut vectors = sweep.right_vectors(&band.modes)?;
-                vectors.append(&sweep.left_vectors(&band.modes, |_| LEFT_ACCURACY)?);
+                vectors.append(&sweep.left_vectors(&band.modes, |_| accuracy)?);
                 self.modes.push(vectors);
             }
             let Equilibrium { u, responses, .. } = equilibrium;
@@ -251,9 +263,10 @@ impl Snapshots {
         Ok(stiffness)
     }
 
-    /// Adds equilibria, modes and static answers to a basis whose energy is that of a state. Collective.
+    /// Adds equilibria, modes, which are given up, and static answers to a basis whose energy is that of a state.
+    /// Collective.
     fn span(
-        &self,
+        &mut self,
         model: &FullModel,
         system: &System,
         factor: &Factor,
@@ -273,15 +286,17 @@ impl Snapshots {
             let u = Block::from_columns(state.u.comm(), state.u.n_local(), state.u.to_vec()?);
             report.coordinates_of_equilibria += basis.add(u, NEGLIGIBLE_OF_EQUILIBRIA)?;
         }
-        for modes in &self.modes {
-            report.coordinates_of_modes += basis.add(modes.clone(), negligible)?;
+        for modes in std::mem::take(&mut self.modes) {
+            report.coordinates_of_modes += basis.add(modes, negligible)?;
         }
         let responses: Vec<&[Response]> = self.states.iter().map(|state| &state.responses[..]).collect();
         let forces = galerkin::switching_forces(&model.interface, &responses);
         report.switching_points = forces.chunk_by(|a, b| a.0 == b.0).count();
         let contacts = Contacts::new(&model.interface, system)?;
-        let answers = contacts.loads(system.k.comm(), &forces).solved_by(factor)?;
-        report.coordinates_of_static_answers = basis.add(answers, NEGLIGIBLE_OF_ANSWERS)?;
+        for forces in forces.chunks(PANEL) {
+            let answers = contacts.loads(system.k.comm(), forces).solved_by(factor)?;
+            report.coordinates_of_static_answers += basis.add(answers, NEGLIGIBLE_OF_ANSWERS)?;
+        }
         Ok(report)
     }
 

@@ -6,13 +6,13 @@
 use std::time::Instant;
 
 use super::observer::{Event, Observer};
-use crate::Result;
 use crate::assembly::{Prestress, System};
 use crate::contact::interface::Interface;
 use crate::equilibrium::{Equilibrium, LinearSystem, Path};
 use crate::native::{Block, FactorStats, Matrix, Precision, Vector};
 use crate::stability::{self, Band, BandSolver, Count, EigenOptions, LinearTerms, Linearised, Mode, QuadraticProblem};
 use crate::structure::Structure;
+use crate::{ErrorKind, Result};
 
 /// A structure under analysis at one friction coefficient after the other.
 pub struct Sweep<'a> {
@@ -106,6 +106,22 @@ impl<'a> Sweep<'a> {
         outcome
     }
 
+    /// As [`Sweep::equilibrium`], from displacements that are near it; from rest where Newton's method does not converge
+    /// from there. Collective.
+    ///
+    /// # Errors
+    /// See [`Path::advance`].
+    pub fn equilibrium_near(&mut self, u: Vector, friction: f64, observer: &mut dyn Observer) -> Result<Equilibrium> {
+        self.restore(vec![(friction, u)], None);
+        match self.equilibrium(friction, observer) {
+            Err(error) if error.kind() == ErrorKind::NotConverged => {
+                self.restore(Vec::new(), None);
+                self.equilibrium(friction, observer)
+            }
+            outcome => outcome,
+        }
+    }
+
     /// Makes M, C and K about an equilibrium, and lends them to `look`. Collective.
     ///
     /// # Errors
@@ -123,8 +139,13 @@ impl<'a> Sweep<'a> {
     /// Goes about it as for a large structure, whatever the size: with blocks of right-hand sides
     /// ([`EigenOptions::always_blocked`]) and factors in single precision. Collective.
     pub fn solve_as_large(&mut self) {
-        self.solver = BandSolver::new(EigenOptions::always_blocked(), self.system.dofs.labels());
+        self.search_by(EigenOptions::always_blocked());
         self.path.set_precision(Precision::Single);
+    }
+
+    /// From now on finds modes by other tolerances than the default ones.
+    pub fn search_by(&mut self, options: EigenOptions) {
+        self.solver = BandSolver::new(options, self.system.dofs.labels());
     }
 
     /// Left vectors of the modes of the last [`Sweep::modes`], each to the accuracy asked for. Collective.
@@ -193,6 +214,29 @@ impl<'a> Sweep<'a> {
             lu: self.path.factor().stats(),
             n_iterations: self.path.n_iterations(),
             symmetric: self.solver.count_stats(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::testing::{ALONG_X, blocks_on_belt};
+    use crate::native::Session;
+
+    #[test]
+    fn an_equilibrium_is_found_from_displacements_near_it_and_from_rest_where_these_are_useless() {
+        let comm = Session::start(&[]).unwrap();
+        let (system, interface) = blocks_on_belt(&comm, 4, 1, ALONG_X);
+        let from_rest = Sweep::new(&system, &interface, false).unwrap().equilibrium(0.3, &mut ()).unwrap();
+        let expected = from_rest.u.to_vec().unwrap();
+        let mut useless = system.zeros().unwrap();
+        useless.local_mut(|values| values.fill(f64::NAN)).unwrap();
+        for (start, n_steps) in [(from_rest.u.duplicate().unwrap(), 1), (useless, from_rest.steps.len() + 1)] {
+            let mut sweep = Sweep::new(&system, &interface, false).unwrap();
+            let found = sweep.equilibrium_near(start, 0.3, &mut ()).unwrap();
+            assert!(found.u.to_vec().unwrap().iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9));
+            assert_eq!(found.steps.len(), n_steps);
         }
     }
 }

@@ -44,7 +44,7 @@ pub struct Basis<'a> {
 impl<'a> Basis<'a> {
     /// Without vectors, in the layout of some; at most `max_columns` come into it.
     pub fn new(k_ref: &'a Matrix, like: &Block, max_columns: usize) -> Basis<'a> {
-        Basis { k_ref, vectors: like.columns(0..0), max_columns }
+        Basis { k_ref, vectors: Block::with_room(like.comm(), like.n_local(), max_columns), max_columns }
     }
 
     /// Adds what some vectors add to the span, but for directions that are shorter than `negligible` of them. Gives how

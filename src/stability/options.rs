@@ -1,5 +1,8 @@
 //! Tolerances and thresholds of the eigensolution, with their defaults.
 
+/// Backward error of a mode over the accuracy of its vector: stiff motions that a vector lacks weigh more in it.
+const BACKWARD_ERROR_OF_VECTORS: f64 = 1e-3;
+
 /// What shows that no mode is missing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Evidence {
@@ -112,6 +115,15 @@ impl EigenOptions {
     /// The blocked search whatever the size.
     pub fn always_blocked() -> EigenOptions {
         EigenOptions { blocked_from: 0, ..EigenOptions::default() }
+    }
+
+    /// For modes whose vectors are needed to an accuracy alone: their eigenvalues have about its square as their error.
+    /// Concerns the blocked search.
+    pub fn with_vector_accuracy(accuracy: f64) -> EigenOptions {
+        let mut options = EigenOptions::default();
+        options.blocked.eigenvalue_change = (accuracy * accuracy).max(options.blocked.eigenvalue_change);
+        options.backward_error = (BACKWARD_ERROR_OF_VECTORS * accuracy).max(options.backward_error);
+        options
     }
 
     /// Modes beyond those expected that an attempt searches for: a few, and three times as many in the next attempt.
