@@ -6,7 +6,7 @@ import numpy as np
 
 from ._file import opened, table
 
-FORMAT, VERSION = "squeal super-element", 4
+FORMAT, VERSION = "squeal super-element", 5
 
 
 @dataclass(frozen=True)

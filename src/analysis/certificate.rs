@@ -1,16 +1,20 @@
 //! How well the equilibrium and the modes of a Galerkin super-element solve the full model's equations.
 
+use std::path::Path;
+
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-use crate::Result;
 use crate::assembly::System;
-use crate::contact::{Interface, Response};
+use crate::contact::Interface;
 use crate::equilibrium::{Contacts, Equilibrium};
-use crate::native::{Block, Comm, Factor, Vector};
+use crate::native::{Block, Comm, Factor, FactorKind, Vector};
+use crate::reduction::craig_bampton::project;
 use crate::results::{Certificate, CertifiedMode};
 use crate::stability::{Approximation, corrections};
 use crate::structure::Structure;
+use crate::{Error, Result};
 
 use super::sweep::Sweep;
 
@@ -25,13 +29,16 @@ pub(super) struct Whole<'a> {
     pub interface: &'a Interface,
     /// The basis V of the super-element.
     pub basis: &'a Block,
-    /// The factor of K_ref, with `V^T K_ref V = I`.
+    /// The factor of K_ref.
     pub factor: &'a Factor,
+    /// `(V^T K_ref V)^-1`, where that is not I.
+    pub inverse_metric: Option<DMatrix<f64>>,
 }
 
 /// Equilibrium and modes of a super-element, in its coordinates.
 #[derive(Serialize, Deserialize, Default)]
 struct ReducedSolution {
+    friction: f64,
     equilibrium: Vec<f64>,
     lambdas: Vec<[f64; 2]>,
     right: Vec<f64>,
@@ -39,40 +46,92 @@ struct ReducedSolution {
 }
 
 impl ReducedSolution {
-    /// Of a super-element at a friction value, on one rank.
-    fn new(alone: &Comm, reduced: &Structure, friction: f64, band: [f64; 2]) -> Result<ReducedSolution> {
+    /// Of a super-element at some friction values, on one rank.
+    fn at_all(alone: &Comm, reduced: &Structure, values: &[f64], band: [f64; 2]) -> Result<Vec<ReducedSolution>> {
         let system = reduced.assemble(alone)?;
         let mut sweep = Sweep::new(&system, reduced.interface(), reduced.friction_damping())?;
+        values.iter().map(|&friction| ReducedSolution::at(&mut sweep, friction, band)).collect()
+    }
+
+    fn at(sweep: &mut Sweep, friction: f64, band: [f64; 2]) -> Result<ReducedSolution> {
         let equilibrium = sweep.equilibrium(friction, &mut ())?;
         let modes = sweep.modes(&equilibrium, band, &mut ())?.modes;
         let right = sweep.right_vectors(&modes)?.values().to_vec();
         let left = sweep.left_vectors(&modes, |_| LEFT_ACCURACY)?.values().to_vec();
         let lambdas = modes.iter().map(|mode| [mode.lambda.re, mode.lambda.im]).collect();
-        Ok(ReducedSolution { equilibrium: equilibrium.u.to_vec()?, lambdas, right, left })
+        Ok(ReducedSolution { friction, equilibrium: equilibrium.u.to_vec()?, lambdas, right, left })
     }
 }
 
+impl ReducedSolution {
+    /// As [`ReducedSolution::at_all`], by the first rank for all. Collective.
+    fn shared(comm: &Comm, reduced: &Structure, values: &[f64], band: [f64; 2]) -> Result<Vec<ReducedSolution>> {
+        let alone = comm.alone();
+        let solve = || ReducedSolution::at_all(&alone, reduced, values, band);
+        let solutions = comm.agree(if comm.is_root() { solve() } else { Ok(Vec::new()) })?;
+        Ok(comm.broadcast_value(0, solutions))
+    }
+}
+
+/// Compares a super-element at some friction values with its full model, a model file. Collective.
+///
+/// # Errors
+/// [`crate::Error::Input`] for a model that cannot be used; those of the solution; PETSc's and MUMPS's.
+pub(super) fn certify(
+    comm: &Comm,
+    structure: &Structure,
+    path: &Path,
+    values: &[f64],
+    band: [f64; 2],
+) -> Result<Vec<Certificate>> {
+    let Structure::Reduced(reduced) = structure else { return Ok(Vec::new()) };
+    let (full, system, basis) = reduced.full(comm, path)?;
+    let solutions = ReducedSolution::shared(comm, structure, values, band)?;
+    let Some(middle) = solutions.get(solutions.len() / 2) else { return Ok(Vec::new()) };
+    let mut factor = Factor::new(FactorKind::Symmetric);
+    let (interface, basis) = (&full.interface, &basis);
+    let equilibrium = equilibrium(&system, interface, basis, middle)?;
+    let k_ref = Sweep::new(&system, interface, false)?.symmetric_stiffness(&equilibrium)?;
+    factor.factorise(&k_ref)?;
+    // V is not quite orthonormal: it was made with another K_ref, and is kept in single precision.
+    let metric = project(DMatrix::zeros(0, 0), basis, &k_ref)?;
+    let inverse = metric.cholesky().ok_or_else(|| Error::Singular { found_by: "Cholesky of the basis".into() })?;
+    let inverse_metric = Some(inverse.inverse());
+    let whole = Whole { system: &system, interface, basis, factor: &factor, inverse_metric };
+    solutions.iter().map(|solution| whole.compare(solution, structure.friction_damping())).collect()
+}
+
+/// The super-element's equilibrium with the full model's contacts. Collective.
+fn equilibrium(
+    system: &System,
+    interface: &Interface,
+    basis: &Block,
+    solution: &ReducedSolution,
+) -> Result<Equilibrium> {
+    let u = basis.combined(&solution.equilibrium, 1).vector(0)?;
+    let responses = Contacts::new(interface, system)?.respond(&u, &interface.stage(solution.friction))?;
+    Ok(Equilibrium { u, responses, friction: solution.friction, steps: Vec::new() })
+}
+
 impl Whole<'_> {
-    /// Solves a super-element at a friction value on the first rank, and compares with the full model there.
+    /// Solves a super-element at some friction values on the first rank, and compares with the full model there.
     /// Collective.
     ///
     /// # Errors
     /// Those of the solution; PETSc's and MUMPS's.
-    pub(super) fn certify(&self, reduced: &Structure, friction: f64, band: [f64; 2]) -> Result<Certificate> {
-        let comm = self.system.k.comm();
-        let alone = comm.alone();
-        let solve = || ReducedSolution::new(&alone, reduced, friction, band);
-        let solution = comm.agree(if comm.is_root() { solve() } else { Ok(ReducedSolution::default()) })?;
-        let solution = comm.broadcast_value(0, solution);
+    pub(super) fn certify(&self, reduced: &Structure, values: &[f64], band: [f64; 2]) -> Result<Vec<Certificate>> {
+        let solutions = ReducedSolution::shared(self.system.k.comm(), reduced, values, band)?;
+        solutions.iter().map(|solution| self.compare(solution, reduced.friction_damping())).collect()
+    }
+
+    fn compare(&self, solution: &ReducedSolution, friction_damping: bool) -> Result<Certificate> {
+        let friction = solution.friction;
         let lambdas: Vec<Complex64> = solution.lambdas.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
         let [right, left] =
             [&solution.right, &solution.left].map(|vectors| self.basis.combined(vectors, 2 * lambdas.len()));
-        let u = self.basis.combined(&solution.equilibrium, 1).vector(0)?;
-        let contacts = Contacts::new(self.interface, self.system)?;
-        let responses = contacts.respond(&u, &self.interface.stage(friction))?;
-        let equilibrium_error = self.equilibrium_error(&u, &contacts, &responses)?;
-        let equilibrium = Equilibrium { u, responses, friction, steps: Vec::new() };
-        let mut sweep = Sweep::new(self.system, self.interface, reduced.friction_damping())?;
+        let equilibrium = equilibrium(self.system, self.interface, self.basis, solution)?;
+        let equilibrium_error = self.equilibrium_error(&equilibrium)?;
+        let mut sweep = Sweep::new(self.system, self.interface, friction_damping)?;
         let approximation = Approximation { lambdas: &lambdas, right: &right, left: &left };
         let corrections =
             sweep.linearise(&equilibrium, |problem| corrections(problem, &approximation, |r| self.answer(r)))?;
@@ -84,17 +143,22 @@ impl Whole<'_> {
         Ok(Certificate { friction, equilibrium_error, modes: lambdas.iter().zip(corrections).map(mode).collect() })
     }
 
-    /// `(K_ref^-1 - V V^T) r`: the static answer of what the basis lacks.
+    /// `(K_ref^-1 - V (V^T K_ref V)^-1 V^T) r`: the static answer of what the basis lacks.
     fn answer(&self, r: &Block) -> Result<Block> {
         let mut answer = r.solved_by(self.factor)?;
-        let within = self.basis.gram(r);
-        answer.axpy(-1.0, &self.basis.combined(&within, r.n_columns()));
+        let n = r.n_columns();
+        let mut within = DMatrix::from_vec(self.basis.n_columns(), n, self.basis.gram(r));
+        if let Some(inverse) = &self.inverse_metric {
+            within = inverse * within;
+        }
+        answer.axpy(-1.0, &self.basis.combined(within.as_slice(), n));
         Ok(answer)
     }
 
     /// `sqrt(r^T K_ref^-1 r / u^T F)` with the residual r of the equilibrium: the length of its error in energy, to
     /// first order.
-    fn equilibrium_error(&self, u: &Vector, contacts: &Contacts, responses: &[Response]) -> Result<f64> {
+    fn equilibrium_error(&self, Equilibrium { u, responses, .. }: &Equilibrium) -> Result<f64> {
+        let contacts = Contacts::new(self.interface, self.system)?;
         let mut r = self.system.zeros()?;
         self.system.k.multiply(u, &mut r)?;
         contacts.add_forces(responses, -1.0, &mut r)?;

@@ -14,7 +14,7 @@ use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Sample, SuperElement};
 use crate::results::Certificate;
 use crate::stability::EigenOptions;
-use crate::structure::{FullModel, ReducedModel, Structure};
+use crate::structure::{FullModel, ReducedModel, Structure, nodal_basis};
 
 use super::certificate::Whole;
 use super::family::widened;
@@ -65,6 +65,8 @@ pub struct GalerkinOptions {
     pub file: PathBuf,
     /// Whether an earlier super-element may be replaced.
     pub force: bool,
+    /// Whether the file keeps the basis, by which results are compared with the full model later.
+    pub keep_basis: bool,
 }
 
 impl GalerkinOptions {
@@ -85,6 +87,7 @@ impl GalerkinOptions {
             max_coordinates: 1500,
             file,
             force: false,
+            keep_basis: false,
         }
     }
 }
@@ -106,6 +109,14 @@ fn values_between(values: &[f64]) -> Vec<f64> {
         (1..n).map(move |i| first + width * i as f64 / n as f64).collect::<Vec<_>>()
     };
     values.windows(2).flat_map(within).collect()
+}
+
+/// The first, the middle and the last value of a list, each once: where modes of a sweep are taken.
+pub fn first_middle_last(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let mut places = vec![0, n / 2, n.saturating_sub(1)];
+    places.dedup();
+    places.into_iter().filter_map(|at| values.get(at).copied()).collect()
 }
 
 /// A Galerkin super-element, and where its coordinates come from.
@@ -170,16 +181,18 @@ pub fn reduce_galerkin(
     observer.event(Event::Stage("projecting the matrices"));
     let clock = Instant::now();
     let (element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
-    place.write(comm, &element, &surface)?;
+    let kept = options.keep_basis.then(|| nodal_basis::gathered(&system, &model.nodes, basis.vectors()));
+    place.write(comm, &element, &surface, kept.as_deref())?;
+    drop((surface, kept));
     report.projection_seconds = clock.elapsed().as_secs_f64();
 
     observer.event(Event::Stage("comparing with the full model between the samples"));
     let clock = Instant::now();
-    let reduced = ReducedModel::new(&options.file, element.clone(), OuterSurface::default(), None, 1.0);
+    let reduced = ReducedModel::new(&options.file, element.clone(), OuterSurface::default());
     let reduced = Structure::Reduced(Box::new(reduced));
-    let whole = Whole { system: &system, interface: &model.interface, basis: basis.vectors(), factor: &factor };
-    let certify = |friction: f64| whole.certify(&reduced, friction, model.model.band);
-    let certificates = snapshots.test_values(options).into_iter().map(certify).collect::<Result<_>>()?;
+    let (interface, basis) = (&model.interface, basis.vectors());
+    let whole = Whole { system: &system, interface, basis, factor: &factor, inverse_metric: None };
+    let certificates = whole.certify(&reduced, &snapshots.test_values(options), model.model.band)?;
     report.test_seconds = clock.elapsed().as_secs_f64();
     report.seconds = start.elapsed().as_secs_f64();
     Ok(GalerkinReduction { element, report, certificates })
@@ -250,17 +263,9 @@ impl Snapshots {
     /// The stiffness at a state with contact and without friction's coupling. Collective.
     fn reference_stiffness(&self, model: &FullModel, system: &System, sample: Sample) -> Result<Matrix> {
         let state = self.states.iter().find(|state| state.sample == sample).expect("every sample has a state");
-        let State { u, responses, .. } = state;
-        let equilibrium = Equilibrium {
-            u: u.duplicate()?,
-            responses: responses.clone(),
-            friction: sample.friction,
-            steps: Vec::new(),
-        };
-        let mut sweep = Sweep::new(system, &model.interface, false)?;
-        let mut stiffness = sweep.linearise(&equilibrium, |problem| problem.symmetric_stiffness())?;
-        stiffness.declare_symmetric()?;
-        Ok(stiffness)
+        let (u, responses) = (state.u.duplicate()?, state.responses.clone());
+        let equilibrium = Equilibrium { u, responses, friction: sample.friction, steps: Vec::new() };
+        Sweep::new(system, &model.interface, false)?.symmetric_stiffness(&equilibrium)
     }
 
     /// Adds equilibria, modes, which are given up, and static answers to a basis whose energy is that of a state.
@@ -334,6 +339,13 @@ mod tests {
         assert!(close(&values_between(&[0.3, 0.1]), &[0.15, 0.2, 0.25]), "{:?}", values_between(&[0.3, 0.1]));
         assert!(close(&values_between(&[0.1, 0.16, 0.2]), &[0.13]));
         assert!(values_between(&[0.4]).is_empty());
+    }
+
+    #[test]
+    fn samples_are_the_ends_and_the_middle_of_a_sweep() {
+        assert_eq!(first_middle_last(&[0.1, 0.2, 0.3, 0.4, 0.5]), [0.1, 0.3, 0.5]);
+        assert_eq!(first_middle_last(&[0.1, 0.5]), [0.1, 0.5]);
+        assert_eq!(first_middle_last(&[0.4]), [0.4]);
     }
 
     #[test]

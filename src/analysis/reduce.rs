@@ -44,8 +44,14 @@ impl SuperElementPlace<'_> {
     ///
     /// # Errors
     /// [`Error::Input`], the system's.
-    pub(super) fn write(&self, comm: &Comm, element: &SuperElement, surface: &OuterSurface) -> Result<()> {
-        let write = || self.may_write().and_then(|()| file::write(self.file, element, surface));
+    pub(super) fn write(
+        &self,
+        comm: &Comm,
+        element: &SuperElement,
+        surface: &OuterSurface,
+        basis: Option<&[f32]>,
+    ) -> Result<()> {
+        let write = || self.may_write().and_then(|()| file::write(self.file, element, surface, basis));
         comm.agree(if comm.is_root() { write() } else { Ok(()) })
     }
 
@@ -103,7 +109,7 @@ pub fn reduce(
     let equilibrium_seconds = start.elapsed().as_secs_f64();
     let mut follow = |event| observer.event(Event::Reduction(&event));
     let (element, surface, costs) = model.reduce(comm, &system, &equilibrium, limit, &mut follow)?;
-    place.write(comm, &element, &surface)?;
+    place.write(comm, &element, &surface, None)?;
     Ok(Reduction { element, costs, equilibrium_seconds, seconds: start.elapsed().as_secs_f64() })
 }
 

@@ -234,9 +234,9 @@ impl Run<'_> {
         }
         let ValueResult { modes, count, mut snapshot } = find(self, &equilibrium)?;
         let (pressure, status) = self.structure.contact_fields(&equilibrium.responses);
-        let (pairs, checks) = (checks.pairs, checks.text);
-        let (steps, seconds) = (equilibrium.steps, start.elapsed().as_secs_f64());
-        let value = Value { friction, asked, pairs, checks, steps, pressure, status, modes, count, seconds };
+        let (pairs, checks, steps) = (checks.pairs, checks.text, equilibrium.steps);
+        let value = Value { friction, asked, pairs, checks, steps, pressure, status, modes, count, ..Value::default() };
+        let value = Value { seconds: start.elapsed().as_secs_f64(), ..value };
         if let Some(checkpoint) = &mut self.checkpoint {
             checkpoint.commit(&value, &self.sweep, snapshot.as_mut())?;
             self.fields.folder.into_iter().for_each(Folder::keep);

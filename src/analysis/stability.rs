@@ -1,5 +1,7 @@
 //! Complex modes over the friction coefficient, followed from one value to the next.
 
+use std::path::{Path, PathBuf};
+
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
@@ -14,10 +16,11 @@ use crate::structure::Structure;
 use crate::tracking::track;
 use crate::{Error, Result};
 
+use super::certificate::certify;
 use super::explain::explain;
 use super::family::{FrictionFamily, Snapshot, Solutions, Vectors, tracking_options, widened};
 use super::mode_data::{UnstableMode, mode_data};
-use super::observer::Observer;
+use super::observer::{Event, Observer};
 use super::run::{self, Job, Output, Run, ValueResult};
 use super::sweep::Sweep;
 
@@ -35,6 +38,8 @@ pub struct StabilityOptions {
     pub branches: bool,
     /// Whether a full model is reduced to a super-element at each value, whose modes are found.
     pub reduce_each: bool,
+    /// The model of a super-element, with which its equilibria and modes are compared at the values asked for.
+    pub certify: Option<PathBuf>,
     /// Where results are written; nowhere if none.
     pub output: Option<Output>,
 }
@@ -48,6 +53,7 @@ impl Default for StabilityOptions {
             criterion: None,
             branches: true,
             reduce_each: false,
+            certify: None,
             output: None,
         }
     }
@@ -82,10 +88,13 @@ pub fn stability(
     let results = structure.on_its_ranks(comm, |comm| {
         let job = options.job(structure)?;
         let follows = options.follows(job.values.len());
-        run::run(comm, structure, &job, options.output.as_ref(), observer, |run| match (options.reduce_each, follows) {
-            (false, true) => follow(run),
-            (false, false) => run.each(modes_at),
-            (true, _) => run.each(reduced_modes_at),
+        run::run(comm, structure, &job, options.output.as_ref(), observer, |run| {
+            match (options.reduce_each, follows) {
+                (false, true) => follow(run),
+                (false, false) => run.each(modes_at),
+                (true, _) => run.each(reduced_modes_at),
+            }?;
+            options.certify.as_ref().map_or(Ok(()), |model| certify_values(run, model))
         })
     })?;
     Ok(results.unwrap_or_default())
@@ -102,6 +111,11 @@ impl StabilityOptions {
         if self.reduce_each && matches!(structure, Structure::Reduced(_)) {
             return Err(Error::input("a super-element cannot be reduced again: --reduce-each is for models"));
         }
+        match (&self.certify, structure) {
+            (Some(_), Structure::Reduced(reduced)) => reduced.require_basis()?,
+            (Some(_), Structure::Full(_)) => return Err(Error::input("--certify is for Galerkin super-elements")),
+            (None, _) => {}
+        }
         structure.require_mass()?;
         let values = structure.friction_values(self.friction_values.as_deref())?;
         let follows = self.follows(values.len());
@@ -117,6 +131,17 @@ impl StabilityOptions {
             summary: summary::stability,
         })
     }
+}
+
+/// Compares a super-element at the values asked for with its full model.
+fn certify_values(run: &mut Run, model: &Path) -> Result<()> {
+    run.observer.event(Event::Stage("comparing with the full model"));
+    let (values, band) = (run.values(), run.results.about.band);
+    for certificate in certify(run.system.k.comm(), run.structure, model, &values, band)? {
+        let own = run.results.values.iter_mut().find(|value| value.friction == certificate.friction);
+        own.into_iter().for_each(|value| value.certificate = Some(certificate.clone()));
+    }
+    Ok(())
 }
 
 /// Values along which modes are followed rise or fall; others are taken as they come.

@@ -19,6 +19,7 @@ use crate::results::{Results, file};
 use crate::structure::{FullModel, Structure, StructureOptions};
 use crate::{Error, Result};
 
+use super::galerkin::{GalerkinOptions, first_middle_last, reduce_galerkin};
 use super::observer::{Event, Observer};
 use super::reduce::{ReduceOptions, reduce, with_reference_contacts};
 use super::run::Output;
@@ -84,6 +85,8 @@ struct Part {
 enum Work {
     /// Writes the super-element for all values.
     Reduce,
+    /// Writes the Galerkin super-element.
+    ReduceGalerkin,
     /// Analyses a model or super-element.
     Stability { model: PathBuf, contacts: Option<usize>, reduce_each: bool, branches: bool },
 }
@@ -127,15 +130,20 @@ impl<'a> Plan<'a> {
         let one = self.part(&one, &format!("super-element-{n}"), stability(&self.element(), None, false, true));
         let each = format!("super-element of {n}, made at each");
         let each = self.part(&each, &format!("super-element-{n}-each"), stability(model, Some(n), true, false));
+        let galerkin = stability(&self.galerkin_element(), None, false, true);
+        let galerkin = self.part("super-element, Galerkin", "galerkin", galerkin);
         let full = self.part("full contact", FULL, stability(model, None, false, true));
-        [full].into_iter().chain(layouts).chain([self.reduction(), one, each]).collect()
+        let elements = [self.reduction(), one, each, self.galerkin_reduction(), galerkin];
+        [full].into_iter().chain(layouts).chain(elements).collect()
     }
 
     fn part(&self, name: &str, product: &str, work: Work) -> Part {
         let values: Vec<String> = self.friction_values.iter().map(f64::to_string).collect();
         let mut options = format!("friction values {}", values.join(" "));
-        if matches!(&work, Work::Stability { model, .. } if *model != self.options.model) {
-            options += &format!(", super-element of friction coefficient {}", self.reduced_at);
+        if let Work::Stability { model, .. } = &work {
+            let made = [self.reduction(), self.galerkin_reduction()];
+            let own = made.iter().find(|part| part.product == file_name(model));
+            options += &own.map_or_else(String::new, |part| format!(", super-element of {}", part.options));
         }
         Part { name: name.into(), product: product.into(), options, work }
     }
@@ -143,10 +151,30 @@ impl<'a> Plan<'a> {
     fn reduction(&self) -> Part {
         Part {
             name: format!("making the super-element of {}", self.options.super_element),
-            product: self.element().file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            product: file_name(&self.element()),
             options: format!("friction coefficient {}", self.reduced_at),
             work: Work::Reduce,
         }
+    }
+
+    fn galerkin_reduction(&self) -> Part {
+        let samples: Vec<String> = self.samples().iter().map(f64::to_string).collect();
+        Part {
+            name: "making the Galerkin super-element".into(),
+            product: file_name(&self.galerkin_element()),
+            options: format!("modes at {}", samples.join(" ")),
+            work: Work::ReduceGalerkin,
+        }
+    }
+
+    /// Friction values at which the Galerkin super-element has its modes.
+    fn samples(&self) -> Vec<f64> {
+        first_middle_last(&self.friction_values)
+    }
+
+    /// The file of the Galerkin super-element.
+    fn galerkin_element(&self) -> PathBuf {
+        self.options.folder.join("brake-galerkin.se.h5")
     }
 
     /// The file of the super-element for all values.
@@ -166,6 +194,7 @@ impl<'a> Plan<'a> {
         let start = Instant::now();
         match &part.work {
             Work::Reduce => self.reduce(comm, observer)?,
+            Work::ReduceGalerkin => self.reduce_galerkin(comm, observer)?,
             Work::Stability { .. } => self.analyse(comm, part, observer)?,
         }
         let seconds = start.elapsed().as_secs_f64();
@@ -178,6 +207,13 @@ impl<'a> Plan<'a> {
         let model = with_reference_contacts(model, Some(self.options.super_element))?;
         let (friction, file) = (Some(self.reduced_at), self.element());
         reduce(comm, &model, &ReduceOptions { friction, limit: None, file, force: true }, observer).map(|_| ())
+    }
+
+    fn reduce_galerkin(&self, comm: &Comm, observer: &mut dyn Observer) -> Result<()> {
+        let model = FullModel::read(comm, &self.options.model)?;
+        let options =
+            GalerkinOptions { force: true, ..GalerkinOptions::over(&self.samples(), self.galerkin_element()) };
+        reduce_galerkin(comm, &model, &options, observer).map(|_| ())
     }
 
     fn analyse(&self, comm: &Comm, part: &Part, observer: &mut dyn Observer) -> Result<()> {
@@ -196,6 +232,7 @@ impl<'a> Plan<'a> {
             criterion: None,
             branches: *branches,
             reduce_each: *reduce_each,
+            certify: None,
             output: Some(output),
         };
         let results = stability(comm, &structure, &options, observer)?;
@@ -214,8 +251,10 @@ impl<'a> Plan<'a> {
             let results = self.read(&part.product)?;
             let n_contacts = n_contacts(&results);
             let n_dofs = if *reduce_each { n_coordinates } else { results.about.n_dofs };
-            let sizes = Sizes { n_contacts, n_retained: Some(2 * n_contacts + self.n_loaded), n_dofs };
-            let making = record.parts.get(&self.reduction().product).filter(|_| *model != self.options.model);
+            let has_all_points = *model == self.galerkin_element();
+            let n_retained = (!has_all_points).then_some(2 * n_contacts + self.n_loaded);
+            let sizes = Sizes { n_contacts, n_retained, n_dofs };
+            let making = record.parts.get(&file_name(model));
             study.add(&part.name, [&reference, &results], sizes, making.map(|done| done.seconds))?;
         }
         Ok(study)
@@ -224,6 +263,10 @@ impl<'a> Plan<'a> {
     fn read(&self, product: &str) -> Result<Results> {
         file::read(&self.options.folder.join(product).join(RESULTS))
     }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// What is made.
@@ -263,7 +306,7 @@ impl Record {
 
     fn has(&self, part: &Part, identity: &str, place: &Path) -> bool {
         let file = match part.work {
-            Work::Reduce => place.join(&part.product),
+            Work::Reduce | Work::ReduceGalerkin => place.join(&part.product),
             Work::Stability { .. } => place.join(&part.product).join(RESULTS),
         };
         self.parts.get(&part.product).is_some_and(|done| done.identity == identity) && file.is_file()
@@ -292,6 +335,33 @@ mod tests {
         assert!(record.has(&part, "model 1", place.path()) && !record.has(&part, "model 2", place.path()));
         record.write(place.path()).unwrap();
         assert!(Record::open(place.path()).unwrap().has(&part, "model 1", place.path()));
+    }
+
+    /// A super-element and what is computed with it are made again where its samples change, the rest is not.
+    #[test]
+    fn what_depends_on_a_super_element_depends_on_how_it_is_made() {
+        let options = StudyOptions {
+            model: "brake.toml".into(),
+            friction_values: None,
+            layouts: vec![4],
+            super_element: 8,
+            reduced_at: None,
+            folder: "study".into(),
+            identity: String::new(),
+        };
+        let parts = |reduced_at: f64| {
+            let friction_values = vec![0.2, 0.3, 0.5];
+            Plan { options: &options, friction_values, reduced_at, n_loaded: 1, identity: String::new() }.parts()
+        };
+        let changed: Vec<String> = parts(0.4)
+            .into_iter()
+            .zip(parts(0.5))
+            .filter(|(a, b)| a.options != b.options)
+            .map(|(a, _)| a.product)
+            .collect();
+        assert_eq!(changed, ["brake-8.se.h5", "super-element-8"]);
+        let of = |product: &str| parts(0.4).into_iter().find(|part| part.product == product).unwrap().options;
+        assert!(of("galerkin").ends_with("super-element of modes at 0.2 0.3 0.5"), "{}", of("galerkin"));
     }
 
     #[test]

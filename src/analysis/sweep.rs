@@ -136,6 +136,16 @@ impl<'a> Sweep<'a> {
         look(&self.linearised.problem(self.system, contacts, tangent))
     }
 
+    /// The stiffness about an equilibrium without friction's coupling. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn symmetric_stiffness(&mut self, equilibrium: &Equilibrium) -> Result<Matrix> {
+        let mut stiffness = self.linearise(equilibrium, |problem| problem.symmetric_stiffness())?;
+        stiffness.declare_symmetric()?;
+        Ok(stiffness)
+    }
+
     /// Goes about it as for a large structure, whatever the size: with blocks of right-hand sides
     /// ([`EigenOptions::always_blocked`]) and factors in single precision. Collective.
     pub fn solve_as_large(&mut self) {

@@ -62,7 +62,7 @@ fn pressed_by(force: f64) -> Structure {
         parts: vec!["blocks".into()],
         basis: DMatrix::<f32>::identity(3 * N, 6 * N).as_slice().to_vec(),
     };
-    Structure::Reduced(Box::new(ReducedModel::new("blocks.se.h5".as_ref(), element, surface, None, 1.0)))
+    Structure::Reduced(Box::new(ReducedModel::new("blocks.se.h5".as_ref(), element, surface)))
 }
 
 /// Counts values, and asks to stop after some of them.

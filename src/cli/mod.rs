@@ -41,7 +41,7 @@ use crate::native::{Comm, Session, all_libraries, unused_options};
 use crate::output::json::{self, Failed, Warned};
 use crate::output::text::printable;
 use crate::results::Results;
-use crate::structure::StructureOptions;
+use crate::structure::{PartDamping, StructureOptions};
 use crate::{Error, Result};
 use values::Values;
 
@@ -189,6 +189,9 @@ struct Run {
     /// The normal stiffness of the swept contacts as a multiple of the model's
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::factor, allow_hyphen_values = true)]
     contact_stiffness: f64,
+    /// Of a super-element: another Rayleigh damping of a part, alpha in 1/s and beta in s; may be given for several parts
+    #[arg(long, value_name = "PART=ALPHA,BETA", value_parser = values::damping)]
+    damping: Vec<PartDamping>,
     /// Folder of the results (default: the model file's name with the command's)
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -208,6 +211,7 @@ impl Run {
             law: self.law.clone(),
             load_factor: self.pressure,
             contact_stiffness: self.contact_stiffness,
+            damping: self.damping.clone(),
         }
     }
 

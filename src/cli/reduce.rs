@@ -6,7 +6,8 @@ use clap::Args;
 
 use crate::Result;
 use crate::analysis::{
-    GalerkinOptions, GalerkinReduction, ReduceOptions, Reduction, reduce, reduce_galerkin, with_reference_contacts,
+    GalerkinOptions, GalerkinReduction, ReduceOptions, Reduction, first_middle_last, reduce, reduce_galerkin,
+    with_reference_contacts,
 };
 use crate::output::super_element::{GalerkinDocument, ReductionDocument};
 use crate::structure::FullModel;
@@ -38,6 +39,10 @@ pub struct Reduce {
     /// the first, the middle and the last of the model file's sweep)
     #[arg(long, value_name = "MU", value_parser = values::parse, requires = "galerkin")]
     samples: Option<Values>,
+    /// With --galerkin: keep the basis in the file (four bytes a coordinate and displacement of the mesh), so that
+    /// `squeal stability --certify` can compare results with the full model
+    #[arg(long, requires = "galerkin")]
+    keep_basis: bool,
     /// The super-element's file (default: the model file's name with .se.h5)
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -70,7 +75,11 @@ fn run_galerkin(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let model = FullModel::read(comm, &arguments.model)?;
     let all = model.friction_values(arguments.samples.as_ref().map(|values| &values.0[..]))?;
     let samples = if arguments.samples.is_some() { all } else { first_middle_last(&all) };
-    let options = GalerkinOptions { force: arguments.force, ..GalerkinOptions::over(&samples, arguments.file()) };
+    let options = GalerkinOptions {
+        force: arguments.force,
+        keep_basis: arguments.keep_basis,
+        ..GalerkinOptions::over(&samples, arguments.file())
+    };
     let mut watch = Watch::new(shell, false);
     let GalerkinReduction { element, report, certificates } = reduce_galerkin(comm, &model, &options, &mut watch)?;
     watch.finish();
@@ -78,29 +87,9 @@ fn run_galerkin(shell: &Shell, arguments: &Reduce) -> Result<()> {
     shell.print(&document.text(), &document)
 }
 
-/// The first, the middle and the last value of a list, each once.
-fn first_middle_last(values: &[f64]) -> Vec<f64> {
-    let n = values.len();
-    let mut places = vec![0, n / 2, n.saturating_sub(1)];
-    places.dedup();
-    places.into_iter().filter_map(|at| values.get(at).copied()).collect()
-}
-
 impl Reduce {
     fn file(&self) -> PathBuf {
         let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
         self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.se.h5")))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn samples_are_the_ends_and_the_middle_of_a_sweep() {
-        assert_eq!(first_middle_last(&[0.1, 0.2, 0.3, 0.4, 0.5]), [0.1, 0.3, 0.5]);
-        assert_eq!(first_middle_last(&[0.1, 0.5]), [0.1, 0.5]);
-        assert_eq!(first_middle_last(&[0.4]), [0.4]);
     }
 }

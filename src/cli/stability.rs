@@ -1,5 +1,7 @@
 //! `squeal stability`: complex modes for one friction coefficient or a sweep.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use crate::Result;
@@ -25,6 +27,10 @@ pub struct Stability {
     /// -0.001 is -0.1 %), or growth_rate:X for growth rates above X in 1/s
     #[arg(long, value_name = "CRITERION", value_parser = values::criterion)]
     unstable: Option<InstabilityCriterion>,
+    /// Of a Galerkin super-element: compare its equilibria and modes with its full model, MODEL, by the residuals of the
+    /// full model's equations, and correct the eigenvalues; the file needs its basis (reduce --keep-basis)
+    #[arg(long, value_name = "MODEL")]
+    certify: Option<PathBuf>,
     /// Reduce the model to a super-element at each friction coefficient, and find the modes of that
     #[arg(long)]
     reduce_each: bool,
@@ -43,6 +49,7 @@ pub fn run(shell: &Shell, arguments: &Stability) -> Result<()> {
         criterion: arguments.unstable,
         branches: !arguments.no_branches,
         reduce_each: arguments.reduce_each,
+        certify: arguments.certify.clone(),
         output: Some(run.output(shell, "stability")),
     };
     let mut watch = Watch::with_signals(shell, run.verbose)?;

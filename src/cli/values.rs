@@ -2,7 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use crate::model::{InstabilityCriterion, LARGEST_FRICTION, NormalLaw, UnitSystem, spaced};
+use crate::model::{InstabilityCriterion, LARGEST_FRICTION, NormalLaw, Rayleigh, UnitSystem, spaced};
+use crate::structure::PartDamping;
 
 /// Values of friction or of any parameter, no two of them the same.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,6 +111,19 @@ pub fn law(text: &str) -> Result<NormalLaw, String> {
     }
 }
 
+/// `PART=ALPHA,BETA`, coefficients of 0 or more.
+pub fn damping(text: &str) -> Result<PartDamping, String> {
+    let wanted = "expected PART=ALPHA,BETA, such as disc=5,1e-7 (1/s and s)";
+    // Names may have an equals sign.
+    let (part, numbers) = text.rsplit_once('=').ok_or(wanted)?;
+    let (alpha, beta) = numbers.split_once(',').ok_or(wanted)?;
+    let rayleigh = Rayleigh { alpha: number(alpha)?, beta: number(beta)? };
+    if rayleigh.alpha < 0.0 || rayleigh.beta < 0.0 {
+        return Err(format!("the damping {numbers} is negative"));
+    }
+    Ok(PartDamping { part: part.into(), rayleigh })
+}
+
 /// Factors beyond these are slips of the pen: rounding errors are all that their equilibria have.
 const FACTORS: RangeInclusive<f64> = 1e-6..=1e6;
 
@@ -140,6 +154,15 @@ mod tests {
         }
         assert!(band("6000:0").is_err() && band("0:0").is_err() && band("5").is_err());
         assert_eq!(band("0:6000").unwrap(), [0.0, 6000.0]);
+    }
+
+    #[test]
+    fn damping_has_a_part_and_two_coefficients() {
+        let Ok(PartDamping { part, rayleigh }) = damping("pad=left=5,1e-7") else { panic!("it is right") };
+        assert_eq!((part.as_str(), rayleigh), ("pad=left", Rayleigh { alpha: 5.0, beta: 1e-7 }));
+        for text in ["disc", "disc=5", "disc=a,1", "disc=-1,0"] {
+            assert!(damping(text).is_err(), "{text}");
+        }
     }
 
     #[test]

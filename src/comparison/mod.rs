@@ -22,7 +22,7 @@ mod study;
 pub use common_points::CommonPoints;
 pub use instabilities::CurvePoint;
 pub use mac::{MacTable, groups_of_near, mac_with_span};
-pub use study::{Errors, Sizes, StudiedModel, Study, n_contacts};
+pub use study::{Errors, Onset, Sizes, StudiedModel, Study, n_contacts};
 
 use num_complex::Complex64;
 use serde::Serialize;

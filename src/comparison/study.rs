@@ -1,11 +1,14 @@
 //! A brake in several models: what each costs, and how far it is from the reference.
 
+use std::f64::consts::TAU;
+
 use serde::Serialize;
 
 use super::instabilities::{CurvePoint, lowest, spurious};
 use super::{Comparison, ComparisonAtValue, ModePair, compare};
 use crate::Result;
 use crate::results::{About, Results};
+use crate::tracking::Hopf;
 
 /// A reference and other models of the same brake.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -44,12 +47,24 @@ pub struct StudiedModel {
     /// What it cost to make, s; none where nothing is made beforehand.
     #[serde(rename = "seconds_to_make")]
     pub making_seconds: Option<f64>,
+    /// Where modes become unstable, by friction, as far as they were followed.
+    pub onsets: Vec<Onset>,
     /// The reference's instabilities in this model, as far as they are found.
     pub curves: Vec<Vec<CurvePoint>>,
     /// Errors at each value; of the reference none.
     pub errors: Vec<Errors>,
     /// Modes that grow here alone.
     pub spurious: Vec<CurvePoint>,
+}
+
+/// Where a mode becomes unstable as friction rises.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Onset {
+    /// Friction coefficient of the swept pairs.
+    pub friction: f64,
+    /// Hz.
+    #[serde(rename = "frequency_hz")]
+    pub frequency: f64,
 }
 
 /// How large a model is.
@@ -105,6 +120,7 @@ impl Study {
             name: "full contact".into(),
             sizes: Sizes { n_contacts: n_contacts(results), n_retained: None, n_dofs },
             seconds: seconds(results),
+            onsets: onsets(results),
             curves: lowest(results, INSTABILITIES).iter().map(|one| one.of(results)).collect(),
             ..StudiedModel::default()
         };
@@ -128,6 +144,7 @@ impl Study {
             sizes,
             seconds: seconds(results),
             making_seconds,
+            onsets: onsets(results),
             curves: lowest(reference, INSTABILITIES).iter().map(|one| one.in_other(&comparison)).collect(),
             errors: errors(&comparison),
             spurious: spurious(&comparison),
@@ -149,6 +166,12 @@ impl Study {
 /// Contact points of the sliding pairs.
 pub fn n_contacts(results: &Results) -> usize {
     results.about.pairs.iter().filter(|pair| pair.sliding).map(|pair| pair.n_points).sum()
+}
+
+fn onsets(results: &Results) -> Vec<Onset> {
+    let onset = |hopf: &Hopf| Onset { friction: hopf.value, frequency: hopf.omega / TAU };
+    let all = results.diagram.iter().flat_map(|diagram| &diagram.hopf);
+    all.filter(|hopf| hopf.onset).map(onset).collect()
 }
 
 fn seconds(results: &Results) -> f64 {

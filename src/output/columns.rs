@@ -10,7 +10,7 @@ use serde_json::{Map, Value as Json};
 
 use super::branches::becomes;
 use crate::equilibrium::{PairForces, Step};
-use crate::results::{Kind, ModeData, Source};
+use crate::results::{CertifiedMode, Kind, ModeData, Source};
 use crate::stability::Share;
 use crate::tracking::{Hopf, Point};
 
@@ -39,6 +39,31 @@ pub struct ModeRow {
     pub backward_error: f64,
     /// Whether it grows more than rounding explains.
     pub unstable: bool,
+}
+
+/// A mode of a super-element compared with the full model.
+#[derive(Default, Serialize)]
+pub struct CertifiedRow {
+    mode: usize,
+    frequency_hz: f64,
+    growth_rate_per_s: f64,
+    corrected_frequency_hz: f64,
+    corrected_growth_rate_per_s: f64,
+    backward_error_of_full_model: f64,
+}
+
+impl CertifiedRow {
+    /// A mode by its number.
+    pub fn of(mode: usize, own: &CertifiedMode) -> CertifiedRow {
+        CertifiedRow {
+            mode,
+            frequency_hz: own.lambda.im / TAU,
+            growth_rate_per_s: own.lambda.re,
+            corrected_frequency_hz: own.corrected.im / TAU,
+            corrected_growth_rate_per_s: own.corrected.re,
+            backward_error_of_full_model: own.backward_error,
+        }
+    }
 }
 
 /// What a contact pair carries.

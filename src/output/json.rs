@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::columns::{ContactRow, HopfRow, ModeRow, PointRow, SourceRow};
 use super::sweep_text;
 use crate::equilibrium::Step;
-use crate::results::{About, ModeData, Results, Status, Value};
+use crate::results::{About, Certificate, ModeData, Results, Status, Value};
 use crate::stability::Count;
 use crate::tracking::Branch;
 
@@ -42,6 +42,9 @@ pub struct ValueDocument<'a> {
     checks: Vec<&'a str>,
     steps: &'a [Step],
     count: Option<Count>,
+    /// Of a super-element that was compared with its full model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certificate: Option<&'a Certificate>,
     modes: Vec<ModeDocument<'a>>,
 }
 
@@ -100,6 +103,7 @@ impl<'a> ValueDocument<'a> {
             checks: value.checks.lines().collect(),
             steps: &value.steps,
             count: value.count,
+            certificate: value.certificate.as_ref(),
             modes: (1..).zip(&value.modes).map(mode).collect(),
         }
     }

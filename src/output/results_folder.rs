@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::columns::{self, AtFriction, ContactRow, HopfRow, IterationRow, ModeRow, ModeSourceRow, SourceRow};
+use super::columns::{
+    self, AtFriction, CertifiedRow, ContactRow, HopfRow, IterationRow, ModeRow, ModeSourceRow, SourceRow,
+};
 use super::folder::Folder;
 use super::{branches, details};
 use crate::Result;
@@ -48,6 +50,9 @@ fn write_modes(folder: &Folder, results: &Results) -> Result<()> {
     if results.modes().any(|(_, _, mode)| !mode.sources.is_empty()) {
         folder.write("explained.csv", |out| columns::write_csv(out, sources(results)))?;
     }
+    if results.asked().any(|value| value.certificate.is_some()) {
+        folder.write("certified.csv", |out| columns::write_csv(out, certified(results)))?;
+    }
     let Some(diagram) = &results.diagram else { return Ok(()) };
     write_branches(folder, diagram, results.about.band, "friction")
 }
@@ -65,6 +70,15 @@ pub fn write_branches(folder: &Folder, diagram: &Diagram, band: [f64; 2], parame
 
 fn modes(results: &Results) -> impl Iterator<Item = AtFriction<ModeRow>> {
     results.modes().map(|(friction, number, mode)| AtFriction { friction, row: ModeRow::of(number, mode) })
+}
+
+fn certified(results: &Results) -> impl Iterator<Item = AtFriction<CertifiedRow>> {
+    results.asked().filter_map(|value| value.certificate.as_ref()).flat_map(|certificate| {
+        let numbered = (1..).zip(&certificate.modes);
+        let row =
+            move |(number, mode)| AtFriction { friction: certificate.friction, row: CertifiedRow::of(number, mode) };
+        numbered.map(row)
+    })
 }
 
 fn contact(results: &Results) -> impl Iterator<Item = AtFriction<ContactRow<'_>>> {

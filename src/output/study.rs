@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::columns::write_csv;
 use super::text::{aligned, friction, or_dash, paragraph, plural};
-use crate::comparison::{CurvePoint, Errors, Sizes, StudiedModel, Study};
+use crate::comparison::{CurvePoint, Errors, Onset, Sizes, StudiedModel, Study};
 
 /// Sizes and times, errors, and the instabilities over friction.
 pub fn text(study: &Study) -> String {
@@ -18,7 +18,14 @@ pub fn text(study: &Study) -> String {
         plural(n)
     );
     let curves: String = (0..study.reference.curves.len()).map(|i| curve_text(study, i)).collect();
-    head + "\n" + &sizes_text(study) + "\n" + &errors_text(study) + &curves + &paragraph(&spurious_text(study))
+    head + "\n"
+        + &sizes_text(study)
+        + "\n"
+        + &errors_text(study)
+        + "\n"
+        + &onsets_text(study)
+        + &curves
+        + &paragraph(&spurious_text(study))
 }
 
 fn models(study: &Study) -> impl Iterator<Item = &StudiedModel> {
@@ -43,8 +50,8 @@ fn errors_text(study: &Study) -> String {
     let curves = &study.reference.curves;
     let names: String = curves.iter().map(|curve| format!("\tat {}", name(curve))).collect();
     let heading = format!(
-        "errors over all modes\tfrequency, %\t\tgrowth\tleast\tunmatched\t{}\n\
-         and values\tworst\tmean\trate, %\tMAC\tref.\tmodel{names}",
+        "errors over all modes\tfrequency, %\t\tgrowth\tleast\tunmatched\t\textra{}\n\
+         and values\tworst\tmean\trate, %\tMAC\tref.\tmodel\tunstable{names}",
         "\tunstable".repeat(curves.len())
     );
     let row = |model: &StudiedModel| {
@@ -52,11 +59,22 @@ fn errors_text(study: &Study) -> String {
         let [worst, mean, growth] = [worst_frequency, mean_frequency, worst_growth].map(|error| 100.0 * error);
         let Errors { unmatched_reference, unmatched_model, .. } = Errors::worst(&model.errors);
         let found = (0..curves.len()).map(|i| study.found(i, model)).map(|[found, all]| format!("\t{found} of {all}"));
-        let unmatched = format!("{unmatched_reference}\t{unmatched_model}");
+        let unmatched = format!("{unmatched_reference}\t{unmatched_model}\t{}", model.spurious.len());
         let found = found.collect::<String>();
         format!("{}\t{worst:.4}\t{mean:.4}\t{growth:.3}\t{least_mac:.4}\t{unmatched}{found}", model.name)
     };
     aligned(&heading, study.models.iter().map(row)) + "growth rates relative to the largest of the reference\n"
+}
+
+/// Where modes become unstable, in models whose modes were followed.
+fn onsets_text(study: &Study) -> String {
+    let one = |onset: &Onset| format!("{:.4} ({:.0} Hz)", onset.friction, onset.frequency);
+    let list = |model: &StudiedModel| model.onsets.iter().map(one).collect::<Vec<_>>().join(", ");
+    let followed = models(study).filter(|model| !model.onsets.is_empty());
+    aligned(
+        "followed over friction\tunstable from mu",
+        followed.map(|model| format!("{}\t{}", model.name, list(model))),
+    )
 }
 
 /// An instability by its frequency where it begins to grow.

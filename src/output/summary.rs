@@ -22,6 +22,7 @@ pub fn stability(results: &Results, place: &str) -> String {
         summary += &explain::of_proposed(&about.pairs, friction, &unstable);
     }
     summary += &results.diagram.as_ref().map_or_else(String::new, |diagram| branches::summary(diagram, "friction"));
+    summary += &sweep_text::certificates(results);
     summary + "\n" + &results.costs + &files_text(results, place)
 }
 
@@ -56,10 +57,13 @@ fn files_text(results: &Results, place: &str) -> String {
     let any_equilibrium = results.asked().next().is_some();
     let any_unstable = results.modes().any(|(_, _, mode)| mode.unstable);
     let any_explained = results.modes().any(|(_, _, mode)| !mode.sources.is_empty());
+    let certified = [("certified.csv", "the modes compared with the full model")];
+    let any_certified = results.asked().any(|value| value.certificate.is_some());
     let files = TABLES
         .iter()
         .chain(curves.iter().filter(|_| results.diagram.is_some()))
         .chain(reasons.iter().filter(|_| any_explained))
+        .chain(certified.iter().filter(|_| any_certified))
         .chain(states.iter().filter(|_| any_equilibrium))
         .chain(shapes.iter().filter(|_| any_unstable))
         .copied();

@@ -1,7 +1,7 @@
 //! The sweep as a table for people, and its outcome in a sentence.
 
 use super::text::friction;
-use crate::results::{ModeData, Results, Status, Value, Verdict};
+use crate::results::{Certificate, ModeData, Results, Status, Value, Verdict};
 
 /// A line a friction value: how many modes, which of them grow.
 pub fn sweep(results: &Results) -> String {
@@ -22,6 +22,18 @@ pub fn sweep(results: &Results) -> String {
         text += &format!("{:>8}  {:>5}  {list}{doubt}\n", friction(value.friction), value.modes.len());
     }
     text
+}
+
+/// How well a super-element solves the full model's equations, a line a friction value; empty where that was not asked
+/// for.
+pub fn certificates(results: &Results) -> String {
+    let certificates: Vec<&Certificate> = results.asked().filter_map(|value| value.certificate.as_ref()).collect();
+    if certificates.is_empty() {
+        return String::new();
+    }
+    let line = |certificate: &&Certificate| certificate.text(results.about.criterion) + "\n";
+    let lines: String = certificates.iter().map(line).collect();
+    format!("\ncompared with the full model, by the residuals of its equations:\n{}{lines}", Certificate::HEAD)
 }
 
 /// The verdict: a line that says whether it squeals, where, from which friction on, and a line for each doubt.

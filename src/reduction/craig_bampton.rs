@@ -311,8 +311,11 @@ fn motions(
     Ok(motions)
 }
 
-/// Extends `known = T^T A T` of the first columns of T to all of them, A symmetric, panel by panel.
-pub(super) fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix<f64>> {
+/// Extends `known = T^T A T` of the first columns of T to all of them, A symmetric, panel by panel. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix<f64>> {
     let (n, done) = (basis.n_columns(), known.nrows());
     let mut product = known.resize(n, n, 0.0);
     for first in (done..n).step_by(PANEL) {

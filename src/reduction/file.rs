@@ -21,6 +21,7 @@
 //! surface/triangles n_t x 3
 //! surface/part      n_t         index into the parts
 //! surface/basis     n x 3 n_s   displacements of the corners for a unit of each coordinate, single precision
+//! basis             n x 3 n_n   displacements of all nodes of the mesh, single precision; only where that was asked for
 //! ```
 //!
 //! Texts are arrays of bytes, UTF-8; all arrays are checksummed. The file appears when it is complete.
@@ -47,6 +48,8 @@ const FORMAT: Format =
 
 /// The name of the matrix that only some have.
 const STRUCTURAL_DAMPING: &str = "structural_damping";
+/// The basis by nodes of the mesh, which only some have.
+const BASIS: &str = "basis";
 /// The matrices of the parts, one after the other.
 const PART_MASSES: &str = "part_masses";
 const PART_STIFFNESSES: &str = "part_stiffnesses";
@@ -75,12 +78,30 @@ pub fn is_super_element(path: &Path) -> bool {
     hdf::is_of(path, &FORMAT)
 }
 
-/// Writes a super-element with its surface. Not collective.
+/// Writes a super-element with its surface, and with its basis by nodes of the mesh where there is one. Not collective.
 ///
 /// # Errors
 /// The system's and HDF5's, with the path.
-pub fn write(path: &Path, element: &SuperElement, surface: &OuterSurface) -> Result<()> {
-    hdf::create(path, &FORMAT, |file| write_body(file, element, surface))
+pub fn write(path: &Path, element: &SuperElement, surface: &OuterSurface, basis: Option<&[f32]>) -> Result<()> {
+    hdf::create(path, &FORMAT, |file| {
+        write_body(file, element, surface)?;
+        let width = basis.map_or(0, <[f32]>::len) / element.n_coordinates().max(1);
+        basis.map_or(Ok(()), |basis| table(file, BASIS, width, basis))
+    })
+}
+
+/// Whether a file has the basis of its super-element. Not collective.
+pub fn has_basis(path: &Path) -> bool {
+    hdf::open(path, &FORMAT).is_ok_and(|file| file.link_exists(BASIS))
+}
+
+/// Reads the basis of a super-element by nodes of the mesh, one column after the other. Not collective.
+///
+/// # Errors
+/// [`crate::Error::Input`] where the file is none, is of another version, or has no basis.
+pub fn read_basis(path: &Path) -> Result<Vec<f32>> {
+    let file = hdf::open(path, &FORMAT)?;
+    values(&file, BASIS).map_err(|reason| hdf::damaged(path, &FORMAT, reason))
 }
 
 fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hdf5::Result<()> {

@@ -6,6 +6,7 @@
 //!         \-> ParaView: shapes that move
 //! ```
 
+mod certificate;
 pub mod comparison_plot;
 pub mod data;
 pub mod drawing;

@@ -7,6 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
+use super::certificate;
 use super::data::Data;
 use super::findings::{Findings, Instability};
 use super::model_section;
@@ -307,6 +308,7 @@ fn checks_section(findings: &Findings, figures: &[Figure]) -> Markup {
             (plot(figures, "convergence"))
             h3 { "Modes: their number and accuracy" }
             (counts(findings))
+            (certificate::section(findings))
         }
     }
 }

@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::model::InstabilityCriterion;
 use crate::stability::RIGID_RATE;
 
 /// Equilibrium and modes of a super-element at a friction value, compared with the full model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
     /// Friction coefficient of the swept pairs.
     pub friction: f64,
@@ -20,21 +20,14 @@ pub struct Certificate {
 }
 
 /// A mode of a super-element.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CertifiedMode {
     /// Its eigenvalue, 1/s.
-    #[serde(serialize_with = "pair")]
     pub lambda: Complex64,
     /// That of the full model, to first order, 1/s.
-    #[serde(serialize_with = "pair")]
     pub corrected: Complex64,
     /// Backward error against the full model.
     pub backward_error: f64,
-}
-
-/// Real and imaginary part.
-fn pair<S: serde::Serializer>(z: &Complex64, serializer: S) -> Result<S::Ok, S::Error> {
-    [z.re, z.im].serialize(serializer)
 }
 
 impl Certificate {

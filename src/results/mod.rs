@@ -211,6 +211,10 @@ pub struct Value {
     pub modes: Vec<ModeData>,
     /// The check of their number.
     pub count: Option<Count>,
+    /// Of a super-element: how well its equilibrium and modes solve the full model's equations, where that was asked
+    /// for.
+    #[serde(default)]
+    pub certificate: Option<Certificate>,
     /// Wall-clock time, s.
     pub seconds: f64,
 }

@@ -186,6 +186,7 @@ fn value(mu: f64, asked: bool, surface: &Surface, contact: &ContactFaces) -> Val
         pressure,
         count: Some(Count { below: 6000.0, expected: modes.len(), found: modes.len() }),
         modes,
+        certificate: None,
         seconds: 1.2,
     }
 }

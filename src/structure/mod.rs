@@ -18,6 +18,7 @@ mod families;
 mod files;
 mod free_motions;
 mod full;
+pub mod nodal_basis;
 pub mod plausibility;
 mod ranked;
 mod reduced;
@@ -45,7 +46,7 @@ use crate::assembly::{Prestress, System};
 use crate::contact::{Interface, Response};
 use crate::equilibrium::Equilibrium;
 use crate::hdf::is_hdf5;
-use crate::model::{InstabilityCriterion, NormalLaw};
+use crate::model::{InstabilityCriterion, NormalLaw, Rayleigh};
 use crate::native::Comm;
 use crate::results::{About, ContactFaces, Pair};
 use crate::{Error, Result};
@@ -69,12 +70,23 @@ pub struct StructureOptions {
     pub load_factor: f64,
     /// A factor on the normal stiffness of the swept pairs.
     pub contact_stiffness: f64,
+    /// Of a super-element: the Rayleigh damping of some parts.
+    pub damping: Vec<PartDamping>,
+}
+
+/// Another damping of a part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartDamping {
+    /// Its name.
+    pub part: String,
+    /// The damping.
+    pub rayleigh: Rayleigh,
 }
 
 impl Default for StructureOptions {
     /// The structure as its file has it.
     fn default() -> Self {
-        StructureOptions { contacts: None, law: None, load_factor: 1.0, contact_stiffness: 1.0 }
+        StructureOptions { contacts: None, law: None, load_factor: 1.0, contact_stiffness: 1.0, damping: Vec::new() }
     }
 }
 
@@ -99,9 +111,9 @@ impl Structure {
         if is_hdf5(path) {
             return Ok(Structure::Reduced(Box::new(ReducedModel::read(comm, path, options)?)));
         }
-        if options.law.is_some() || options.load_factor != 1.0 {
-            let what = "--law and --pressure are for super-elements";
-            return Err(Error::input(format!("{what}; {} is a model, which has both in its file", path.display())));
+        if options.law.is_some() || options.load_factor != 1.0 || !options.damping.is_empty() {
+            let what = "--law, --pressure and --damping are for super-elements";
+            return Err(Error::input(format!("{what}; {} is a model, which has them in its file", path.display())));
         }
         let mut full = FullModel::read_with_contacts(comm, path, options.contacts)?;
         full.interface.scale_contact_stiffness(options.contact_stiffness);
@@ -266,7 +278,7 @@ impl Structure {
                 full.require_no_prestress()?;
                 let limit = full.reduction_limit();
                 let (element, surface, _) = full.reduce(system.k.comm(), system, equilibrium, limit, &mut |_| ())?;
-                let reduced = ReducedModel::new(&full.model.file, element, surface, None, 1.0);
+                let reduced = ReducedModel::new(&full.model.file, element, surface);
                 Ok(Structure::Reduced(Box::new(reduced)))
             }
             Structure::Reduced(_) => {

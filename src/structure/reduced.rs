@@ -4,15 +4,14 @@ use std::path::{Path, PathBuf};
 
 use crate::assembly::System;
 use crate::contact::{Interface, Response};
-use crate::model::NormalLaw;
-use crate::native::Comm;
+use crate::native::{Block, Comm};
 use crate::reduction::file;
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::SuperElement;
 use crate::results::{About, ContactFaces, Part};
 use crate::{Error, Result};
 
-use super::{StructureOptions, contact_surface, digest, pairs};
+use super::{FullModel, PartDamping, StructureOptions, contact_surface, digest, nodal_basis, pairs};
 
 /// A super-element under a law and loads.
 pub struct ReducedModel {
@@ -23,7 +22,8 @@ pub struct ReducedModel {
     pub surface: OuterSurface,
     /// Contact points under the law.
     pub interface: Interface,
-    load_factor: f64,
+    /// How they differ from the file.
+    options: StructureOptions,
 }
 
 impl ReducedModel {
@@ -38,28 +38,60 @@ impl ReducedModel {
         }
         // The first rank alone draws the surface.
         let bare = || Ok((file::read_element(path)?, OuterSurface::default()));
-        let (element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
+        let (mut element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
         if element.is_galerkin() && options.law.is_some() {
             let what =
                 "--law is for node-to-node contacts, and this is a Galerkin super-element, whose contact points have";
             let advice = "the laws of the model. Multiply their stiffness by --contact-stiffness";
             return Err(Error::input(format!("{}: {what} {advice}", path.display())));
         }
-        let mut reduced = ReducedModel::new(path, element, surface, options.law.clone(), options.load_factor);
-        reduced.interface.scale_contact_stiffness(options.contact_stiffness);
-        Ok(reduced)
+        for PartDamping { part, rayleigh } in &options.damping {
+            element.set_rayleigh(part, *rayleigh)?;
+        }
+        let mut interface = element.interface(options.law.clone());
+        interface.scale_contact_stiffness(options.contact_stiffness);
+        Ok(ReducedModel { place: path.to_owned(), element, surface, interface, options: options.clone() })
     }
 
-    /// A super-element under a law, its own if none is given, and a multiple of its loads.
-    pub fn new(
-        file: &Path,
-        element: SuperElement,
-        surface: OuterSurface,
-        law: Option<NormalLaw>,
-        load_factor: f64,
-    ) -> ReducedModel {
-        let interface = element.interface(law);
-        ReducedModel { place: file.to_owned(), element, surface, interface, load_factor }
+    /// A super-element as it was made.
+    pub fn new(file: &Path, element: SuperElement, surface: OuterSurface) -> ReducedModel {
+        let (interface, options) = (element.interface(None), StructureOptions::default());
+        ReducedModel { place: file.to_owned(), element, surface, interface, options }
+    }
+
+    /// Refuses a super-element that cannot be compared with its full model.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where its file does not have the basis.
+    pub fn require_basis(&self) -> Result<()> {
+        if file::has_basis(&self.place) {
+            return Ok(());
+        }
+        let what = "the super-element's file has no basis, without which it cannot be compared with its full model";
+        let advice = "Make it again with `squeal reduce --galerkin --keep-basis`";
+        Err(Error::input(format!("{}: {what}. {advice}", self.place.display())))
+    }
+
+    /// The full model of a super-element under the same loads, contact stiffness and damping, and its basis there.
+    /// Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a model that cannot be read, or with another mesh; PETSc's.
+    pub fn full(&self, comm: &Comm, path: &Path) -> Result<(FullModel, System, Block)> {
+        let mut full = FullModel::read(comm, path)?;
+        let [_, mesh] = full.digests(comm)?;
+        let is_other = comm.is_root() && mesh != self.element.origin.mesh_hash;
+        let what = format!("{}: the super-element was made of another mesh", path.display());
+        comm.agree(if is_other { Err(Error::input(what)) } else { Ok(()) })?;
+        full.interface.scale_contact_stiffness(self.options.contact_stiffness);
+        for PartDamping { part, rayleigh } in &self.options.damping {
+            full.model.parts.iter_mut().filter(|own| own.name == *part).for_each(|own| own.rayleigh = *rayleigh);
+        }
+        let mut system = full.assemble(comm, &full.families()?)?;
+        system.load.scale(self.options.load_factor)?;
+        let columns = comm.agree(if comm.is_root() { file::read_basis(&self.place) } else { Ok(Vec::new()) })?;
+        let basis = nodal_basis::distributed(&system, &full.nodes, &columns, self.element.n_coordinates())?;
+        Ok((full, system, basis))
     }
 
     pub(super) fn about(&self, comm: &Comm) -> Result<About> {
@@ -95,7 +127,7 @@ impl ReducedModel {
     }
 
     pub(super) fn assemble(&self, comm: &Comm) -> Result<System> {
-        self.element.assemble(comm, &self.interface, self.load_factor)
+        self.element.assemble(comm, &self.interface, self.options.load_factor)
     }
 
     pub(super) fn contact_faces(&self) -> ContactFaces {

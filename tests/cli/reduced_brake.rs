@@ -90,7 +90,7 @@ fn a_file_that_is_no_super_element_is_refused() {
     file.close().unwrap();
     assert_refused(
         &stability("new.se.h5"),
-        &["is of version 7, this program reads version 4", "again with `squeal reduce`"],
+        &["is of version 7, this program reads version 5", "again with `squeal reduce`"],
     );
 
     std::fs::copy(place.path("brake.se.h5"), place.path("nan.se.h5")).unwrap();
@@ -125,7 +125,7 @@ fn what_a_super_element_does_not_hold_is_refused() {
         finished.err
     );
     let finished = place.run(&["stability", "brake.toml", "--law", "linear:1e9", "--output", "model"]);
-    assert_refused(&finished, &["--law and --pressure are for super-elements"]);
+    assert_refused(&finished, &["--law, --pressure and --damping are for super-elements"]);
 }
 
 #[test]

@@ -86,7 +86,7 @@ fn results_that_have_nothing_in_common_are_refused_on_two_ranks() {
 
 /// A study of two layouts and super-elements.
 const STUDY: [&str; 8] = ["study", "brake.toml", "--friction", "0.2,0.4", "--layouts", "4,8", "--super-element", "8"];
-const PARTS: [&str; 5] = ["full", "contacts-4", "contacts-8", "super-element-8", "super-element-8-each"];
+const PARTS: [&str; 6] = ["full", "contacts-4", "contacts-8", "super-element-8", "super-element-8-each", "galerkin"];
 
 /// When the results of all parts were written.
 fn times(place: &Place) -> Vec<SystemTime> {
@@ -105,8 +105,8 @@ fn a_study_compares_all_models_with_full_contact_and_reuses_files_on_two_ranks()
     );
     let sizes = table(&place, "brake-study/sizes.csv");
     let column = |name: &str| sizes.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();
-    assert_eq!(column("retained_points"), ["", "9", "17", "17", "17"]);
-    assert_eq!(column("contact_points")[1..], ["4", "8", "8", "8"]);
+    assert_eq!(column("retained_points"), ["", "9", "17", "17", "17", ""]);
+    assert_eq!(column("contact_points")[1..5], ["4", "8", "8", "8"]);
     let dofs: Vec<f64> = sizes.iter().map(|row| number(row, "dofs")).collect();
     assert!(dofs[..3].iter().all(|n| *n == dofs[0]) && dofs[3] < dofs[0], "{dofs:?}");
     assert_eq!(dofs[3], dofs[4]);
@@ -116,25 +116,26 @@ fn a_study_compares_all_models_with_full_contact_and_reuses_files_on_two_ranks()
         let own = errors.iter().filter(|row| row["model"].starts_with(model));
         own.map(|row| number(row, "worst_frequency_error")).fold(0.0, f64::max)
     };
-    assert_eq!(errors.len(), 8);
+    assert_eq!(errors.len(), 10);
     assert!(worst("8 contacts") < worst("4 contacts"), "errors fall with the number of contacts");
     let difference = worst("super-element of 8, made at each") - worst("8 contacts");
     assert!(difference.abs() < 1e-5, "a super-element is its layout: {difference}");
+    assert!(worst("super-element, Galerkin") < 1e-6, "its samples are these values");
 
     let before = times(&place);
     let again = done(place.run(&STUDY));
-    assert_eq!(again.err.matches("made before").count(), 6, "{}", again.err);
+    assert_eq!(again.err.matches("made before").count(), 8, "{}", again.err);
     assert!(times(&place) == before && finished.out.ends_with(&again.out), "{}", again.out);
 
     std::fs::remove_dir_all(place.path("brake-study/contacts-4")).unwrap();
     let again = done(place.run_on(2, &STUDY));
-    assert_eq!(again.err.matches("made before").count(), 5, "{}", again.err);
+    assert_eq!(again.err.matches("made before").count(), 7, "{}", again.err);
     let after = times(&place);
     assert!(after[1] > before[1] && after[2..] == before[2..] && after[0] == before[0]);
 
     place.write("brake.toml", swap(&place.read("brake.toml"), "force = [0, 0, -1000]", "force = [0, 0, -1100]"));
     let again = done(place.run(&STUDY));
-    assert_eq!(again.err.matches("begins").count(), 6, "another model: all is made again: {}", again.err);
+    assert_eq!(again.err.matches("begins").count(), 8, "another model: all is made again: {}", again.err);
 }
 
 #[test]

@@ -178,7 +178,7 @@ fn loss_factors_are_in_the_super_element() {
         let path = place.path().join("brake.se.h5");
         let boundary = full.brake.boundary(&comm, &full.system);
         let surface = OuterSurface::new(boundary, &full.brake.mesh.parts, &full.system, &reduced.basis).unwrap();
-        file::write(&path, &element, &surface).unwrap();
+        file::write(&path, &element, &surface, None).unwrap();
         let (read, _) = file::read(&path).unwrap();
         assert!(read.structural_damping.is_some() && read.structural_damping == element.structural_damping);
         let (_, _, found) = analyse(&comm, &read, None, FRICTION);
@@ -410,7 +410,7 @@ fn a_users_friction_law_acts_in_the_super_element_as_in_its_model() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("blocks.se.h5");
     let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
-    file::write(&path, &element, &surface).unwrap();
+    file::write(&path, &element, &surface, None).unwrap();
     let (read, _) = file::read(&path).unwrap();
     let mut interface = read.interface(None);
     let refused = read.assemble(&comm, &interface, 1.0).err().unwrap().to_string();
@@ -430,7 +430,7 @@ fn the_file_of_a_super_element_contains_the_friction_curve() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("blocks.se.h5");
     let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
-    file::write(&path, &element, &surface).unwrap();
+    file::write(&path, &element, &surface, None).unwrap();
     let laws = [&element, &file::read(&path).unwrap().0].map(|element| format!("{:?}", element.pairs[0].friction_law));
     assert!(laws[0].contains("Table") && laws[0] == laws[1], "{laws:?}");
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::equilibrium::{Counts, Iteration, PairForces, Step, Wrench};
-use crate::results::Kind;
+use crate::results::{Certificate, CertifiedMode, Kind};
 use crate::results::{Failure, Pair, Part};
 use crate::stability::{Count, Sensitivity, Share};
 use crate::tracking::Partner;
@@ -48,6 +48,11 @@ fn value(friction: f64, asked: bool) -> Value {
         status: vec![1, -1],
         modes: (0..3).map(mode).collect(),
         count: Some(Count { below: 1e4, expected: 3, found: 3 }),
+        certificate: asked.then(|| Certificate {
+            friction,
+            equilibrium_error: 1e-5,
+            modes: vec![CertifiedMode { lambda: Complex64::I, corrected: Complex64::ONE, backward_error: 1e-6 }],
+        }),
         seconds: 1.25,
     }
 }
