@@ -38,19 +38,32 @@ impl ReducedModel {
         }
         // The first rank alone draws the surface.
         let bare = || Ok((file::read_element(path)?, OuterSurface::default()));
-        let (mut element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
+        let (element, surface) = comm.agree(if comm.is_root() { file::read(path) } else { bare() })?;
         if element.is_galerkin() && options.law.is_some() {
             let what =
                 "--law is for node-to-node contacts, and this is a Galerkin super-element, whose contact points have";
             let advice = "the laws of the model. Multiply their stiffness by --contact-stiffness";
             return Err(Error::input(format!("{}: {what} {advice}", path.display())));
         }
+        ReducedModel::with(path, element, surface, options)
+    }
+
+    /// A super-element under some options.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it does not have a part whose damping is given.
+    pub fn with(
+        file: &Path,
+        mut element: SuperElement,
+        surface: OuterSurface,
+        options: &StructureOptions,
+    ) -> Result<ReducedModel> {
         for PartDamping { part, rayleigh } in &options.damping {
             element.set_rayleigh(part, *rayleigh)?;
         }
         let mut interface = element.interface(options.law.clone());
         interface.scale_contact_stiffness(options.contact_stiffness);
-        Ok(ReducedModel { place: path.to_owned(), element, surface, interface, options: options.clone() })
+        Ok(ReducedModel { place: file.to_owned(), element, surface, interface, options: options.clone() })
     }
 
     /// A super-element as it was made.

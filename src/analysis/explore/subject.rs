@@ -9,7 +9,7 @@ use crate::native::Comm;
 use crate::reduction::file;
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::SuperElement;
-use crate::structure::{FullModel, ModelVariants, ReducedModel, Structure};
+use crate::structure::{FullModel, ModelVariants, ReducedModel, Structure, StructureOptions};
 use crate::{Error, Result};
 
 /// A model or super-element whose numbers a study changes.
@@ -74,9 +74,9 @@ impl<'s> Subject<'s> {
             Subject::Reduced { place, element, parameters } => {
                 let own = ReducedValues::at(element, parameters, values)?;
                 let (element, surface) = ((**element).clone(), OuterSurface::default());
-                let mut reduced = ReducedModel::new(place, element, surface, None, own.pressure);
-                reduced.interface.scale_contact_stiffness(own.contact_stiffness);
-                Structure::Reduced(Box::new(reduced))
+                let ReducedValues { pressure: load_factor, contact_stiffness, .. } = own;
+                let options = StructureOptions { load_factor, contact_stiffness, ..StructureOptions::default() };
+                Structure::Reduced(Box::new(ReducedModel::with(place, element, surface, &options)?))
             }
         };
         let friction = match self {
