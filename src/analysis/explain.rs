@@ -24,8 +24,9 @@ pub struct SourceForms<'a> {
 }
 
 impl Sweep<'_> {
-    /// Explains a mode about an equilibrium by the sources of the system's matrices and by the contact pairs. With its left vector sensitivities come along. Shares add up to 1, what is fed in and taken
-    /// out to the growth rate. Sensitivities are at the equilibrium's contact status. Collective.
+    /// Explains a mode about an equilibrium by the sources of the system's matrices and by the contact pairs. With its
+    /// left vector sensitivities come along. Shares add up to 1, what is fed in and taken out to the growth rate.
+    /// Sensitivities are at the equilibrium's contact status. Collective.
     ///
     /// # Errors
     /// PETSc's.

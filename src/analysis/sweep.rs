@@ -106,8 +106,8 @@ impl<'a> Sweep<'a> {
         outcome
     }
 
-    /// As [`Sweep::equilibrium`], from displacements that are near it; from rest where Newton's method does not converge
-    /// from there. Collective.
+    /// As [`Sweep::equilibrium`], from displacements that are near it; from rest where Newton's method does not
+    /// converge from there. Collective.
     ///
     /// # Errors
     /// See [`Path::advance`].

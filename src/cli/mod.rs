@@ -189,7 +189,8 @@ struct Run {
     /// The normal stiffness of the swept contacts as a multiple of the model's
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::factor, allow_hyphen_values = true)]
     contact_stiffness: f64,
-    /// Of a super-element: another Rayleigh damping of a part, alpha in 1/s and beta in s; may be given for several parts
+    /// Of a super-element: another Rayleigh damping of a part, alpha in 1/s and beta in s; may be given for several
+    /// parts
     #[arg(long, value_name = "PART=ALPHA,BETA", value_parser = values::damping)]
     damping: Vec<PartDamping>,
     /// Folder of the results (default: the model file's name with the command's)

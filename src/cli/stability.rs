@@ -27,8 +27,8 @@ pub struct Stability {
     /// -0.001 is -0.1 %), or growth_rate:X for growth rates above X in 1/s
     #[arg(long, value_name = "CRITERION", value_parser = values::criterion)]
     unstable: Option<InstabilityCriterion>,
-    /// Of a Galerkin super-element: compare its equilibria and modes with its full model, MODEL, by the residuals of the
-    /// full model's equations, and correct the eigenvalues; the file needs its basis (reduce --keep-basis)
+    /// Of a Galerkin super-element: compare its equilibria and modes with its full model, MODEL, by the residuals of
+    /// the full model's equations, and correct the eigenvalues; the file needs its basis (reduce --keep-basis)
     #[arg(long, value_name = "MODEL")]
     certify: Option<PathBuf>,
     /// Reduce the model to a super-element at each friction coefficient, and find the modes of that

@@ -198,9 +198,9 @@ impl Interface {
         }
     }
 
-    /// Whether forces are proportional to displacements, `f(s g) = s f(g)` for all `s > 0`, with the same status: normal
-    /// laws are linear, initial gaps are zero where points may open, and friction does not depend on the pressure. Then
-    /// an equilibrium without prescribed displacements is proportional to the loads, `u(s F) = s u(F)`.
+    /// Whether forces are proportional to displacements, `f(s g) = s f(g)` for all `s > 0`, with the same status:
+    /// normal laws are linear, initial gaps are zero where points may open, and friction does not depend on the
+    /// pressure. Then an equilibrium without prescribed displacements is proportional to the loads, `u(s F) = s u(F)`.
     pub fn is_homogeneous(&self) -> bool {
         let has_offset = |point: &ContactPoint| point.law.penetration([0.0; 3]).abs() > GAP_ROUNDING;
         let is_linear = |point: &ContactPoint| matches!(point.law.normal_law, NormalLaw::Linear { .. });

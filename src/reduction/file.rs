@@ -21,7 +21,7 @@
 //! surface/triangles n_t x 3
 //! surface/part      n_t         index into the parts
 //! surface/basis     n x 3 n_s   displacements of the corners for a unit of each coordinate, single precision
-//! basis             n x 3 n_n   displacements of all nodes of the mesh, single precision; only where that was asked for
+//! basis             n x 3 n_n   displacements of all nodes of the mesh, single precision; only where asked for
 //! ```
 //!
 //! Texts are arrays of bytes, UTF-8; all arrays are checksummed. The file appears when it is complete.

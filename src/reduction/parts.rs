@@ -5,8 +5,8 @@
 //! C = sum_p (alpha_p M_p + beta_p K_p) + C_rest               G = sum_p g_p K_p + G_rest
 //! ```
 //!
-//! The rest is what joints add, and contacts that were linearised. A part has exactly the share of an energy that it has
-//! in the full space at `u = V q`.
+//! The rest is what joints add, and contacts that were linearised. A part has exactly the share of an energy that it
+//! has in the full space at `u = V q`.
 
 use nalgebra::DMatrix;
 

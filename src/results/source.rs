@@ -29,7 +29,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether its stiffness is no property of the brake that could be changed: a penalty, or a sum over several things.
+    /// Whether its stiffness is no property of the brake that could be changed: a penalty, or a sum of several.
     pub fn is_fixed(self) -> bool {
         matches!(self, Kind::Tie | Kind::Rigid | Kind::Equation | Kind::Rest)
     }
