@@ -116,11 +116,12 @@ fn a_study_compares_all_models_with_full_contact_and_reuses_files_on_two_ranks()
         let own = errors.iter().filter(|row| row["model"].starts_with(model));
         own.map(|row| number(row, "worst_frequency_error")).fold(0.0, f64::max)
     };
-    assert_eq!(errors.len(), 10);
+    let at_values = errors.iter().filter(|row| ["0.2", "0.4"].contains(&row["friction"].as_str()));
+    assert_eq!(at_values.count(), 10, "values in between, where both have been solved, come on top");
     assert!(worst("8 contacts") < worst("4 contacts"), "errors fall with the number of contacts");
     let difference = worst("super-element of 8, made at each") - worst("8 contacts");
     assert!(difference.abs() < 1e-5, "a super-element is its layout: {difference}");
-    assert!(worst("super-element, Galerkin") < 1e-6, "its samples are these values");
+    assert!(worst("super-element, Galerkin") < 1e-4, "it has all contact points");
 
     let before = times(&place);
     let again = done(place.run(&STUDY));
