@@ -140,8 +140,8 @@ band = [0, 13000]
 "#;
 
 /// The frequencies of CalculiX's rotor, which it finds in the space of the first ten modes without Coriolis forces: in
-/// that space to 6e-4 [4.3e-4], the strain of the rotation, as CalculiX updates the geometry and we do not. Below 4 kHz,
-/// where ten modes are enough, in the whole space to 2e-4 [1.2e-4].
+/// that space to 6e-4 [4.3e-4], the strain of the rotation, as CalculiX updates the geometry and we do not. Below
+/// 4 kHz, where ten modes are enough, in the whole space to 2e-4 [1.2e-4].
 #[test]
 fn the_rotor_of_calculix_has_its_frequencies() {
     let folder = tempfile::tempdir().unwrap();
