@@ -1,6 +1,6 @@
 //! The `squeal` program. Everything is in the library; see [`squeal::cli`].
 
-use squeal::cli::Allocator;
+use squeal::native::Allocator;
 
 #[global_allocator]
 static ALLOCATOR: Allocator = Allocator;

@@ -1,6 +1,5 @@
 //! The command line: arguments, one file a command, exit codes.
 
-mod allocator;
 mod check;
 mod compare;
 mod completions;
@@ -19,8 +18,6 @@ mod r#static;
 mod study;
 mod values;
 mod watch;
-
-pub use allocator::Allocator;
 
 use std::env;
 use std::ffi::OsString;

@@ -1,4 +1,5 @@
-//! The only `unsafe` code of this crate: owning handles on MPI, LAPACK, PETSc, SLEPc, MUMPS and METIS.
+//! The only `unsafe` code of this crate: owning handles on MPI, LAPACK, PETSc, SLEPc, MUMPS and METIS, and the
+//! [`Allocator`].
 //!
 //! | module | what it does |
 //! |---|---|
@@ -16,6 +17,7 @@
 //! and panics inside callbacks of PETSc come out of the call that runs them. Everything that takes a handle is
 //! collective over its communicator unless it says otherwise.
 
+mod allocator;
 pub mod blas;
 pub mod block;
 pub mod direct;
@@ -25,6 +27,7 @@ mod mck;
 pub mod mpi;
 pub mod petsc;
 
+pub use allocator::Allocator;
 pub use block::{Block, Noise, Orthonormal};
 pub use direct::{Factor, FactorKind, FactorStats, Lists, Precision, partition};
 pub use mck::Mck;

@@ -60,8 +60,9 @@ pub fn partition(elements: Lists, n_nodes: usize, n_parts: usize, n_common: i32)
     Ok(of_nodes.into_iter().map(|part| part as u32).collect())
 }
 
-/// What METIS returns where all is well, and where it failed or a SIGTERM came, which it takes for a failure of its own.
+/// What METIS returns where all is well.
 const OK: i32 = 1;
+/// What it returns where it failed, or a SIGTERM came, which it takes for a failure of its own.
 const ERROR: i32 = -4;
 
 /// Calls METIS, once more where a SIGTERM has ended it: METIS does the same each time. The signal is then raised again.
