@@ -91,7 +91,7 @@ fn every_point_is_what_stability_finds_on_the_model_file_with_its_numbers() {
         let Outcome::Modes(modes) = outcome else { panic!("{outcome:?}") };
         place.write("point.toml", model_at(values));
         let expected = eigenvalues(&comm, &place.path("point.toml"));
-        assert!(modes.len() == expected.len() && modes.len() > 5, "{} and {}", modes.len(), expected.len());
+        assert!(modes.len() == expected.len() && modes.len() > 2, "{} and {}", modes.len(), expected.len());
         modes.iter().zip(&expected).for_each(|(mode, lambda)| assert_same(mode.lambda, *lambda));
     }
     let nominal = found.points[0].modes().unwrap();
