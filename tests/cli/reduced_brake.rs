@@ -115,7 +115,7 @@ fn what_a_super_element_does_not_hold_is_refused() {
     assert_refused(&with(&["--contacts", "6"]), &["has its contacts already"]);
     assert_refused(&with(&["--law", "cubic:1e9"]), &["two coefficients", "cubic:K1,K3"]);
     assert_refused(&with(&["--law", "cubic"]), &["no coefficients"]);
-    assert_refused(&with(&["--pressure", "-1"]), &["not a number above 0"]);
+    assert_refused(&with(&["--pressure", "-1"]), &["is not a number from 1e-6 to 1e6"]);
     assert!(!place.path("none").exists());
     let finished = with(&["--band", "0:121000"]);
     assert_eq!(finished.code, 0, "{}", finished.err);
