@@ -98,7 +98,12 @@ fn all_model_files_of_the_repository_satisfy_the_schema() {
     for folder in ["meshes", "tests/data", "docs/manual/first-brake"] {
         let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
         for path in paths.filter(|path| path.extension().is_some_and(|extension| extension == "toml")) {
-            let complaints = complaints(&std::fs::read_to_string(&path).unwrap());
+            let text = std::fs::read_to_string(&path).unwrap();
+            // The study of `squeal explore` names a model file.
+            if text.lines().any(|line| line.starts_with("model = ")) {
+                continue;
+            }
+            let complaints = complaints(&text);
             assert!(complaints.is_empty(), "{}: {complaints:?}", path.display());
             n_files += 1;
         }
