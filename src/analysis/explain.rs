@@ -15,12 +15,15 @@ use crate::structure::{FullModel, Structure, coordinates};
 
 use super::sweep::Sweep;
 
+/// The forms of sources with two vectors. Collective.
+type FormsOf<'a> = &'a dyn Fn(&System, [Complex; 2]) -> Result<Vec<Forms>>;
+
 /// The sources of M, C, K and G, and the forms that they have with two vectors. Collective.
 pub struct SourceForms<'a> {
     /// What they are.
     pub named: &'a [(Kind, String)],
     /// Their forms, in the same order.
-    pub forms: &'a dyn Fn(&System, [Complex; 2]) -> Result<Vec<Forms>>,
+    pub forms: FormsOf<'a>,
 }
 
 impl Sweep<'_> {

@@ -126,7 +126,7 @@ mod tests {
             let message = complaints("iron", &[disc.clone(), other], &[]);
             assert!(message.contains("the part \"hub\" does not (rotation of \"disc\")"), "{message}");
         }
-        assert!(complaints("iron", &[disc.clone()], &[]).contains("the part \"hub\" does not"));
+        assert!(complaints("iron", std::slice::from_ref(&disc), &[]).contains("the part \"hub\" does not"));
         let masses = brake().masses;
         assert!(complaints("iron", &[disc, hub], &masses).contains("(mass \"wear sensor\")"));
     }
