@@ -11,7 +11,7 @@ use super::sweep::Sweep;
 use crate::Result;
 use crate::model::InstabilityCriterion;
 use crate::native::{Block, Matrix, Vector};
-use crate::stability::{Band, RIGID_RATE};
+use crate::stability::{Band, RIGID_RATE, complex_product};
 use crate::tracking::{Family, Options};
 
 /// The modes at one value with right and left vectors, and what their products need.
@@ -229,18 +229,10 @@ impl Family for FrictionFamily<'_> {
         let (m, c): (DMatrix<f64>, DMatrix<f64>) = (m?, c?);
         let [left, right] = [&left.spectrum, &right.spectrum];
         let products = DMatrix::from_fn(left.lambdas.len(), right.lambdas.len(), |i, j| {
-            let [with_m, with_c] = [&m, &c].map(|a| hermitian(a, left.places[i], right.places[j]));
+            let [with_m, with_c] = [&m, &c].map(|a| complex_product(a, left.places[i], right.places[j]));
             (left.lambdas[i] + right.lambdas[j]) * with_m + with_c
         });
         self.solutions.keep(numbers, &products)?;
         Ok(products)
     }
-}
-
-/// `y^H A x` from the products of real and imaginary parts; conjugates have the other sign of the latter.
-fn hermitian(a: &DMatrix<f64>, (i, left): (usize, bool), (j, right): (usize, bool)) -> Complex64 {
-    let [s, t] = [left, right].map(|conjugate| if conjugate { -1.0 } else { 1.0 });
-    let [rr, ri, ir, ii] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| a[(2 * i + row, 2 * j + column)]);
-    // (y_r - i s y_i)^T A (x_r + i t x_i)
-    Complex64::new(rr + s * t * ii, t * ri - s * ir)
 }

@@ -1,7 +1,7 @@
 //! One value of the friction coefficient after the other: equilibrium, what an analysis makes of it, results, resume.
 
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::assembly::System;
@@ -91,10 +91,16 @@ pub(super) fn run(
     let start = Instant::now();
     let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
     let folder = comm.agree(output.filter(|_| comm.is_root()).map_or(Ok(None), open))?;
-    let about = about(comm, structure, job, output)?;
+    let about = About {
+        band: job.band,
+        criterion: job.criterion,
+        friction_values: job.values.clone(),
+        ..about(comm, structure, output)?
+    };
     let (checkpoint, earlier) = resume(comm, job, output, folder.as_ref(), &about)?;
     let n_earlier = earlier.len();
-    announce(job, output, &about, n_earlier, observer);
+    announce(&about, job.values.len(), output.map(|output| output.folder.as_path()), n_earlier, observer);
+    observer.event(Event::Stage("assembling"));
     let (system, prestress) = (structure.assemble(comm)?, structure.prestress()?);
     let motion = structure.surface_motion(&system)?;
     let results = Results {
@@ -132,24 +138,30 @@ fn resume(
     about: &About,
 ) -> Result<(Option<Checkpoint>, VecDeque<EarlierValue>)> {
     let Some(output) = output else { return Ok((None, VecDeque::new())) };
-    let identity = identity(job, output, about);
+    let identity = sweep_identity(job, output, about);
     let (checkpoint, earlier) = Checkpoint::open(comm, folder, &output.folder, &identity, output.force)?;
     Ok((Some(checkpoint), earlier))
 }
 
-/// Reports what is known before anything is computed.
-fn announce(job: &Job, output: Option<&Output>, about: &About, n_earlier: usize, observer: &mut dyn Observer) {
+/// Reports what is known before anything is computed: warnings, proposed stiffnesses, the number of items, and how many
+/// of them an earlier run has finished.
+pub(super) fn announce(
+    about: &About,
+    n_planned: usize,
+    place: Option<&Path>,
+    n_earlier: usize,
+    observer: &mut dyn Observer,
+) {
     about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
     for (pair, stiffness) in
         about.pairs.iter().filter_map(|own| own.proposed_stiffness.map(|stiffness| (own, stiffness)))
     {
         observer.event(Event::Proposed { pair: &pair.name, stiffness });
     }
-    observer.event(Event::Planned(job.values.len()));
-    if let Some(output) = output.filter(|_| n_earlier > 0) {
-        observer.event(Event::Resumed { place: &output.folder.display().to_string(), n_values: n_earlier });
+    observer.event(Event::Planned(n_planned));
+    if let Some(place) = place.filter(|_| n_earlier > 0) {
+        observer.event(Event::Resumed { place: &place.display().to_string(), n_values: n_earlier });
     }
-    observer.event(Event::Stage("assembling"));
 }
 
 /// A value that did not converge ends the analysis with what was found; any other error ends it with nothing.
@@ -164,32 +176,41 @@ fn keep_failure(outcome: Result<()>, results: &mut Results) -> Result<()> {
 }
 
 /// What is analysed, and by what. Collective.
-fn about(comm: &Comm, structure: &Structure, job: &Job, output: Option<&Output>) -> Result<About> {
+pub(super) fn about(comm: &Comm, structure: &Structure, output: Option<&Output>) -> Result<About> {
     Ok(About {
         program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
         libraries: libraries(),
         command: output.map_or_else(String::new, |output| output.command.clone()),
         n_ranks: comm.size(),
-        band: job.band,
-        criterion: job.criterion,
-        friction_values: job.values.clone(),
         ..structure.about(comm)?
     })
 }
 
-/// All that the numbers depend on, by name.
-fn identity(job: &Job, output: &Output, about: &About) -> Vec<(&'static str, String)> {
-    let mut identity = vec![
-        ("program", about.program.clone()),
-        ("analysis", format!("{}{}", job.name, job.options)),
+/// All that the numbers of a sweep depend on, by name.
+fn sweep_identity(job: &Job, output: &Output, about: &About) -> Vec<(&'static str, String)> {
+    let own = [
         ("friction values", numbers(&job.values)),
         ("band", numbers(&job.band)),
         ("unstable", job.criterion.to_string()),
+    ];
+    identity(format!("{}{}", job.name, job.options), own, Some(output), about)
+}
+
+/// All that the numbers of an analysis depend on, by name: `own` alone, the rest every analysis.
+pub(super) fn identity(
+    analysis: String,
+    own: impl IntoIterator<Item = (&'static str, String)>,
+    output: Option<&Output>,
+    about: &About,
+) -> Vec<(&'static str, String)> {
+    let mut identity = vec![("program", about.program.clone()), ("analysis", analysis)];
+    identity.extend(own);
+    identity.extend([
         ("SHA-256 of the model", about.model_digest.clone()),
         ("SHA-256 of the mesh", about.mesh_digest.clone()),
         ("number of ranks", about.n_ranks.to_string()),
-    ];
-    identity.extend(output.identity.iter().cloned());
+    ]);
+    identity.extend(output.into_iter().flat_map(|output| output.identity.iter().cloned()));
     identity
 }
 
@@ -367,22 +388,22 @@ mod tests {
     #[test]
     fn an_analysis_goes_on_only_where_all_that_its_numbers_depend_on_is_the_same() {
         let (about, output) = (About { n_ranks: 1, ..About::default() }, Output::default());
-        let first = identity(&job("", &[0.1, 0.2]), &output, &about);
-        assert_eq!(first, identity(&job("", &[0.1, 0.2]), &output, &about));
+        let first = sweep_identity(&job("", &[0.1, 0.2]), &output, &about);
+        assert_eq!(first, sweep_identity(&job("", &[0.1, 0.2]), &output, &about));
         let petsc = Output { identity: vec![("options for PETSc", "-x".into())], ..Output::default() };
         for other in [
-            identity(&job(" --no-branches", &[0.1, 0.2]), &output, &about),
-            identity(&job("", &[0.1, 0.3]), &output, &about),
-            identity(
+            sweep_identity(&job(" --no-branches", &[0.1, 0.2]), &output, &about),
+            sweep_identity(&job("", &[0.1, 0.3]), &output, &about),
+            sweep_identity(
                 &Job { criterion: InstabilityCriterion::GrowthRate(5.0), ..job("", &[0.1, 0.2]) },
                 &output,
                 &about,
             ),
-            identity(&Job { band: [0.0, 5000.0], ..job("", &[0.1, 0.2]) }, &output, &about),
-            identity(&job("", &[0.1, 0.2]), &output, &About { n_ranks: 2, ..about.clone() }),
-            identity(&job("", &[0.1, 0.2]), &output, &About { mesh_digest: "0".into(), ..about.clone() }),
-            identity(&job("", &[0.1, 0.2]), &output, &About { model_digest: "0".into(), ..about.clone() }),
-            identity(&job("", &[0.1, 0.2]), &petsc, &about),
+            sweep_identity(&Job { band: [0.0, 5000.0], ..job("", &[0.1, 0.2]) }, &output, &about),
+            sweep_identity(&job("", &[0.1, 0.2]), &output, &About { n_ranks: 2, ..about.clone() }),
+            sweep_identity(&job("", &[0.1, 0.2]), &output, &About { mesh_digest: "0".into(), ..about.clone() }),
+            sweep_identity(&job("", &[0.1, 0.2]), &output, &About { model_digest: "0".into(), ..about.clone() }),
+            sweep_identity(&job("", &[0.1, 0.2]), &petsc, &about),
         ] {
             assert_ne!(first, other);
         }

@@ -9,8 +9,8 @@ use crate::analysis::{self, Output};
 use crate::explore::{self, Study};
 use crate::output::explore::Document;
 
-use super::Shell;
 use super::watch::Watch;
+use super::{Shell, command_line};
 
 /// What `explore` takes.
 #[derive(Args)]
@@ -32,11 +32,10 @@ pub struct Explore {
 impl Explore {
     fn output(&self, shell: &Shell, study: &Study) -> Output {
         let stem = study.model.file_stem().unwrap_or_default().to_string_lossy();
-        let words: Vec<_> = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
         Output {
             folder: self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-explore"))),
             force: self.force,
-            command: words.join(" "),
+            command: command_line(),
             identity: vec![("options for PETSc", shell.petsc.join(" "))],
         }
     }

@@ -219,11 +219,10 @@ impl Run {
 
     /// Where a command writes, and what its numbers depend on beside structure and options.
     fn output(&self, shell: &Shell, command: &str) -> Output {
-        let words: Vec<_> = env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
         Output {
             folder: self.folder(command),
             force: self.force,
-            command: words.join(" "),
+            command: command_line(),
             identity: vec![
                 ("structure", format!("{:?}", self.structure_options())),
                 ("options for PETSc", shell.petsc.join(" ")),
@@ -235,6 +234,12 @@ impl Run {
         let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
         self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-{command}")))
     }
+}
+
+/// The words of the command, without the program's name.
+fn command_line() -> String {
+    let words: Vec<_> = env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    words.join(" ")
 }
 
 /// Runs the program and gives its exit code.

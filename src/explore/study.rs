@@ -117,6 +117,7 @@ struct LogNormalTable {
 
 /// Width of frequency bins where none is given, Hz.
 const BIN: f64 = 500.0;
+
 /// Reads and checks the file of a study; the model that it names is looked for beside it.
 ///
 /// # Errors
@@ -148,13 +149,13 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
         .map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
     let bin = keys.bin.unwrap_or(BIN);
     let [from, to] = keys.band.unwrap_or([0.0, 1.0]);
-    let is_valid = bin > 0.0 && (0.0..to).contains(&from) && !parameters.is_empty();
-    let mistake = keys.unstable.and_then(InstabilityCriterion::mistake);
-    if let (Some(what), _) | (None, Some(what)) = (
-        mistake,
-        (!is_valid)
-            .then_some("there is no parameter, bin is not above 0, or band is not [from, to] with 0 <= from < to"),
-    ) {
+    let mistakes = [
+        keys.unstable.and_then(InstabilityCriterion::mistake),
+        parameters.is_empty().then_some("there is no parameter. Add a [parameter.NAME] with its key"),
+        (bin.is_nan() || bin <= 0.0).then_some("bin is not above 0. Give the width of the frequency bins in Hz"),
+        (!(0.0..to).contains(&from)).then_some("band is not [from, to] with 0 <= from < to. Give both ends in Hz"),
+    ];
+    if let Some(what) = mistakes.into_iter().flatten().next() {
         return Err(Error::input(format!("{}: {what}", path.display())));
     }
     Ok(Study {
@@ -247,7 +248,8 @@ mod tests {
             ("uniform = [0.3, 0.6]", "", ["parameter \"mu\"", "give one of values"]),
             ("uniform", "unifrom", ["explore.toml:9", "unknown field"]),
             ("key = \"friction\"", "key = \"friction\"\nfactor = true", ["parameter \"mu\"", "friction is not"]),
-            ("bin = 250", "bin = 0", ["explore.toml", "bin is not above 0"]),
+            ("bin = 250", "bin = 0", ["explore.toml", "bin is not above 0. Give"]),
+            ("bin = 250", "band = [3000, 0]", ["explore.toml", "band is not [from, to]"]),
             ("\"friction\"", "\"a..b\"", ["explore.toml:7", "no key of a model file"]),
         ] {
             let message = message(old, new);

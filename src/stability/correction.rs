@@ -11,9 +11,11 @@
 //! that of the Schur complement of `P(lambda)` on V (Stewart and Sun, *Matrix Perturbation Theory*, 1990, section V.2).
 //! What lies outside of V is stiff beside `lambda^2 M`, so that A is a static answer.
 
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::QuadraticProblem;
+use super::forms::complex_product;
 use super::mode::backward_errors;
 use super::space::Side;
 use crate::Result;
@@ -52,10 +54,11 @@ pub fn corrections(
     let r_x = residuals(problem, right, lambdas, Side::Right)?;
     let r_y = residuals(problem, left, lambdas, Side::Left)?;
     let [mass, damping] = [problem.matrices.m, problem.matrices.c].map(|a| Ok(left.gram(&right.multiplied_by(a)?)));
-    let products = [r_y.gram(&answer(&r_x)?), left.gram(&r_x), mass?, damping?];
     let n = 2 * lambdas.len();
+    let products = [r_y.gram(&answer(&r_x)?), left.gram(&r_x), mass?, damping?].map(|own| DMatrix::from_vec(n, n, own));
     let of = |(i, (&lambda, backward_error)): (usize, (&Complex64, f64))| {
-        let [answered, direct, mass, damping] = products.each_ref().map(|product| hermitian(product, n, i));
+        let [answered, direct, mass, damping] =
+            products.each_ref().map(|own| complex_product(own, (i, false), (i, false)));
         let slope = 2.0 * lambda * mass + damping;
         Correction { lambda: lambda + (answered - direct) / slope, backward_error }
     };
@@ -80,15 +83,9 @@ fn residuals(problem: &QuadraticProblem, x: &Block, lambdas: &[Complex64], side:
     Ok(residuals)
 }
 
-/// `a_i^H b_i` from the products of real and imaginary parts of all, by columns.
-fn hermitian(products: &[f64], n: usize, i: usize) -> Complex64 {
-    let [rr, ir, ri, ii] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(a, b)| products[(2 * i + b) * n + 2 * i + a]);
-    Complex64::new(rr + ii, ri - ir)
-}
-
 #[cfg(test)]
 mod tests {
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::DVector;
 
     use super::*;
     use crate::native::{Mck, Session};

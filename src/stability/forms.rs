@@ -1,5 +1,6 @@
 //! What each part, connector and contact pair has in `y^H M x`, `y^H C x`, `y^H K x` and `y^H G x`.
 
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use crate::Result;
@@ -56,6 +57,15 @@ pub fn of_elements(system: &System, families: &[Sources], n: usize, [y, x]: [Com
         }
     }
     Ok(summed(system, sums))
+}
+
+/// `y_i^H A x_j` of complex vectors from the products of all their real and imaginary parts, which take turns; a
+/// conjugate (`true`) has the other sign of its imaginary part.
+pub fn complex_product(a: &DMatrix<f64>, (i, left): (usize, bool), (j, right): (usize, bool)) -> Complex64 {
+    let [s, t] = [left, right].map(|conjugate| if conjugate { -1.0 } else { 1.0 });
+    let [rr, ri, ir, ii] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| a[(2 * i + row, 2 * j + column)]);
+    // (y_r - i s y_i)^T A (x_r + i t x_i)
+    Complex64::new(rr + s * t * ii, t * ri - s * ir)
 }
 
 /// `y^H A x` of a real row-major matrix; 0 of one without entries.

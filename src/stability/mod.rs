@@ -41,7 +41,7 @@ pub use condition::{condition, condition_at};
 pub use correction::{Approximation, Correction, corrections};
 pub use count::Count;
 pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
-pub use forms::{Complex, Forms, Sources, of_contacts, of_elements};
+pub use forms::{Complex, Forms, Sources, complex_product, of_contacts, of_elements};
 pub use left::right_vectors;
 pub use linearise::{LinearTerms, Linearised, with_friction_damping};
 pub use mode::{Mode, RIGID_RATE};

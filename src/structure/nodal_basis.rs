@@ -33,7 +33,7 @@ pub fn gathered(system: &System, nodes: &Numbering, basis: &Block) -> Vec<f32> {
 pub fn distributed(system: &System, nodes: &Numbering, columns: &[f32], n_columns: usize) -> Result<Block> {
     let (comm, width) = (system.k.comm(), 3 * nodes.n_global());
     let fits = !comm.is_root() || columns.len() == width * n_columns;
-    let what = "the basis of the super-element belongs to another mesh";
+    let what = "the basis of the super-element belongs to another mesh. Give the model file that it was made of";
     comm.agree(if fits { Ok(()) } else { Err(crate::Error::input(what)) })?;
     let labels = positions(system);
     let mut values = Vec::with_capacity(labels.len() * n_columns);

@@ -94,7 +94,7 @@ impl ReducedModel {
         let mut full = FullModel::read(comm, path)?;
         let [_, mesh] = full.digests(comm)?;
         let is_other = comm.is_root() && mesh != self.element.origin.mesh_hash;
-        let what = format!("{}: the super-element was made of another mesh", path.display());
+        let what = format!("{}: the super-element was made of another mesh. Give its model file", path.display());
         comm.agree(if is_other { Err(Error::input(what)) } else { Ok(()) })?;
         full.interface.scale_contact_stiffness(self.options.contact_stiffness);
         for PartDamping { part, rayleigh } in &self.options.damping {

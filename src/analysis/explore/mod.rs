@@ -14,14 +14,14 @@ use sha2::{Digest, Sha256};
 
 use crate::explore::{Answers, Distribution, Outcome, PointResult, Study, standing_alone};
 use crate::hdf::is_hdf5;
-use crate::native::{Comm, libraries};
+use crate::native::Comm;
 use crate::output::explore::{Document, WORST, write};
 use crate::output::folder::Folder;
 use crate::results::About;
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer};
-use super::run::Output;
+use super::run::{Output, about, announce, identity};
 
 use checkpoint::Points;
 use point::{NominalModes, Request, is_of_point, solve};
@@ -108,15 +108,7 @@ impl<'s> Run<'s> {
         let criterion = study.criterion.unwrap_or(structure.criterion());
         let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
         let design = study.design.points(&distributions, &nominal)?;
-        let about = About {
-            program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
-            libraries: libraries(),
-            command: output.map_or_else(String::new, |output| output.command.clone()),
-            n_ranks: world.size(),
-            band,
-            criterion,
-            ..structure.about(&comm)?
-        };
+        let about = About { n_ranks: world.size(), band, criterion, ..about(&comm, &structure, output)? };
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
         let request = Request { band, criterion, follow: study.follow };
         let scales = scales(&values);
@@ -226,33 +218,17 @@ impl<'s> Run<'s> {
         let study =
             format!("{:?}", (&self.study.parameters, &self.study.design, self.study.follow, self.study.contacts));
         let digest: String = Sha256::digest(study).iter().map(|byte| format!("{byte:02x}")).collect();
-        let mut identity = vec![
-            ("program", self.about.program.clone()),
-            ("analysis", "explore".to_owned()),
+        let own = [
             ("SHA-256 of parameters and design", digest),
             ("band", format!("{:?}", self.request.band)),
             ("unstable", self.request.criterion.to_string()),
-            ("SHA-256 of the model", self.about.model_digest.clone()),
-            ("SHA-256 of the mesh", self.about.mesh_digest.clone()),
-            ("number of ranks", self.about.n_ranks.to_string()),
         ];
-        identity.extend(output.into_iter().flat_map(|output| output.identity.iter().cloned()));
-        identity
+        identity("explore".to_owned(), own, output, &self.about)
     }
 
     /// Reports what is known before anything is computed.
     fn announce(&self, points: &Points, place: Option<&Path>, observer: &mut dyn Observer) {
-        self.about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
-        for own in &self.about.pairs {
-            own.proposed_stiffness
-                .into_iter()
-                .for_each(|stiffness| observer.event(Event::Proposed { pair: &own.name, stiffness }));
-        }
-        observer.event(Event::Planned(self.values.len()));
-        let n = points.done.len();
-        if let Some(place) = place.filter(|_| n > 0) {
-            observer.event(Event::Resumed { place: &place.display().to_string(), n_values: n });
-        }
+        announce(&self.about, self.values.len(), place, points.done.len(), observer);
         for (number, point) in points.done.iter().enumerate() {
             observer.event(Event::Point { number, point, is_replayed: true });
         }

@@ -9,6 +9,7 @@ use crate::equilibrium::Equilibrium;
 use crate::explore::{Link, ModeProducts, PointMode, link};
 use crate::model::InstabilityCriterion;
 use crate::native::{Block, Comm, Vector};
+use crate::stability::complex_product;
 use crate::structure::Structure;
 use crate::{Error, ErrorKind, Result};
 
@@ -164,12 +165,8 @@ impl Vectors {
 /// `y_i^H x_j` of complex vectors that are kept as two columns each. Collective.
 fn hermitian(y: &Block, x: &Block) -> DMatrix<Complex64> {
     let (m, n) = (y.n_columns(), x.n_columns());
-    let real = DMatrix::from_vec(m, n, y.gram(x));
-    // (y_r - i y_i)^T (x_r + i x_i)
-    DMatrix::from_fn(m / 2, n / 2, |i, j| {
-        let at = |row: usize, column: usize| real[(2 * i + row, 2 * j + column)];
-        Complex64::new(at(0, 0) + at(1, 1), at(0, 1) - at(1, 0))
-    })
+    let products = DMatrix::from_vec(m, n, y.gram(x));
+    DMatrix::from_fn(m / 2, n / 2, |i, j| complex_product(&products, (i, false), (j, false)))
 }
 
 /// Whether an error is that of a point, which the study records and continues: of a kind that all ranks have together.
