@@ -1,13 +1,13 @@
 //! One value of the friction coefficient after the other: equilibrium, what an analysis makes of it, results, resume.
 
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
 use crate::model::InstabilityCriterion;
-use crate::native::{Comm, libraries};
+use crate::native::Comm;
 use crate::output::fields::FieldWriter;
 use crate::output::folder::Folder;
 use crate::output::results_folder;
@@ -19,21 +19,8 @@ use crate::{Error, ErrorKind, Result};
 use super::checkpoint::{Checkpoint, EarlierValue};
 use super::family::{Snapshot, Vectors};
 use super::observer::{Event, Observer};
-use super::sweep::{Costs, Sweep};
-
-/// A results folder that an analysis writes, and from whose unfinished state it goes on.
-#[derive(Debug, Clone, Default)]
-pub struct Output {
-    /// The folder.
-    pub folder: PathBuf,
-    /// Whether results of another run may be replaced, and what another analysis has left unfinished.
-    pub force: bool,
-    /// How the analysis was started, for the results.
-    pub command: String,
-    /// What the numbers depend on beside structure and options, by name: an unfinished analysis with others does not go
-    /// on.
-    pub identity: Vec<(&'static str, String)>,
-}
+use super::start::{Output, about, announce, identity, numbers};
+use super::sweep::Sweep;
 
 /// An analysis over values of the friction coefficient.
 pub(super) struct Job {
@@ -116,17 +103,20 @@ pub(super) fn run(
         Run { structure, system: &system, results, observer, fields, sweep, motion, place, checkpoint, earlier };
     let outcome = work(&mut run);
     let (costs, mut results) = (run.sweep.costs(), run.results);
-    results.costs = costs_text(&costs, start.elapsed().as_secs_f64(), comm.size());
+    results.costs = costs.text(start.elapsed().as_secs_f64(), comm.size());
     if n_earlier > 0 {
         results.costs += &format!("without {n_earlier} values that an earlier run has found\n");
     }
     keep_failure(outcome, &mut results)?;
-    let place = output.map_or_else(String::new, |output| output.folder.display().to_string());
-    comm.agree(folder.map_or(Ok(()), |folder| {
-        results_folder::write(&folder, &results, &(job.summary)(&results, &place))?;
-        folder.finish()
-    }))?;
+    comm.agree(folder.map_or(Ok(()), |folder| write(folder, job, &results)))?;
     Ok(results)
+}
+
+/// Writes the results and ends the folder.
+fn write(folder: Folder, job: &Job, results: &Results) -> Result<()> {
+    let place = folder.place().display().to_string();
+    results_folder::write(&folder, results, &(job.summary)(results, &place))?;
+    folder.finish()
 }
 
 /// The files from which the analysis can go on, and the values that an earlier run has finished. Collective.
@@ -143,27 +133,6 @@ fn resume(
     Ok((Some(checkpoint), earlier))
 }
 
-/// Reports what is known before anything is computed: warnings, proposed stiffnesses, the number of items, and how many
-/// of them an earlier run has finished.
-pub(super) fn announce(
-    about: &About,
-    n_planned: usize,
-    place: Option<&Path>,
-    n_earlier: usize,
-    observer: &mut dyn Observer,
-) {
-    about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
-    for (pair, stiffness) in
-        about.pairs.iter().filter_map(|own| own.proposed_stiffness.map(|stiffness| (own, stiffness)))
-    {
-        observer.event(Event::Proposed { pair: &pair.name, stiffness });
-    }
-    observer.event(Event::Planned(n_planned));
-    if let Some(place) = place.filter(|_| n_earlier > 0) {
-        observer.event(Event::Resumed { place: &place.display().to_string(), n_values: n_earlier });
-    }
-}
-
 /// A value that did not converge ends the analysis with what was found; any other error ends it with nothing.
 fn keep_failure(outcome: Result<()>, results: &mut Results) -> Result<()> {
     match outcome {
@@ -175,17 +144,6 @@ fn keep_failure(outcome: Result<()>, results: &mut Results) -> Result<()> {
     }
 }
 
-/// What is analysed, and by what. Collective.
-pub(super) fn about(comm: &Comm, structure: &Structure, output: Option<&Output>) -> Result<About> {
-    Ok(About {
-        program: format!("squeal {}", env!("CARGO_PKG_VERSION")),
-        libraries: libraries(),
-        command: output.map_or_else(String::new, |output| output.command.clone()),
-        n_ranks: comm.size(),
-        ..structure.about(comm)?
-    })
-}
-
 /// All that the numbers of a sweep depend on, by name.
 fn sweep_identity(job: &Job, output: &Output, about: &About) -> Vec<(&'static str, String)> {
     let own = [
@@ -194,24 +152,6 @@ fn sweep_identity(job: &Job, output: &Output, about: &About) -> Vec<(&'static st
         ("unstable", job.criterion.to_string()),
     ];
     identity(format!("{}{}", job.name, job.options), own, Some(output), about)
-}
-
-/// All that the numbers of an analysis depend on, by name: `own` alone, the rest every analysis.
-pub(super) fn identity(
-    analysis: String,
-    own: impl IntoIterator<Item = (&'static str, String)>,
-    output: Option<&Output>,
-    about: &About,
-) -> Vec<(&'static str, String)> {
-    let mut identity = vec![("program", about.program.clone()), ("analysis", analysis)];
-    identity.extend(own);
-    identity.extend([
-        ("SHA-256 of the model", about.model_digest.clone()),
-        ("SHA-256 of the mesh", about.mesh_digest.clone()),
-        ("number of ranks", about.n_ranks.to_string()),
-    ]);
-    identity.extend(output.into_iter().flat_map(|output| output.identity.iter().cloned()));
-    identity
 }
 
 impl Run<'_> {
@@ -330,44 +270,6 @@ impl Run<'_> {
         let what = format!("{error}. The last state is in {}", file.display());
         Ok(Error::NotConverged { what, history: error.history().to_vec() })
     }
-}
-
-/// Numbers as people give them.
-fn numbers(list: &[f64]) -> String {
-    list.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
-}
-
-/// What the run cost: seconds of its stages, and each factor.
-fn costs_text(costs: &Costs, seconds: f64, ranks: usize) -> String {
-    let mut text = format!(
-        "{seconds:.1} s on {ranks} rank{}: equilibria {:.1} s, modes {:.1} s, left vectors {:.1} s; {} iterations with a previous factor\n",
-        if ranks == 1 { "" } else { "s" },
-        costs.equilibria_seconds,
-        costs.modes_seconds,
-        costs.left_seconds,
-        costs.n_iterations
-    );
-    let factors = [("LU", costs.lu), ("LDL^T", costs.symmetric)];
-    for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
-        text += &format!(
-            "{name}{}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \
-             {:.0} MB of {:.0} MB estimated{}, ordering {}\n",
-            if cost.single { " in single precision" } else { "" },
-            cost.n_analyses,
-            cost.analysis_seconds,
-            cost.n_factorisations,
-            cost.factorisation_seconds,
-            cost.n_solves,
-            cost.n_right_hand_sides,
-            cost.solve_seconds,
-            1e-6 * cost.entries,
-            cost.used_mb,
-            cost.estimated_mb,
-            if cost.out_of_core { ", out of core" } else { "" },
-            cost.ordering_name()
-        );
-    }
-    text
 }
 
 #[cfg(test)]

@@ -21,7 +21,8 @@ use super::explain::explain;
 use super::family::{FrictionFamily, Snapshot, Solutions, Vectors, tracking_options, widened};
 use super::mode_data::{UnstableMode, mode_data};
 use super::observer::{Event, Observer};
-use super::run::{self, Job, Output, Run, ValueResult};
+use super::run::{self, Job, Run, ValueResult};
+use super::start::Output;
 use super::sweep::Sweep;
 
 /// What [`stability`] is asked for.

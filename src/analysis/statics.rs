@@ -8,7 +8,8 @@ use crate::results::Results;
 use crate::structure::Structure;
 
 use super::observer::Observer;
-use super::run::{Job, Output, Run, ValueResult};
+use super::run::{Job, Run, ValueResult};
+use super::start::Output;
 
 /// What [`statics`] is asked for.
 #[derive(Debug, Clone, Default)]

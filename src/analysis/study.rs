@@ -22,8 +22,8 @@ use crate::{Error, Result};
 use super::galerkin::{GalerkinOptions, first_middle_last, reduce_galerkin};
 use super::observer::{Event, Observer};
 use super::reduce::{ReduceOptions, reduce, with_reference_contacts};
-use super::run::Output;
 use super::stability::{StabilityOptions, stability};
+use super::start::Output;
 
 /// What [`study`] is asked for.
 #[derive(Debug, Clone)]

@@ -43,6 +43,41 @@ pub struct Costs {
     pub symmetric: FactorStats,
 }
 
+impl Costs {
+    /// All stages and each factor as text, after a run of `seconds` on `ranks` ranks.
+    pub fn text(&self, seconds: f64, ranks: usize) -> String {
+        let mut text = format!(
+            "{seconds:.1} s on {ranks} rank{}: equilibria {:.1} s, modes {:.1} s, left vectors {:.1} s; {} iterations with a previous factor\n",
+            if ranks == 1 { "" } else { "s" },
+            self.equilibria_seconds,
+            self.modes_seconds,
+            self.left_seconds,
+            self.n_iterations
+        );
+        let factors = [("LU", self.lu), ("LDL^T", self.symmetric)];
+        for (name, cost) in factors.iter().filter(|(_, cost)| cost.n_factorisations > 0) {
+            text += &format!(
+                "{name}{}: {} analysis {:.1} s, {} factorisations {:.1} s, {} solves of {} right-hand sides {:.1} s; {:.0} M entries, \
+                 {:.0} MB of {:.0} MB estimated{}, ordering {}\n",
+                if cost.single { " in single precision" } else { "" },
+                cost.n_analyses,
+                cost.analysis_seconds,
+                cost.n_factorisations,
+                cost.factorisation_seconds,
+                cost.n_solves,
+                cost.n_right_hand_sides,
+                cost.solve_seconds,
+                1e-6 * cost.entries,
+                cost.used_mb,
+                cost.estimated_mb,
+                if cost.out_of_core { ", out of core" } else { "" },
+                cost.ordering_name()
+            );
+        }
+        text
+    }
+}
+
 impl<'a> Sweep<'a> {
     /// A sweep that starts from rest; with `friction_damping` the friction that turns with the velocity damps the
     /// modes. Collective.

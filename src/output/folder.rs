@@ -71,6 +71,11 @@ impl Folder {
         comm.agree(if comm.is_root() { open() } else { Ok(None) })
     }
 
+    /// The folder as the user names it.
+    pub fn place(&self) -> &Path {
+        &self.place
+    }
+
     /// Where files are until the folder has its name.
     pub fn draft(&self) -> &Path {
         &self.draft

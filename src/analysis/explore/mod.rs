@@ -21,7 +21,7 @@ use crate::results::About;
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer};
-use super::run::{Output, about, announce, identity};
+use super::start::{Output, about, announce, identity};
 
 use checkpoint::Points;
 use point::{NominalModes, Request, is_of_point, solve};
