@@ -36,14 +36,13 @@ fn equilibrium(value: &Value, pairs: &[Pair]) -> String {
 }
 
 fn modes(value: &Value) -> String {
-    let Some(Count { below, expected, found }) = value.count else { return String::new() };
+    let Some(Count { below, expected, found, by }) = value.count else { return String::new() };
     let row = |(number, mode): (usize, &ModeData)| {
         let (hertz, growth, damping) = (mode.frequency(), mode.growth_rate(), 100.0 * mode.damping_ratio());
         let (error, mark) = (mode.backward_error, if mode.unstable { "unstable" } else { "" });
         format!("  {number}\t{hertz:.3}\t{growth:+.3}\t{damping:.4}\t{error:.1e}\t{mark}")
     };
-    let mut text =
-        format!("  {} modes; below {below:.1} Hz {found} found, Sturm count {expected}\n", value.modes.len());
+    let mut text = format!("  {} modes; below {below:.1} Hz {found} found, {by} {expected}\n", value.modes.len());
     let rows = (1..).zip(&value.modes).map(row);
     text += &aligned("  mode\tfrequency Hz\tgrowth 1/s\tdamping %\tbackward error\t", rows);
     for mode in value.modes.iter().filter(|mode| !mode.sources.is_empty()) {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::Result;
 use crate::results::{ExternalMode, ExternalResults, ExternalValue};
-use crate::stability::{Count, Evidence};
+use crate::stability::{Count, CountedBy, Evidence};
 
 use super::branches;
 use super::columns::{self, AtFriction, ModeRow};
@@ -100,8 +100,12 @@ fn modes_text(modes: &[ExternalMode]) -> String {
 
 /// What is known of the number of modes.
 fn count_text(count: &Count, results: &ExternalResults) -> String {
-    let Count { below, expected, found } = *count;
+    let Count { below, expected, found, by } = *count;
     let how = match (results.evidence, count.agrees()) {
+        (Evidence::SturmCount, true) if by == CountedBy::AnotherSearch => {
+            "as many as another search found; damping has made eigenvalues real, so that a Sturm count says nothing"
+                .into()
+        }
         (Evidence::SturmCount, true) if !results.is_damped && !results.has_structural_damping => {
             "as many as K - omega^2 M has negative eigenvalues by Sylvester's law of inertia: none is missing".into()
         }

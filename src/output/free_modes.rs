@@ -15,7 +15,7 @@ pub fn summary(found: &FreeModes, place: &str) -> String {
     let ([from, to], n, part) = (found.band, found.n_dofs, &found.part);
     let mut text = format!("{}: free modes of {part}, {from}-{to} Hz, {n} dofs, undamped\n\n", found.title);
     text += &format!("{} rigid motions, below {:.1e} Hz\n", found.n_rigid, found.rigid_noise);
-    let Count { below, expected, found: n_found } = found.count;
+    let Count { below, expected, found: n_found, .. } = found.count;
     text += &match found.count.agrees() {
         true => format!("{n_found} modes below {below:.1} Hz with them, as many as the Sturm count: none is missing\n"),
         false => {

@@ -330,7 +330,8 @@ fn counts(findings: &Findings) -> Markup {
         }
         p.hint {
             "The Sturm count is the number of modes of the undamped, symmetric problem below a frequency, by Sylvester's law of inertia. \
-             Where as many complex modes are found, none is missing."
+             Where as many complex modes are found, none is missing. Where damping makes eigenvalues real, the count says nothing, and \
+             another search has to find as many."
         }
     }
 }

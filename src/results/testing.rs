@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use super::{About, ContactFaces, Kind, ModeData, Pair, Part, Results, Shape, Source, Surface, Value};
 use crate::equilibrium::{Counts, Iteration, PairForces, Step};
-use crate::stability::{Count, Sensitivity, Share};
+use crate::stability::{Count, CountedBy, Sensitivity, Share};
 use crate::tracking::{Branch, Diagram, Hopf, Partner, Point};
 
 /// A title with markup, which the page must not run.
@@ -184,7 +184,7 @@ fn value(mu: f64, asked: bool, surface: &Surface, contact: &ContactFaces) -> Val
         }],
         status: pressure.iter().map(|&p| i32::from(p > 0.0)).collect(),
         pressure,
-        count: Some(Count { below: 6000.0, expected: modes.len(), found: modes.len() }),
+        count: Some(Count { below: 6000.0, expected: modes.len(), found: modes.len(), by: CountedBy::SturmCount }),
         modes,
         certificate: None,
         seconds: 1.2,

@@ -8,6 +8,8 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 
+use crate::stability::Count;
+
 use super::{Results, Value};
 
 /// The verdict of a study.
@@ -49,16 +51,7 @@ pub enum Doubt {
     /// So many values of so many are missing.
     Missing(usize, usize),
     /// The number of modes at a value is not confirmed.
-    NotConfirmed {
-        /// The value.
-        friction: f64,
-        /// Modes found.
-        found: usize,
-        /// Modes that there should be.
-        expected: usize,
-        /// Where both were counted, Hz.
-        below: f64,
-    },
+    NotConfirmed(f64, Count),
     /// The equilibria at these values have not converged.
     NotConverged(Vec<f64>),
     /// Modes could not be followed over these intervals.
@@ -114,12 +107,7 @@ impl Results {
 
     fn unconfirmed(&self) -> impl Iterator<Item = Doubt> {
         let counts = self.asked().filter_map(|value| Some((value.friction, value.count?)));
-        counts.filter(|(_, count)| !count.agrees()).map(|(friction, count)| Doubt::NotConfirmed {
-            friction,
-            found: count.found,
-            expected: count.expected,
-            below: count.below,
-        })
+        counts.filter(|(_, count)| !count.agrees()).map(|(friction, count)| Doubt::NotConfirmed(friction, count))
     }
 }
 
@@ -152,9 +140,10 @@ impl Display for Doubt {
             }
             Doubt::Ended(reason) => write!(f, "the study ended early: {}", reason.trim_end_matches('.')),
             Doubt::Missing(n, of) => write!(f, "the study is not complete: {n} of {of} friction values are missing"),
-            Doubt::NotConfirmed { friction, found, expected, below } => write!(
+            Doubt::NotConfirmed(friction, Count { below, expected, found, by }) => write!(
                 f,
-                "at \u{3bc} = {friction} the number of modes is not confirmed: {found} found below {below:.0} Hz, {expected} expected"
+                "at \u{3bc} = {friction} the number of modes is not confirmed: {found} found below {below:.0} Hz, \
+                 {by} {expected}"
             ),
             Doubt::NotConverged(values) => {
                 write!(f, "at \u{3bc} = {} the equilibrium has not converged", list(values))
@@ -188,7 +177,7 @@ mod tests {
     use super::super::{About, Failure, ModeData, Pair};
     use super::*;
     use crate::equilibrium::{Counts, PairForces, Step};
-    use crate::stability::Count;
+    use crate::stability::CountedBy;
     use crate::tracking::Diagram;
 
     fn mode(unstable: bool) -> ModeData {
@@ -248,8 +237,9 @@ mod tests {
                 results.failure = Some(Failure { reason: "out of luck.".into(), ..Failure::default() });
             }),
             ("1 of 2 friction values are missing", &|results| results.about.friction_values.push(0.5)),
-            ("2 found below 6000 Hz, 3 expected", &|results| {
-                results.values[0].count = Some(Count { below: 6000.0, expected: 3, found: 2 });
+            ("2 found below 6000 Hz, Sturm count 3", &|results| {
+                results.values[0].count =
+                    Some(Count { below: 6000.0, expected: 3, found: 2, by: CountedBy::SturmCount });
             }),
             ("has not converged", &|results| results.values[0].steps.push(step.clone())),
             ("could be followed from \u{3bc} = 0.1000 to 0.2000", &|results| {

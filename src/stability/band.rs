@@ -128,8 +128,10 @@ impl BandSolver {
         let &BandRequest { band, mut shift } = request;
         let expected = self.prepare(problem, factor, band[1])?;
         let (mut n_solves, mut last): (usize, Option<(SearchResult, Count, BandReport)>) = (0, None);
-        for attempt in 0..self.options.n_attempts {
-            let n_modes = expected.n + self.options.n_margin(expected.n, attempt);
+        let mut again = None;
+        for attempt in 0.. {
+            let planned = (attempt < self.options.n_attempts).then(|| self.options.n_margin(expected.n, attempt));
+            let Some(n_modes) = again.take().or(planned.map(|margin| expected.n + margin)) else { break };
             let request = SearchRequest { n_modes, end: band[1], shift, attempt };
             let Some(search) = self.search(Search { problem, factor, request, progress })? else {
                 shift *= self.options.shift_growth;
@@ -141,6 +143,9 @@ impl BandSolver {
                 continue;
             };
             let report = BandReport { solver: search.solver, n_attempts: attempt + 1, n_solves, shift };
+            // The same band, by a search of its own, from a little more.
+            again = (before.is_none() && search.is_overdamped(count.below))
+                .then(|| search.n_below(f64::INFINITY) + self.options.n_margin(expected.n, 0));
             last = Some((search, count, report));
             if count.agrees() {
                 break;

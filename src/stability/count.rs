@@ -2,10 +2,13 @@
 //!
 //! With [`Evidence::SturmCount`] the number of modes below a frequency is known from the symmetric problem. Friction
 //! may carry a mode across that frequency, where the two problems then differ by one: the count is then taken again in
-//! the widest gap between modes beyond the band's end, and the next value's count begins there. With
-//! [`Evidence::Repetition`] two searches have to agree.
+//! the widest gap between modes beyond the band's end, and the next value's count begins there. Damping that makes
+//! eigenvalues real, such as that of friction at low speed, separates the two problems: a pair of eigenvalues far beyond
+//! the frequency becomes one far below it and one still farther away. Then, as with [`Evidence::Repetition`], two
+//! searches have to agree.
 
 use std::f64::consts::TAU;
+use std::fmt::{self, Display};
 
 use serde::{Deserialize, Serialize};
 
@@ -20,10 +23,33 @@ pub struct Count {
     /// The frequency, Hz: the band's end, or a gap between modes near it.
     #[serde(rename = "below_hz")]
     pub below: f64,
-    /// By the Sturm count, or by a search before ([`Evidence`]).
+    /// By the Sturm count or another search.
     pub expected: usize,
     /// By the eigensolver.
     pub found: usize,
+    /// Where the expected number is from.
+    #[serde(default)]
+    pub by: CountedBy,
+}
+
+/// Where the number of modes that a search should find is from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CountedBy {
+    /// The Sturm count of the symmetric problem.
+    #[default]
+    SturmCount,
+    /// Another search, which was for fewer modes.
+    AnotherSearch,
+}
+
+impl Display for CountedBy {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            CountedBy::SturmCount => "Sturm count",
+            CountedBy::AnotherSearch => "another search",
+        })
+    }
 }
 
 impl Count {
@@ -85,15 +111,16 @@ impl ModeCounter {
         if search.reach <= below {
             return Ok(None);
         }
-        let count = Count { below, expected: n, found: search.n_below(below) };
+        let count = Count { below, expected: n, found: search.n_below(below), by: CountedBy::SturmCount };
         match evidence {
             Evidence::Repetition { estimated } => {
-                let before = before.map(|count| count.found).or(estimated.then_some(n));
-                // Who has all eigenvalues needs no other search.
-                let expected = if search.reach.is_finite() { before.unwrap_or(usize::MAX) } else { count.found };
-                Ok(Some(Count { expected, ..count }))
+                let alone = if estimated { count } else { Count { expected: usize::MAX, ..count } };
+                Ok(Some(repeated(count, search, before).unwrap_or(alone)))
             }
             Evidence::SturmCount if count.agrees() => Ok(Some(count)),
+            Evidence::SturmCount if search.is_overdamped(below) => {
+                Ok(Some(repeated(count, search, before).unwrap_or(count)))
+            }
             Evidence::SturmCount => self.count_in_gap(problem, search, end).map(|other| Some(other.unwrap_or(count))),
         }
     }
@@ -105,8 +132,15 @@ impl ModeCounter {
         moduli.sort_by(f64::total_cmp);
         let Some(below) = widest_gap(&moduli, end) else { return Ok(None) };
         self.gap = Some(below);
-        Ok(Some(Count { below, expected: self.sturm.n_below(problem, below)?, found: search.n_below(below) }))
+        let expected = self.sturm.n_below(problem, below)?;
+        Ok(Some(Count { below, expected, found: search.n_below(below), by: CountedBy::SturmCount }))
     }
+}
+
+/// The count of a search by the one before; none without it. All eigenvalues that there are need no other search.
+fn repeated(count: Count, search: &SearchResult, before: Option<Count>) -> Option<Count> {
+    let expected = if search.reach.is_finite() { before.map(|count| count.found) } else { Some(count.found) };
+    expected.map(|expected| Count { expected, by: CountedBy::AnotherSearch, ..count })
 }
 
 /// The middle of the widest part above `from` of a gap between neighbours: nothing below `from` may stay uncounted.
@@ -136,7 +170,7 @@ mod tests {
     fn a_count_at_the_bands_end_agrees() {
         let comm = Session::start(&[]).unwrap();
         let (count, counter) = counted(&comm, &[1.0, 2.0, 3.0, 5.0], &found(&comm, &[1.0, 2.0, 3.0, 5.0], 5.0));
-        assert_eq!(count, Some(Count { below: 4.0, expected: 3, found: 3 }));
+        assert_eq!(count, Some(Count { below: 4.0, expected: 3, found: 3, by: CountedBy::SturmCount }));
         assert_eq!(counter.gap, None);
     }
 
@@ -176,10 +210,35 @@ mod tests {
         let comm = Session::start(&[]).unwrap();
         let matrices = masses(&comm, &[1.0, 2.0]);
         let mut counter = ModeCounter::default();
-        counter.resume(&Count { below: 4.1, expected: 2, found: 2 });
+        counter.resume(&Count { below: 4.1, expected: 2, found: 2, by: CountedBy::SturmCount });
         let problem = QuadraticProblem::symmetric(matrices.as_ref());
         let expected = counter.expect(&problem, &EigenOptions::default(), 4.0).unwrap();
         assert_eq!(expected, Expected { end: 4.0, below: 4.1, n: 2 });
+    }
+
+    #[test]
+    fn where_damping_has_made_eigenvalues_real_two_searches_have_to_agree() {
+        let comm = Session::start(&[]).unwrap();
+        let matrices = masses(&comm, &[1.0, 2.0, 3.0, 5.0]);
+        let problem = QuadraticProblem::symmetric(matrices.as_ref());
+        let mut counter = ModeCounter::default();
+        let expected = counter.expect(&problem, &EigenOptions::default(), 4.0).unwrap();
+        let mut count = |real: &[f64], before: Option<Count>| {
+            let mut search = found(&comm, &[1.0, 2.0, 2.5, 3.0, 5.0], 5.0);
+            search.pairs.iter_mut().zip(real).for_each(|(pair, &re)| pair.lambda = Complex64::new(re, 0.0));
+            counter.count(&problem, Evidence::SturmCount, &search, expected, before).unwrap().unwrap()
+        };
+        let alone = count(&[-1.0, -2.0], None);
+        assert_eq!(alone, Count { below: 4.0, expected: 3, found: 3, by: CountedBy::SturmCount }, "as many by chance");
+        let alone = count(&[-1.0, -2.0, -3.0, -4.0], None);
+        assert_eq!(alone, Count { below: 4.0, expected: 3, found: 2, by: CountedBy::SturmCount });
+        let repeated = count(&[-1.0, -2.0, -3.0, -4.0], Some(alone));
+        assert_eq!(repeated, Count { below: 4.0, expected: 2, found: 2, by: CountedBy::AnotherSearch });
+        let other = count(&[-1.0, -2.0, -3.0, -4.0], Some(Count { found: 3, ..alone }));
+        assert!(!other.agrees() && other.by == CountedBy::AnotherSearch);
+        // Neither real eigenvalues beyond the frequency nor growing ones are of damping.
+        assert_eq!(count(&[-30.0], Some(Count { found: 4, ..alone })).by, CountedBy::SturmCount);
+        assert_eq!(count(&[1.0], Some(Count { found: 4, ..alone })).by, CountedBy::SturmCount);
     }
 
     #[test]
@@ -190,7 +249,7 @@ mod tests {
         let expected = Expected { end: 4.0, below: 4.0, n: 3 };
         let count = |estimated: bool, reach: f64, before: Option<usize>| {
             let evidence = Evidence::Repetition { estimated };
-            let before = before.map(|found| Count { below: 4.0, expected: 0, found });
+            let before = before.map(|found| Count { below: 4.0, expected: 0, found, by: CountedBy::AnotherSearch });
             let search = found(&comm, &[1.0, 2.0, 5.0], reach);
             ModeCounter::default().count(&problem, evidence, &search, expected, before).unwrap().unwrap().agrees()
         };

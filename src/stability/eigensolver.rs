@@ -78,6 +78,12 @@ impl SearchResult {
         let below = self.pairs.iter().filter(|pair| pair.lambda.norm() <= TAU * frequency);
         below.map(|pair| if pair.lambda.im > 0.0 { 1.0 } else { 0.5 }).sum::<f64>().round() as usize
     }
+
+    /// Whether damping has made eigenvalues below a frequency, Hz, real.
+    pub fn is_overdamped(&self, frequency: f64) -> bool {
+        let mut below = self.pairs.iter().map(|pair| pair.lambda).filter(|lambda| lambda.norm() <= TAU * frequency);
+        below.any(|lambda| lambda.im == 0.0 && lambda.re < 0.0)
+    }
 }
 
 /// One of the solvers, which are interchangeable.

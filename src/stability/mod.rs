@@ -39,7 +39,7 @@ mod toar;
 pub use band::{Band, BandReport, BandRequest, BandSolver};
 pub use condition::{condition, condition_at};
 pub use correction::{Approximation, Correction, corrections};
-pub use count::Count;
+pub use count::{Count, CountedBy};
 pub use eigensolver::{EigenProgress, Eigensolver, OnProgress, Search, SearchRequest, SearchResult, SolverKind};
 pub use forms::{Complex, Forms, Sources, complex_product, of_contacts, of_elements};
 pub use left::right_vectors;

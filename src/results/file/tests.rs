@@ -2,7 +2,7 @@ use super::*;
 use crate::equilibrium::{Counts, Iteration, PairForces, Step, Wrench};
 use crate::results::{Certificate, CertifiedMode, Kind};
 use crate::results::{Failure, Pair, Part};
-use crate::stability::{Count, Sensitivity, Share};
+use crate::stability::{Count, CountedBy, Sensitivity, Share};
 use crate::tracking::Partner;
 
 fn shape(n: usize, seed: f32) -> Shape {
@@ -47,7 +47,7 @@ fn value(friction: f64, asked: bool) -> Value {
         pressure: vec![1e6, 0.0],
         status: vec![1, -1],
         modes: (0..3).map(mode).collect(),
-        count: Some(Count { below: 1e4, expected: 3, found: 3 }),
+        count: Some(Count { below: 1e4, expected: 3, found: 3, by: CountedBy::SturmCount }),
         certificate: asked.then(|| Certificate {
             friction,
             equilibrium_error: 1e-5,

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use super::*;
 use crate::native::{Comm, Mck, Precision, Session};
 use crate::stability::testing::{Blocks, dense, diagonal, eigenvalues, found, masses};
-use crate::stability::{BlockedOptions, Evidence};
+use crate::stability::{BlockedOptions, CountedBy, Evidence};
 
 /// A solver that finds what the test gives it, and keeps the requests.
 struct Scripted {
@@ -41,7 +41,7 @@ fn a_search_that_misses_no_mode_is_the_only_one() {
     let Band { modes, count, report, has_conjugates } = band.unwrap();
     assert!(has_conjugates);
     assert_eq!(modes.iter().map(|mode| mode.frequency().round()).collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
-    assert_eq!(count, Count { below: 4.0, expected: 3, found: 3 });
+    assert_eq!(count, Count { below: 4.0, expected: 3, found: 3, by: CountedBy::SturmCount });
     assert_eq!(report, BandReport { solver: SolverKind::Toar, n_attempts: 1, n_solves: 5, shift: 0.0 });
     assert_eq!((requests.len(), requests[0].n_modes, requests[0].end), (1, 3 + 4, 4.0));
 }
@@ -337,6 +337,38 @@ fn matrices_of_any_structure_are_searched_twice() {
     let mut factor = LabelledFactor::new(Precision::Double);
     let band = solver.solve_band(&problem, &mut factor, &[0.0, 1.55].into(), &mut |_| ()).unwrap();
     assert!(band.count.agrees() && band.report.n_attempts == 2, "{:?} {:?}", band.count, band.report);
+    compare(&band.modes, &eigenvalues(&problem, 1.55));
+}
+
+#[test]
+fn the_last_search_is_repeated_where_damping_has_made_eigenvalues_real() {
+    let comm = Session::start(&[]).unwrap();
+    let overdamped = || {
+        let mut search = found(&comm, &[1.0, 2.0, 3.0, 3.5, 5.0], 5.0);
+        search.pairs[3].lambda = Complex64::new(-2.0, 0.0);
+        search.pairs[4].lambda = Complex64::new(-3.0, 0.0);
+        Some(search)
+    };
+    let (band, requests) = scripted(&comm, 0.0, vec![None, None, None, overdamped(), overdamped()]);
+    assert_eq!((requests.len(), requests[4].n_modes), (5, 4 + 4), "modes found, and the margin");
+    assert_eq!(band.unwrap().count, Count { below: 4.0, expected: 4, found: 4, by: CountedBy::AnotherSearch });
+}
+
+#[test]
+fn strong_damping_is_searched_twice() {
+    let comm = Session::start(&[]).unwrap();
+    // Masses at 1, 1.1, 1.2 ... Hz, those from 10 Hz on with a damping ratio of 20: slow real eigenvalues from 0.25 Hz.
+    let n = 200;
+    let omega = |i: usize| TAU * (1.0 + 0.1 * i as f64);
+    let c =
+        DMatrix::from_fn(n, n, |i, j| if i == j && i >= 90 { 40.0 * omega(i) } else { 0.01 * (i == j) as i8 as f64 });
+    let k = DMatrix::from_fn(n, n, |i, j| if i == j { omega(i).powi(2) } else { 0.0 });
+    let [m, c, k] = [DMatrix::identity(n, n), c, k].map(|a| dense(&comm, &a));
+    let problem = QuadraticProblem::symmetric(Mck::from([&m, &c, &k]));
+    let mut solver = BandSolver::new(EigenOptions::default(), (0..n as u64).collect());
+    let mut factor = LabelledFactor::new(Precision::Double);
+    let band = solver.solve_band(&problem, &mut factor, &[0.0, 1.55].into(), &mut |_| ()).unwrap();
+    assert!(band.count.agrees() && band.count.by == CountedBy::AnotherSearch, "{:?} {:?}", band.count, band.report);
     compare(&band.modes, &eigenvalues(&problem, 1.55));
 }
 
