@@ -6,9 +6,11 @@
 //! | [`model_summary`] | a full model | masses, contact pairs, mesh quality, loads, warnings |
 //! | [`statics`] | a structure | equilibria over the friction coefficient |
 //! | [`stability`] | a structure | complex modes of a band over the friction coefficient, branches and Hopf points |
+//! | [`wear`] | a full model | worn gaps of its sliding pairs |
 //! | [`reduce`] | a full model | a super-element and its file |
 //! | [`study`] | a model file | contact layouts and super-elements compared with full contact |
 //! | [`explore`] | the file of a study | modes at points of many parameters, and the probability of squeal |
+//! | [`states`] | a file of states | modes of a model in each of them |
 //! | [`export`] | a structure | M, C, K about an equilibrium as files |
 //! | [`external_modes`] | matrices M, C, K of any program | modes of a band, along a parameter of them |
 //! | [`free_modes`] | one part of a model | free modes, compared with measured ones |
@@ -32,16 +34,19 @@ mod measured;
 mod mode_data;
 mod observer;
 mod proposal;
+mod record;
 mod reduce;
 mod run;
 mod stability;
 mod start;
+mod states;
 mod statics;
 mod study;
 mod sweep;
 #[cfg(test)]
 mod tests;
 mod unfinished;
+mod wear;
 
 pub use check::{matrix_summary, model_summary};
 pub use explain::{explain, explain_full};
@@ -58,6 +63,8 @@ pub use proposal::propose_model;
 pub use reduce::{ReduceOptions, Reduction, reduce, with_reference_contacts};
 pub use stability::{StabilityOptions, stability};
 pub use start::Output;
+pub use states::{StateResults, StatesOptions, states};
 pub use statics::{StaticOptions, statics};
 pub use study::{StudyOptions, study};
 pub use sweep::{Costs, Sweep};
+pub use wear::{WearGoal, WearOptions, wear};

@@ -3,16 +3,11 @@
 //! Every model is a part of the study with a results folder of its own. `parts.toml` keeps for each finished part what
 //! it depends on, so that a study that is run again makes only what is missing or out of date.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-
 use crate::comparison::{Sizes, Study, n_contacts};
 use crate::native::Comm;
-use crate::output::files::write_whole;
-use crate::output::overwrite::is_free;
 use crate::output::results_folder::RESULTS;
 use crate::reduction;
 use crate::results::{Results, file};
@@ -21,6 +16,7 @@ use crate::{Error, Result};
 
 use super::galerkin::{GalerkinOptions, first_middle_last, reduce_galerkin};
 use super::observer::{Event, Observer};
+use super::record::{Done, Record};
 use super::reduce::{ReduceOptions, reduce, with_reference_contacts};
 use super::stability::{StabilityOptions, stability};
 use super::start::Output;
@@ -185,7 +181,9 @@ impl<'a> Plan<'a> {
     /// Makes a part, unless it is there. Collective.
     fn make(&self, comm: &Comm, part: &Part, record: &mut Record, observer: &mut dyn Observer) -> Result<()> {
         let identity = format!("{}, {}", self.identity, part.options);
-        let is_made = comm.is_root() && record.has(part, &identity, &self.options.folder);
+        let file = self.options.folder.join(&part.product);
+        let file = if let Work::Stability { .. } = part.work { file.join(RESULTS) } else { file };
+        let is_made = comm.is_root() && record.has(&part.product, &identity, &file);
         let is_made = comm.broadcast_value(0, is_made);
         observer.event(Event::Part { name: &part.name, is_made });
         if is_made {
@@ -269,73 +267,9 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// What is made.
-#[derive(Default, Serialize, Deserialize)]
-struct Record {
-    /// By the names of their files and folders.
-    #[serde(default)]
-    parts: BTreeMap<String, Done>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct Done {
-    /// What it depends on.
-    identity: String,
-    /// What it took, s.
-    seconds: f64,
-}
-
-/// The record's file, which marks a folder as a study's.
-const PARTS: &str = "parts.toml";
-
-impl Record {
-    /// Of a folder that is a study's, or empty, or not there.
-    fn open(place: &Path) -> Result<Record> {
-        let file = place.join(PARTS);
-        if let Ok(text) = std::fs::read_to_string(&file) {
-            let damaged =
-                |reason| Error::input(format!("{} is damaged: {reason}. Remove it to begin again", file.display()));
-            return toml::from_str(&text).map_err(damaged);
-        }
-        if is_free(place) {
-            return Ok(Record::default());
-        }
-        let what = format!("{} exists and is not the folder of a study", place.display());
-        Err(Error::input(format!("{what}. Choose another with --output")))
-    }
-
-    fn has(&self, part: &Part, identity: &str, place: &Path) -> bool {
-        let file = match part.work {
-            Work::Reduce | Work::ReduceGalerkin => place.join(&part.product),
-            Work::Stability { .. } => place.join(&part.product).join(RESULTS),
-        };
-        self.parts.get(&part.product).is_some_and(|done| done.identity == identity) && file.is_file()
-    }
-
-    /// Appears whole or not at all.
-    fn write(&self, place: &Path) -> Result<()> {
-        let text = toml::to_string(self).expect("texts and numbers");
-        write_whole(&place.join(PARTS), |out| out.write_all(text.as_bytes()))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_part_is_made_again_where_its_file_is_missing_or_its_identity_is_another() {
-        let place = tempfile::TempDir::new().unwrap();
-        let part =
-            Part { name: "making".into(), product: "a.se.h5".into(), options: String::new(), work: Work::Reduce };
-        let mut record = Record::default();
-        record.parts.insert(part.product.clone(), Done { identity: "model 1".into(), seconds: 2.0 });
-        assert!(!record.has(&part, "model 1", place.path()), "no file");
-        std::fs::write(place.path().join(&part.product), "").unwrap();
-        assert!(record.has(&part, "model 1", place.path()) && !record.has(&part, "model 2", place.path()));
-        record.write(place.path()).unwrap();
-        assert!(Record::open(place.path()).unwrap().has(&part, "model 1", place.path()));
-    }
 
     /// A super-element and what is computed with it are made again where its samples change, the rest is not.
     #[test]
@@ -362,14 +296,5 @@ mod tests {
         assert_eq!(changed, ["brake-8.se.h5", "super-element-8"]);
         let of = |product: &str| parts(0.4).into_iter().find(|part| part.product == product).unwrap().options;
         assert!(of("galerkin").ends_with("super-element of modes at 0.2 0.3 0.5"), "{}", of("galerkin"));
-    }
-
-    #[test]
-    fn a_folder_with_something_else_is_no_study() {
-        let place = tempfile::TempDir::new().unwrap();
-        assert!(Record::open(&place.path().join("new")).unwrap().parts.is_empty());
-        std::fs::write(place.path().join("thesis.tex"), "").unwrap();
-        let error = Record::open(place.path()).err().unwrap().to_string();
-        assert!(error.contains("is not the folder of a study"), "{error}");
     }
 }

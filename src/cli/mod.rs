@@ -14,10 +14,12 @@ mod progress;
 mod reduce;
 mod report;
 mod stability;
+mod states;
 mod r#static;
 mod study;
 mod values;
 mod watch;
+mod wear;
 
 use std::env;
 use std::ffi::OsString;
@@ -40,7 +42,7 @@ use crate::output::text::printable;
 use crate::results::Results;
 use crate::structure::{PartDamping, StructureOptions};
 use crate::{Error, Result};
-use values::Values;
+use values::{PetscOptions, Values};
 
 /// Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake.
 ///
@@ -155,6 +157,13 @@ enum Command {
     Study(study::Study),
     /// Find the modes at points of many parameters, the probability of squeal, and the influence of each parameter
     Explore(explore::Explore),
+    /// Wear the sliding contacts of a model by Archard's law, to a sliding distance or until the wear rate is uniform
+    Wear(wear::Wear),
+    /// Find the modes of a model in named states, such as forward and reverse, hot and cold, new and worn, and compare them
+    ///
+    /// Each state has a folder of its own, as `squeal stability` makes it. Run again, only states that are missing or
+    /// out of date are made.
+    States(states::States),
     /// Compare the modes of two results, full or reduced: frequencies, growth rates, shapes
     Compare(compare::Compare),
     /// Print the completions of a shell: squeal completions bash > /etc/bash_completion.d/squeal
@@ -268,16 +277,13 @@ pub fn main() -> i32 {
     }
 }
 
-/// Options of PETSc, names with their dash.
-type PetscOptions = Vec<(String, String)>;
-
 fn arguments() -> std::result::Result<(Arguments, PetscOptions), clap::Error> {
     let mut words: Vec<OsString> = env::args_os().collect();
     if words.iter().skip(1).eq(["help", "model"]) {
         words = vec!["squeal".into(), "example".into()];
     }
     let arguments = Arguments::try_parse_from(words)?;
-    match petsc_options(&arguments.petsc) {
+    match values::petsc_options(&arguments.petsc) {
         Ok(options) => Ok((arguments, options)),
         Err(message) => Err(Arguments::command().error(ErrorKind::InvalidValue, message)),
     }
@@ -320,6 +326,8 @@ fn run(command: &Command, shell: &Shell) -> Result<()> {
         Command::Stability(stability) => stability::run(shell, stability),
         Command::Study(study) => study::run(shell, study),
         Command::Explore(explore) => explore::run(shell, explore),
+        Command::Wear(wear) => wear::run(shell, wear),
+        Command::States(states) => states::run(shell, states),
         Command::Compare(compare) => compare::run(shell, compare),
         Command::Completions(completions) => completions::run(shell, completions),
         Command::Man(man) => man::run(shell, man),
@@ -378,17 +386,4 @@ fn print(text: &str) -> Result<()> {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::io("standard output".as_ref())(error)),
         _ => Ok(()),
     }
-}
-
-/// `-name value` pairs for PETSc's option database.
-fn petsc_options(texts: &[String]) -> std::result::Result<PetscOptions, String> {
-    let mut pairs = PetscOptions::new();
-    for word in texts.iter().flat_map(|text| text.split_whitespace()) {
-        match (word.starts_with('-') && word.parse::<f64>().is_err(), pairs.last_mut()) {
-            (true, _) => pairs.push((word.into(), String::new())),
-            (false, Some((_, value))) if value.is_empty() => *value = word.into(),
-            _ => return Err(format!("--petsc takes options like \"-name value\"; {word:?} has no -name before it")),
-        }
-    }
-    Ok(pairs)
 }

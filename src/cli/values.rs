@@ -135,6 +135,30 @@ pub fn factor(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value > 0.0 => Ok(value),
+        value => Err(format!("{value} is not above 0")),
+    }
+}
+
+/// Options of PETSc, names with their dash.
+pub type PetscOptions = Vec<(String, String)>;
+
+/// `-name value` pairs for PETSc's option database.
+pub fn petsc_options(texts: &[String]) -> Result<PetscOptions, String> {
+    let mut pairs = PetscOptions::new();
+    for word in texts.iter().flat_map(|text| text.split_whitespace()) {
+        match (word.starts_with('-') && word.parse::<f64>().is_err(), pairs.last_mut()) {
+            (true, _) => pairs.push((word.into(), String::new())),
+            (false, Some((_, value))) if value.is_empty() => *value = word.into(),
+            _ => return Err(format!("--petsc takes options like \"-name value\"; {word:?} has no -name before it")),
+        }
+    }
+    Ok(pairs)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

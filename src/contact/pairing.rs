@@ -39,6 +39,7 @@ pub(super) fn add_pair(
             law: law.at(point),
         });
     }
+    surfaces.add_gap_field(&mut interface.points[first..])?;
     interface.pairs.push(ContactPair {
         name: contact.name.clone(),
         slave: contact.slave.clone(),
@@ -98,6 +99,7 @@ impl<'a> PairLaw<'a> {
             normal: point.normal,
             gap: point.gap,
             correction: 0.0,
+            wear: 0.0,
             touching: point.gap <= TOUCH * point.size,
             separation: self.separation,
             normal_law: self.normal_law.clone(),
@@ -121,6 +123,16 @@ impl ContactSurfaces<'_> {
     fn refuse(&self, reason: &str) -> Error {
         let message = format!("contact \"{}\": {reason}", self.contact.name);
         self.model.error(self.contact.place, message)
+    }
+
+    /// Adds the contact's gap field to the gaps. Which points touch stays: worn surfaces are brought together by the
+    /// loads.
+    fn add_gap_field(&self, points: &mut [ContactPoint]) -> Result<()> {
+        let Some(field) = &self.contact.gap_field else { return Ok(()) };
+        let positions: Vec<[f64; 3]> = points.iter().map(|point| point.position).collect();
+        let gaps = field.at(&positions).map_err(|reason| self.refuse(&reason))?;
+        points.iter_mut().zip(gaps).for_each(|(point, gap)| point.law.gap += gap);
+        Ok(())
     }
 
     /// The contact points; an error where there are none, or where the surfaces share nodes.
@@ -202,7 +214,7 @@ fn set_gaps(found: &mut Found, gap: Option<f64>) {
 
 /// Sums up what the search found; there is at least one point.
 fn statistics(found: Found, points: &[ContactPoint]) -> Statistics {
-    let gaps = found.points.iter().map(|p| p.gap);
+    let gaps = points.iter().map(|point| point.law.gap);
     Statistics {
         area: found.area,
         weight: found.points.iter().map(|p| p.weight).sum(),

@@ -156,6 +156,8 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         search_distance: None,
         adjust: 0.0,
         clearance: None,
+        gap_field: None,
+        wear: None,
         place: Place { file: 0, line: 12 },
     }
 }

@@ -86,6 +86,7 @@ pub fn belt(n: usize, tangential: Tangential) -> Interface {
             normal: [0.0, 0.0, 1.0],
             gap: 0.0,
             correction: 0.0,
+            wear: 0.0,
             touching: true,
             separation: true,
             normal_law: NormalLaw::Linear { stiffness: CONTACT },

@@ -1,11 +1,13 @@
 //! Contact pairs.
 
 use super::friction::contact_friction;
+use super::gap_field::GapField;
 use super::item::{Item, Number, named};
 use super::keys;
 use super::source::ModelText;
 use super::{Contact, NormalLaw};
 use crate::Result;
+use std::ops::Range;
 use toml::Spanned;
 
 /// The contact pairs; `unit` is metres per unit of the mesh.
@@ -20,7 +22,6 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
     item.require(raw.slave != raw.master, what, "Name the two surfaces that meet")?;
     let (friction, friction_curve) = contact_friction(item, &raw.friction)?;
     Ok(Contact {
-        name,
         slave: raw.slave.clone(),
         master: raw.master.clone(),
         law: law(item, &raw.law)?,
@@ -32,6 +33,9 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         adjust: item.positive_if_given(&raw.adjust, "adjust", "Give a distance in the mesh's unit")?.unwrap_or(0.0)
             * unit,
         clearance: clearance(item, raw, unit)?,
+        gap_field: gap_field(item, raw, &name)?,
+        wear: wear(item, raw)?,
+        name,
         place: item.place(),
     })
 }
@@ -49,6 +53,29 @@ fn clearance(item: &Item, raw: &keys::ContactTable, unit: f64) -> Result<Option<
     item.require_at(&gap.span(), raw.adjust.is_none(), what, "Leave one of them out")?;
     let value = item.check(gap, true, "clearance", "must be finite", "Give a distance in the mesh's unit")?;
     Ok(Some(value * unit))
+}
+
+/// The gap field of a file beside the model file.
+fn gap_field(item: &Item, raw: &keys::ContactTable, name: &str) -> Result<Option<GapField>> {
+    let Some(file) = &raw.gap else { return Ok(None) };
+    require_separation(item, raw, "gap", &file.span())?;
+    GapField::read(&item.beside(file.get_ref()), name).map(Some).map_err(|what| {
+        let advice = "Give a table (CSV) with the columns x_mm, y_mm, z_mm (two of them are enough) and gap_um";
+        item.error(&file.span(), &what, advice)
+    })
+}
+
+/// Archard's coefficient.
+fn wear(item: &Item, raw: &keys::ContactTable) -> Result<Option<f64>> {
+    let Some(coefficient) = &raw.wear else { return Ok(None) };
+    require_separation(item, raw, "wear", &coefficient.span())?;
+    item.positive(coefficient, "wear", "Give m2/N, such as 1e-14").map(Some)
+}
+
+/// The gap of a pair that may not open counts as zero.
+fn require_separation(item: &Item, raw: &keys::ContactTable, key: &str, span: &Range<usize>) -> Result<()> {
+    let what = format!("there is {key}, and the gap of a pair that may not open has no effect");
+    item.require_at(span, raw.separation != Some(false), &what, "Give separation = true")
 }
 
 /// The law that the file gives; none where the program is to propose one.

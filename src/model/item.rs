@@ -7,6 +7,7 @@ use super::{Place, names};
 use crate::{Error, Result};
 use std::collections::HashMap;
 use std::fmt::Display;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 /// A number and where it stands.
@@ -52,6 +53,11 @@ impl<'a> Item<'a> {
     /// Line of the table's header.
     pub fn line(&self) -> usize {
         self.source.line(self.span.start)
+    }
+
+    /// A path of the file, seen from the current directory.
+    pub fn beside(&self, path: &str) -> PathBuf {
+        self.source.file.parent().unwrap_or(Path::new("")).join(path)
     }
 
     /// Where the table's header stands.

@@ -185,6 +185,8 @@ tables! {
         pub search: Option<Number>,
         pub adjust: Option<Number>,
         pub clearance: Option<Number>,
+        pub gap: Option<Text>,
+        pub wear: Option<Number>,
     }
 
     #[derive(Clone, Copy)]

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::youngs;
 use super::friction::FrictionCurve;
+use super::gap_field::GapField;
 use super::{Connector, Equation, InstabilityCriterion, Place, PointMass, RigidSet, Tie, names, paths};
 use crate::algebra::{cross, scale, sub};
 use crate::element::ElementKind;
@@ -261,6 +262,10 @@ pub struct Contact {
     pub adjust: f64,
     /// Initial gap of all points in place of the mesh's, m; below 0 an overlap.
     pub clearance: Option<f64>,
+    /// Added to the initial gap, point by point: a measured topography, or what is worn off.
+    pub gap_field: Option<GapField>,
+    /// Archard's coefficient `k/H`, m2/N: depth worn off by pressure and sliding distance.
+    pub wear: Option<f64>,
     /// Where it stands.
     pub place: Place,
 }

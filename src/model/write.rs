@@ -183,6 +183,9 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
     out.optional("search", contact.search_distance.map(|distance| distance / unit));
     out.optional("adjust", (contact.adjust > 0.0).then_some(contact.adjust / unit));
     out.optional("clearance", contact.clearance.map(|gap| gap / unit));
+    let gap = contact.gap_field.as_ref().map(|field| std::path::absolute(&field.file).unwrap_or(field.file.clone()));
+    gap.into_iter().for_each(|file| out.line("gap", quoted(&file.display().to_string())));
+    out.optional("wear", contact.wear);
 }
 
 /// The key `friction` of a coefficient that depends on other things, its friction value given.

@@ -2,6 +2,7 @@
 
 use crate::Result;
 use crate::assembly::System;
+use crate::contact::Response;
 use crate::equilibrium::Equilibrium;
 use crate::native::Vector;
 use crate::results::Shape;
@@ -94,7 +95,8 @@ impl FieldWriter<'_> {
         let point_data = displacement.into_iter().chain(contact_arrays(&contact)).collect();
         let cell_data = vec![("part", Values::Integers(&parts)), ("von_mises", Values::Scalars(&von_mises))];
         self.volume(&volume, name, point_data, cell_data)?;
-        let write = |folder| write_contact(folder, full, &surface, &u, equilibrium.friction);
+        let contact = format!("contact_mu{}", friction_name(equilibrium.friction));
+        let write = |folder| write_contact(folder, full, &surface, &u, &contact);
         self.system.k.comm().agree(self.folder.map_or(Ok(()), write))
     }
 
@@ -147,13 +149,31 @@ pub fn write_free_mode(
     volume.write(system.k.comm(), folder, &name, vec![("real", Values::Vectors(&shape))], Vec::new())
 }
 
+/// Writes the contact surfaces of an equilibrium, given by its displacements and responses. Collective; the root has
+/// the folder.
+///
+/// # Errors
+/// The system's, with the file's path; PETSc's.
+pub fn write_contact_state(
+    folder: Option<&Folder>,
+    full: &FullModel,
+    system: &System,
+    (u, responses): (&Vector, &[Response]),
+    name: &str,
+) -> Result<()> {
+    let u = full.displacements(system, u)?;
+    let surface = ContactSurface::new(&full.mesh, &full.interface, responses);
+    let write = |folder| write_contact(folder, full, &surface, &u, name);
+    system.k.comm().agree(folder.map_or(Ok(()), write))
+}
+
 /// Writes the contact surfaces alone.
 fn write_contact(
     folder: &Folder,
     full: &FullModel,
     surface: &ContactSurface,
     u: &[[f64; 3]],
-    friction: f64,
+    name: &str,
 ) -> Result<()> {
     let of = |values: &[[f64; 3]]| surface.nodes.iter().map(|&n| values[n as usize]).collect::<Vec<_>>();
     let (points, u) = (of(&full.mesh.nodes), of(u));
@@ -164,7 +184,7 @@ fn write_contact(
         point_data: displacement.into_iter().chain(contact_arrays(&surface.fields)).collect(),
         cell_data: vec![("pair", Values::Integers(&surface.pairs))],
     };
-    folder.write(&format!("contact_mu{}.vtu", friction_name(friction)), |mut out| grid.write(&mut out))
+    folder.write(&format!("{name}.vtu"), |mut out| grid.write(&mut out))
 }
 
 fn contact_arrays(fields: &Fields) -> [Array<'_>; 3] {

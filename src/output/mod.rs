@@ -26,3 +26,4 @@ pub mod sweep_text;
 pub mod text;
 mod volume;
 pub mod vtu;
+pub mod wear;

@@ -30,9 +30,10 @@ use super::layout::{self, Points};
 /// they are.
 ///
 /// # Errors
-/// [`Error::Input`] with file, line and pair: nothing slides, fewer than three contact points a reference node, or a
-/// cell on a line.
+/// [`Error::Input`] with file, line and pair: nothing slides, fewer than three contact points a reference node, a cell
+/// on a line, or a gap field of a sliding pair.
 pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -> Result<Interface> {
+    refuse_gap_fields(model, full)?;
     let areas: Vec<f64> = full.pairs.iter().filter(|p| p.is_sliding()).map(|p| p.statistics.weight).collect();
     let refuse = |what: String| Err(Error::input(format!("{}: {what}", model.file.display())));
     if areas.is_empty() {
@@ -61,6 +62,14 @@ pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -
         reduced.pairs.push(ContactPair { points: first..reduced.points.len(), statistics, ..pair.clone() });
     }
     Ok(reduced)
+}
+
+/// Refuses gap fields of sliding pairs: a reference pair has one gap, that of the mesh.
+fn refuse_gap_fields(model: &Model, full: &Interface) -> Result<()> {
+    let pairs = model.contacts.iter().zip(&full.pairs).filter(|(_, pair)| pair.is_sliding());
+    let Some((contact, _)) = pairs.into_iter().find(|(contact, _)| contact.gap_field.is_some()) else { return Ok(()) };
+    let what = "a reference pair has the mesh's gap, none of a gap field. Use full contact, or leave out gap";
+    Err(model.error(contact.place, format_args!("contact {:?}: {what}", contact.name)))
 }
 
 /// A sliding pair to be reduced.

@@ -266,6 +266,7 @@ fn read_contacts(group: &Group, pairs: &[ContactPair], texts: &[PairText]) -> hd
             normal: normal[i],
             gap: gap[i],
             correction: 0.0,
+            wear: 0.0,
             touching: touching[i] != 0,
             separation: own.separation,
             normal_law: own.law.clone(),

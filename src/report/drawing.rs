@@ -158,7 +158,7 @@ fn face(findings: &Findings, pair: usize) -> Option<Face> {
 
 /// Two axes of the plane that a face lies in on the whole, as one sees it who looks at the face: sideways that global
 /// axis which lies in it most. A face of single points is seen along z.
-fn mean_plane(nodes: &[[f64; 3]], triangles: &[[u32; 3]]) -> ([f64; 3], [f64; 3]) {
+pub(super) fn mean_plane(nodes: &[[f64; 3]], triangles: &[[u32; 3]]) -> ([f64; 3], [f64; 3]) {
     let mut normal = [0.0; 3];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|n| nodes[n as usize]);

@@ -18,7 +18,7 @@ use crate::output::overwrite::{FileKind, head_contains};
 use crate::results::{Results, Status, Value};
 use crate::{Error, Result};
 
-const STYLE: &str = include_str!("assets/page.css");
+pub(super) const STYLE: &str = include_str!("assets/page.css");
 /// Names are declared before they are used.
 const SCRIPT: [&str; 10] = [
     include_str!("assets/numbers.js"),
@@ -93,7 +93,7 @@ pub fn page(results: &Results) -> Result<String> {
 }
 
 /// A digest as a content security policy has it.
-fn digest(text: &str) -> String {
+pub(super) fn digest(text: &str) -> String {
     format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 

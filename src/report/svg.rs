@@ -52,6 +52,12 @@ impl Sheet {
         let _ = writeln!(self.body, r#"<polyline points="{}" fill="none" {style}/>"#, points.join(" "));
     }
 
+    /// A filled polygon.
+    pub fn polygon(&mut self, corners: &[[f64; 2]], style: &str) {
+        let points: Vec<String> = corners.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        let _ = writeln!(self.body, r#"<polygon points="{}" {style}/>"#, points.join(" "));
+    }
+
     /// A circle.
     pub fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &str) {
         let _ = writeln!(self.body, r#"<circle cx="{x:.1}" cy="{y:.1}" r="{radius:.1}" {style}/>"#);

@@ -12,6 +12,7 @@ mod source;
 #[cfg(test)]
 pub mod testing;
 mod verdict;
+mod wear;
 
 pub use certificate::{Certificate, CertifiedMode};
 pub use external::{ExternalMode, ExternalResults, ExternalValue};
@@ -20,6 +21,7 @@ pub use samples::spread;
 pub use shape::largest;
 pub use source::{Kind, Source};
 pub use verdict::{Doubt, Status, Verdict};
+pub use wear::{PairWear, Wear, WearEnd, WearStep, WornPoint};
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};

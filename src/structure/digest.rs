@@ -23,6 +23,11 @@ pub fn digest(path: &Path) -> Result<String> {
     }
 }
 
+/// SHA-256 of a text, in hexadecimal.
+pub fn digest_of_text(text: &str) -> String {
+    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

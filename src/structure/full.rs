@@ -17,6 +17,7 @@ use crate::results::{About, ContactFaces, Pair, Part};
 use crate::{Error, Result};
 
 use super::contact_surface::{ContactSurface, Fields};
+use super::digest::digest_of_text;
 use super::distribution::distribute;
 use super::files::ModelFiles;
 use super::{digest, free_motions, pairs, plausibility};
@@ -256,12 +257,19 @@ impl FullModel {
         self.interface.pairs.iter().find(|pair| pair.swept).map_or(0.0, |pair| pair.friction)
     }
 
-    /// SHA-256 of the model's file and of the mesh's; the root has them. Collective.
+    /// SHA-256 of the model's file, with its gap fields where it has any, and of the mesh's; the root has them.
+    /// Collective.
     ///
     /// # Errors
     /// The system's, with the path.
     pub fn digests(&self, comm: &Comm) -> Result<[String; 2]> {
-        let both = || Ok([digest(&self.model.file)?, digest(&self.model.mesh_file)?]);
+        let both = || {
+            let fields = self.model.contacts.iter().filter_map(|contact| contact.gap_field.as_ref());
+            let fields = fields.map(|field| digest(&field.file)).collect::<Result<Vec<String>>>()?;
+            let model = digest(&self.model.file)?;
+            let model = if fields.is_empty() { model } else { digest_of_text(&(model + &fields.concat())) };
+            Ok([model, digest(&self.model.mesh_file)?])
+        };
         comm.agree(if comm.is_root() { both() } else { Ok([String::new(), String::new()]) })
     }
 

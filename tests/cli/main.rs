@@ -15,8 +15,10 @@ mod parallel;
 mod reduced_brake;
 mod results_file;
 mod resume;
+mod states;
 mod strange_input;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;
 mod units;
+mod wear;

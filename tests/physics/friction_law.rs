@@ -62,6 +62,7 @@ fn belt(friction_law: FrictionLaw) -> Interface {
         normal: [0.0, 0.0, 1.0],
         gap: 0.0,
         correction: 0.0,
+        wear: 0.0,
         touching: true,
         separation: true,
         normal_law: normal_law.clone(),

@@ -5,7 +5,9 @@ use std::path::Path;
 use squeal::native::{Comm, Session};
 
 use super::table::{Case, document};
-use super::{annulus, cattaneo_mindlin, contact_patch, hertz, konter, minimal_models, nafems_fv52, pads_on_disc, td1};
+use super::{
+    annulus, cattaneo_mindlin, contact_patch, hertz, konter, minimal_models, nafems_fv52, pads_on_disc, td1, wear,
+};
 
 /// What the document begins with.
 const PREFACE: &str = "# Validation
@@ -19,7 +21,7 @@ where a number is no longer the one below.
 ";
 
 /// The cases in the order of the document, but for TD-1.
-const CASES: [fn(&Comm) -> Vec<Case>; 8] = [
+const CASES: [fn(&Comm) -> Vec<Case>; 9] = [
     minimal_models::cases,
     pads_on_disc::cases,
     nafems_fv52::cases,
@@ -28,6 +30,7 @@ const CASES: [fn(&Comm) -> Vec<Case>; 8] = [
     hertz::cases,
     cattaneo_mindlin::cases,
     konter::cases,
+    wear::cases,
 ];
 
 /// Writes the document. `make validation` runs it; it takes minutes.

@@ -17,3 +17,4 @@ mod pads_on_disc;
 mod support;
 mod table;
 mod td1;
+mod wear;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::contact::search::Alone;
 use crate::contact::testing::{contact, flipped, model, pads_on_disc, patch, skin};
-use crate::model::Contact;
+use crate::model::{Contact, GapField};
 use nalgebra::Vector3;
 
 /// The two pads on their disc.
@@ -55,6 +55,38 @@ fn pads_on_a_disc_slide_along_the_circles_of_the_disc() {
         assert!((Vector3::from(direction) - circle).norm() < 1e-14);
         assert!((speed - 5.0 * radius).abs() < 1e-14);
     }
+}
+
+#[test]
+fn a_gap_field_is_added_to_the_gaps_and_leaves_what_touches_touching() {
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("worn.csv");
+    let rows: String = (0..=24).map(|i| format!("{},{},{i}\n", 250 * (i % 5), 250 * (i / 5))).collect();
+    std::fs::write(&file, "x_mm,y_mm,gap_um\n".to_owned() + &rows).unwrap();
+    let field = GapField::read(&file, "pad").unwrap();
+    let mesh = plates(1e-9);
+    let build = |field: Option<&GapField>| {
+        let contact = Contact { gap_field: field.cloned(), ..pad() };
+        Interface::build(&model(vec![contact], true), &mesh, &Alone)
+    };
+    let (flat, worn) = (build(None).unwrap(), build(Some(&field)).unwrap());
+    let positions: Vec<[f64; 3]> = flat.points.iter().map(|point| point.position).collect();
+    let expected = field.at(&positions).unwrap();
+    for ((flat, worn), gap) in flat.points.iter().zip(&worn.points).zip(&expected) {
+        assert!((worn.law.gap - flat.law.gap - gap).abs() < 1e-18);
+        assert!(flat.law.touching && worn.law.touching);
+    }
+    let [low, high] = worn.pairs[0].statistics.gap;
+    assert!(low < 2e-6 && high > 22e-6 && high - low < 24e-6, "{low} {high}");
+    let elsewhere = Contact { gap_field: Some(field), ..pad() };
+    let message = refused(elsewhere, true, &translated(plates(0.0), 1e3));
+    assert!(message.starts_with("brake.toml:12: contact \"pad\": no row of "), "{message}");
+}
+
+/// A mesh moved along x.
+fn translated(mut mesh: Mesh, by: f64) -> Mesh {
+    mesh.nodes.iter_mut().for_each(|x| x[0] += by);
+    mesh
 }
 
 #[test]

@@ -42,6 +42,9 @@ pub struct PointLaw {
     pub gap: f64,
     /// Added to the penetration, m: what makes a reduced model's law give the full model's force. Else 0.
     pub correction: f64,
+    /// Depth that is worn off while the point comes to its equilibrium, by pressure, m/Pa; 0 outside steps of wear.
+    /// The normal law then acts on what is left of the penetration, `e + wear P(e) = d`.
+    pub wear: f64,
     /// Whether the surfaces touch before they are loaded: [`settle`] closes such points.
     pub touching: bool,
     /// Whether the point may open.
@@ -163,8 +166,8 @@ mod testing {
 
     /// Points with one tangential law; sliding ones get a direction in their tangent plane.
     pub fn point_with(tangential: Tangential) -> impl Strategy<Value = PointLaw> {
-        let numbers = (0.5..2.0, -0.3..0.3);
-        (frame(), law(), numbers, any::<bool>()).prop_map(move |([n, t], law, (weight, gap), separation)| {
+        let numbers = (0.5..2.0, -0.3..0.3, prop_oneof![Just(0.0), 0.0..2.0]);
+        (frame(), law(), numbers, any::<bool>()).prop_map(move |([n, t], law, (weight, gap, wear), separation)| {
             let mut tangential = tangential;
             if let Tangential::Sliding { direction, .. } = &mut tangential {
                 *direction = t;
@@ -174,6 +177,7 @@ mod testing {
                 normal: n,
                 gap,
                 correction: 0.0,
+                wear,
                 touching: gap <= 0.0,
                 separation,
                 normal_law: law,

@@ -253,6 +253,7 @@ mod tests {
             normal: [0.0, 0.0, -1.0],
             gap: 0.0,
             correction: 0.0,
+            wear: 0.0,
             touching: true,
             separation: true,
             normal_law: crate::model::NormalLaw::Linear { stiffness: 2e13 },

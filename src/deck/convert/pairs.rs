@@ -31,6 +31,8 @@ impl<'d> Conversion<'d> {
                 return Err(self.assembly.error(pair.place, format_args!("the contact pair {name} is there already")));
             }
             contacts.push(Contact {
+                gap_field: None,
+                wear: None,
                 name,
                 slave,
                 master,

@@ -48,6 +48,25 @@ fn parts_have_one_kind_of_element_for_each_shape() {
 }
 
 #[test]
+fn wear_and_gap_fields_are_of_pairs_that_may_open() {
+    let with = |keys: &str| parsed(&GOOD.replace("friction = 0.5\n", &format!("friction = 0.5\n{keys}\n")));
+    let model = with("wear = 2e-14").unwrap();
+    assert_eq!((model.contacts[0].wear, &model.contacts[0].gap_field), (Some(2e-14), &None));
+    assert_eq!(parsed(&crate::model::write(&model, "brake.msh")).unwrap().contacts[0].wear, Some(2e-14));
+    assert!(with("wear = 0").unwrap_err().contains("wear must be above 0, not 0 (contact \"pair\"). Give m2/N"));
+    let closed = with("wear = 2e-14\nseparation = false").unwrap_err();
+    assert!(closed.contains("there is wear, and the gap of a pair that may not open has no effect"), "{closed}");
+    let missing = with("gap = \"worn.csv\"").unwrap_err();
+    assert!(missing.contains("the gaps of cases/worn.csv cannot be read"), "{missing}");
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("worn.csv");
+    std::fs::write(&file, "x_mm,y_mm,gap_um\n1,2,3\n").unwrap();
+    let model = with(&format!("gap = \"{}\"", file.display())).unwrap();
+    let again = parsed(&crate::model::write(&model, "brake.msh")).unwrap();
+    assert_eq!(again.contacts[0].gap_field, model.contacts[0].gap_field);
+}
+
+#[test]
 fn contacts_are_checked() {
     let wrong = |to: &str, expected: &str| {
         let said = parsed(&GOOD.replace("law = { linear = 2e13 }", to)).unwrap_err();

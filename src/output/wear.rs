@@ -1,0 +1,91 @@
+//! Wear as text, tables and JSON.
+
+use serde::Serialize;
+
+use super::columns::write_csv;
+use super::folder::Folder;
+use super::text::{aligned, cost, files as files_text, friction};
+use crate::Result;
+use crate::results::{PairWear, Wear, WearEnd};
+
+/// Name of the table of worn gaps, which `gap` of a contact reads.
+pub const GAPS: &str = "worn.csv";
+
+/// The steps in words, with the files of their folder.
+pub fn summary(wear: &Wear, place: &str) -> String {
+    let files = [
+        ("summary.txt", "this text"),
+        ("steps.csv", "wear by step and pair"),
+        (GAPS, "gaps and pressures by contact point: gap = \"worn.csv\" of a [[contact]] reads it"),
+        ("contact_before.vtu, contact_worn.vtu", "pressure before and after, for ParaView"),
+    ];
+    text(wear) + &cost(wear.seconds, wear.n_ranks) + &files_text(place, &files)
+}
+
+/// The steps in words.
+pub fn text(wear: &Wear) -> String {
+    let head = format!("{}: wear at friction {}\n\n", wear.title, friction(wear.friction));
+    head + &steps_text(wear) + &end_text(wear) + &balance_text(wear)
+}
+
+fn steps_text(wear: &Wear) -> String {
+    let heading = "\tsliding\tp v kW/m2\t\t\tspread\tpressure\tdepth\tworn\t\n\
+                   pair\tdistance m\tmean\tleast\tmost\tof p v %\tmax MPa\tmax um\tvolume mm3\tmass g";
+    let row = |distance: f64, pair: &PairWear| {
+        let [mean, least, most] = [pair.mean, pair.smallest, pair.largest].map(|heating| 1e-3 * heating);
+        format!(
+            "{}\t{distance:.4e}\t{mean:.2}\t{least:.2}\t{most:.2}\t{:.3}\t{:.3}\t{:.3}\t{:.4}\t{:.5}",
+            pair.pair,
+            100.0 * pair.spread,
+            1e-6 * pair.pressure,
+            1e6 * pair.depth,
+            1e9 * pair.volume,
+            1e3 * pair.mass
+        )
+    };
+    let rows = wear.steps.iter().flat_map(|step| step.pairs.iter().map(|pair| row(step.distance, pair)));
+    aligned(heading, rows)
+}
+
+fn end_text(wear: &Wear) -> String {
+    let spread = wear.steps.last().map_or(0.0, |step| 100.0 * step.spread());
+    match wear.end {
+        WearEnd::Distance => String::new(),
+        WearEnd::Uniform => format!("\nthe wear rate is uniform: p v differs by {spread:.3} % (standard deviation)\n"),
+        WearEnd::Steady => format!(
+            "\nthe wear rate changes no more and is not uniform: p v differs by {spread:.3} %. Parts tilt at a constant rate, \
+             or points have no contact\n"
+        ),
+    }
+}
+
+/// Volume of the gaps beside Archard's.
+fn balance_text(wear: &Wear) -> String {
+    let Some(last) = wear.steps.last() else { return String::new() };
+    let off = |pair: &PairWear| (pair.volume - pair.archard_volume).abs() / pair.archard_volume.max(f64::MIN_POSITIVE);
+    let worst = last.pairs.iter().map(off).fold(0.0, f64::max);
+    format!("\nmass balance: worn volume and k sum p v dt differ by {worst:.1e}\n")
+}
+
+/// A pair after a step.
+#[derive(Default, Serialize)]
+struct StepRow<'a> {
+    step: usize,
+    distance_m: f64,
+    #[serde(flatten)]
+    pair: Option<&'a PairWear>,
+}
+
+/// Writes the folder's files beside the pressures. Not collective.
+///
+/// # Errors
+/// The system's, with the file's path.
+pub fn write(wear: &Wear, folder: &Folder, summary: &str) -> Result<()> {
+    folder.write("summary.txt", |out| out.write_all(summary.as_bytes()))?;
+    let steps = wear.steps.iter().enumerate();
+    let rows = steps.flat_map(|(step, own)| {
+        own.pairs.iter().map(move |pair| StepRow { step, distance_m: own.distance, pair: Some(pair) })
+    });
+    folder.write("steps.csv", |out| write_csv(out, rows))?;
+    folder.write(GAPS, |out| write_csv(out, wear.points.iter().cloned()))
+}
