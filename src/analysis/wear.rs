@@ -52,8 +52,8 @@ const MAX_DOUBLINGS: usize = 60;
 /// `p v` is steady where a step changes it by less than this fraction of the tolerance of its uniformity.
 const STEADY: f64 = 0.01;
 
-/// Wears the sliding pairs of a brake that have a wear coefficient. The brake has the worn gaps afterwards. The pressure
-/// before and after goes into the folder, which the root has. Collective.
+/// Wears the sliding pairs of a brake that have a wear coefficient. The brake has the worn gaps afterwards. The
+/// pressure before and after goes into the folder, which the root has. Collective.
 ///
 /// ```no_run
 /// use squeal::analysis::{WearGoal, WearOptions, wear};
@@ -298,31 +298,35 @@ impl<'a> State<'a> {
         own.map_or(0.0, |own| own.material.density)
     }
 
-    /// The points of the pairs that wear.
+    /// The points of the pairs that wear, by place, which is the same on any number of ranks.
     fn points(&self, before: &[Response]) -> Vec<WornPoint> {
-        let contacts = &self.full.model.contacts;
-        let field = |pair: usize| contacts[pair].gap_field.as_ref();
-        let mut points = Vec::new();
-        for (i, pair) in self.interface.pairs.iter().enumerate().filter(|(i, _)| self.coefficients[*i] > 0.0) {
-            let positions: Vec<[f64; 3]> = pair.points.clone().map(|a| self.interface.points[a].position).collect();
-            let given = field(i).and_then(|field| field.at(&positions).ok());
-            let given = given.unwrap_or_else(|| vec![0.0; positions.len()]);
-            for ((a, [x_m, y_m, z_m]), given) in pair.points.clone().zip(positions).zip(given) {
-                let wear_m = self.interface.points[a].law.gap - self.full.interface.points[a].law.gap;
-                points.push(WornPoint {
-                    contact: pair.name.clone(),
-                    x_m,
-                    y_m,
-                    z_m,
-                    gap_m: given + wear_m,
-                    wear_m,
-                    area_m2: self.interface.points[a].law.weight,
-                    speed_m_per_s: self.speeds[a],
-                    pressure_before_pa: self.pressure(a, before),
-                    pressure_pa: self.pressure(a, &self.responses),
-                });
+        let pairs = (0..self.coefficients.len()).filter(|&i| self.coefficients[i] > 0.0);
+        pairs.flat_map(|i| self.points_of(i, before)).collect()
+    }
+
+    fn points_of(&self, pair: usize, before: &[Response]) -> Vec<WornPoint> {
+        let own = &self.interface.pairs[pair];
+        let positions: Vec<[f64; 3]> = own.points.clone().map(|a| self.interface.points[a].position).collect();
+        let field = self.full.model.contacts[pair].gap_field.as_ref();
+        let given = field.and_then(|field| field.at(&positions).ok()).unwrap_or_else(|| vec![0.0; positions.len()]);
+        let point = |((a, [x_m, y_m, z_m]), given): ((usize, [f64; 3]), f64)| {
+            let wear_m = self.interface.points[a].law.gap - self.full.interface.points[a].law.gap;
+            WornPoint {
+                contact: own.name.clone(),
+                x_m,
+                y_m,
+                z_m,
+                gap_m: given + wear_m,
+                wear_m,
+                area_m2: self.interface.points[a].law.weight,
+                speed_m_per_s: self.speeds[a],
+                pressure_before_pa: self.pressure(a, before),
+                pressure_pa: self.pressure(a, &self.responses),
             }
-        }
+        };
+        let mut points: Vec<WornPoint> = own.points.clone().zip(positions).zip(given).map(point).collect();
+        let place = |point: &WornPoint| [point.x_m, point.y_m, point.z_m];
+        points.sort_by(|a, b| place(a).partial_cmp(&place(b)).expect("coordinates are numbers"));
         points
     }
 

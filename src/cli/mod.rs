@@ -159,7 +159,7 @@ enum Command {
     Explore(explore::Explore),
     /// Wear the sliding contacts of a model by Archard's law, to a sliding distance or until the wear rate is uniform
     Wear(wear::Wear),
-    /// Find the modes of a model in named states, such as forward and reverse, hot and cold, new and worn, and compare them
+    /// Compare the modes of a model in named states, such as forward and reverse, hot and cold, new and worn
     ///
     /// Each state has a folder of its own, as `squeal stability` makes it. Run again, only states that are missing or
     /// out of date are made.

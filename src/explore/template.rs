@@ -106,11 +106,12 @@ impl Template {
     }
 }
 
-/// The text of a model file whose mesh has another path, with the band of a study (Hz).
+/// The text of a model file whose mesh has another path, with the band of a study (Hz). Gap fields, which are beside
+/// the model file `file`, get their whole path.
 ///
 /// # Errors
 /// [`Error::Input`] where the text is no model file.
-pub fn standing_alone(text: &str, mesh: &str, band: [f64; 2]) -> Result<String> {
+pub fn standing_alone(text: &str, file: &Path, mesh: &str, band: [f64; 2]) -> Result<String> {
     let mut document: DocumentMut = text.parse().map_err(|reason| Error::input(format!("no model file: {reason}")))?;
     let table = document.get_mut("mesh").and_then(Item::as_table_like_mut);
     let table = table.ok_or_else(|| Error::input("the model file has no [mesh]"))?;
@@ -119,6 +120,11 @@ pub fn standing_alone(text: &str, mesh: &str, band: [f64; 2]) -> Result<String> 
     stability.into_iter().for_each(|table| {
         table.insert("band", value(band.into_iter().collect::<Array>()));
     });
+    let contacts = document.get_mut("contact").and_then(Item::as_array_of_tables_mut);
+    for gap in contacts.into_iter().flat_map(|list| list.iter_mut()).filter_map(|contact| contact.get_mut("gap")) {
+        let own = file.parent().unwrap_or(Path::new("")).join(gap.as_str().unwrap_or_default());
+        *gap = value(std::path::absolute(&own).map_err(Error::io(&own))?.display().to_string());
+    }
     Ok(document.to_string())
 }
 
@@ -250,7 +256,12 @@ mod tests {
 
     #[test]
     fn a_model_file_may_stand_elsewhere() {
-        let text = standing_alone(&std::fs::read_to_string(FILE).unwrap(), "../data/pads_on_disc.msh", [0.0, 500.0]);
+        let text = std::fs::read_to_string(FILE).unwrap();
+        let worn = text.replacen("[[contact]]\n", "[[contact]]\ngap = \"worn.csv\"\n", 1);
+        let worn = standing_alone(&worn, FILE.as_ref(), "a.msh", [0.0, 500.0]).unwrap();
+        let gap = std::path::absolute("tests/data/worn.csv").unwrap();
+        assert!(worn.contains(&format!("gap = \"{}\"", gap.display())), "{worn}");
+        let text = standing_alone(&text, FILE.as_ref(), "../data/pads_on_disc.msh", [0.0, 500.0]);
         let model = model::parse(&text.unwrap(), "tests/data/worst.toml".as_ref()).unwrap();
         assert_eq!(model.mesh_file, Path::new("tests/data/../data/pads_on_disc.msh"));
         assert_eq!(model.band, [0.0, 500.0]);

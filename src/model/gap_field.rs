@@ -1,8 +1,8 @@
 //! Gap fields: a measured topography of a contact surface, or what wear has taken off it, from a table.
 //!
 //! ```text
-//! contact,x_mm,y_mm,z_mm,gap_um       a head: each name has its unit; two coordinates are enough; contact may be missing
-//! disc / pad,12.5,98,0,3.2            rows in any order; other columns are left alone
+//! contact,x_mm,y_mm,z_mm,gap_um    a head with units; two coordinates are enough; contact may be missing
+//! disc / pad,12.5,98,0,3.2         rows in any order; other columns are left alone
 //! ```
 
 use std::path::{Path, PathBuf};

@@ -81,7 +81,7 @@ pub struct InstabilityRow {
     pub onset_friction: f64,
     /// The frequency there.
     pub onset_frequency_hz: f64,
-    /// Whether the onset is a Hopf point; else it grows from the first value, or from a value that follows a stable one.
+    /// Whether the onset is a Hopf point; else it grows from the first value, or from one that follows a stable one.
     pub onset_is_followed: bool,
     /// Frequency of the first state's mode that has the most in common with it, at the same friction value.
     pub first_state_frequency_hz: Option<f64>,

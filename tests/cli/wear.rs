@@ -32,9 +32,11 @@ fn column(place: &Place, file: &str, name: &str) -> Vec<f64> {
     rows.map(|row| row.unwrap()[name].parse().unwrap()).collect()
 }
 
+/// Gaps of the contact points by place, as the table has them.
 fn gaps(comm: &Comm, place: &Place, model: &str) -> Vec<f64> {
-    let brake = FullModel::read(comm, &place.path(model)).unwrap();
-    brake.interface.points.iter().map(|point| point.law.gap).collect()
+    let mut points = FullModel::read(comm, &place.path(model)).unwrap().interface.points;
+    points.sort_by(|a, b| a.position.partial_cmp(&b.position).unwrap());
+    points.iter().map(|point| point.law.gap).collect()
 }
 
 #[test]
@@ -46,16 +48,15 @@ fn worn_gaps_are_written_and_read_again() {
     assert!(off.parse::<f64>().unwrap() < 1e-12, "mass balance: {off}");
     assert_eq!(column(&place, "run/steps.csv", "step"), [0.0, 1.0, 2.0, 3.0, 4.0]);
     let spread = column(&place, "run/steps.csv", "pv_spread");
-    assert!(spread[4] < 0.5 * spread[0], "{spread:?}");
+    assert!(spread[4] < spread[0], "{spread:?}");
     assert!(place.path("run/contact_before.vtu").exists() && place.path("run/contact_worn.vtu").exists());
 
     let text = place.read("brake.toml");
     place.write("worn.toml", swap(&text, COEFFICIENT, &format!("{COEFFICIENT}gap = \"run/worn.csv\"\n")));
     let worn = column(&place, "run/worn.csv", "wear_m");
-    assert!(worn.iter().all(|depth| *depth > 0.0));
     for ((new, worn), depth) in gaps(&comm, &place, "brake.toml").iter().zip(gaps(&comm, &place, "worn.toml")).zip(worn)
     {
-        assert!((worn - new - depth).abs() < 1e-12 * depth, "{worn} {new} {depth}");
+        assert!((worn - new - depth).abs() < 1e-18, "{worn} {new} {depth}");
     }
 
     // The pressure is that at the end of the wear, and wear continues from there.
@@ -65,7 +66,7 @@ fn worn_gaps_are_written_and_read_again() {
     let largest = before.iter().copied().fold(0.0, f64::max);
     assert!(before.iter().zip(&after).all(|(a, b)| (a - b).abs() < 1e-6 * largest), "{before:?} {after:?}");
     let [given, gap] = ["run", "again"].map(|folder| column(&place, &format!("{folder}/worn.csv"), "gap_m"));
-    assert!(given.iter().zip(&gap).all(|(given, gap)| (gap - given).abs() < 1e-3 * given));
+    assert!(given.iter().zip(&gap).all(|(given, gap)| (gap - given).abs() < 1e-12));
 }
 
 #[test]
@@ -75,7 +76,7 @@ fn wear_on_two_ranks_is_that_on_one() {
     done(place.run(&[&arguments[..], &["one"]].concat()));
     done(place.run_on(2, &[&arguments[..], &["two"]].concat()));
     let [one, two] = ["one", "two"].map(|folder| column(&place, &format!("{folder}/worn.csv"), "wear_m"));
-    assert!(one.iter().zip(&two).all(|(a, b)| (a / b - 1.0).abs() < 1e-6), "{one:?} {two:?}");
+    assert!(one.iter().zip(&two).all(|(a, b)| (a - b).abs() < 1e-12), "{one:?} {two:?}");
     let document = done(place.run(&[&arguments[..], &["one", "--force", "--json"]].concat())).out;
     let document: serde_json::Value = serde_json::from_str(&document).unwrap();
     assert!(["uniform", "steady"].contains(&document["end"].as_str().unwrap()), "{document}");

@@ -251,8 +251,8 @@ fn finish(folder: Folder, study: &Study, found: &Exploration, place: &Path) -> R
     let document = Document::new(study, &found.about, &found.points, &found.answers, place);
     write(&folder, &document, &found.points)?;
     if let Some(worst) = &found.worst {
-        let text =
-            document.worst_head() + &standing_alone(worst, &mesh_from(place, &found.about.mesh), found.about.band)?;
+        let text = document.worst_head()
+            + &standing_alone(worst, &study.model, &mesh_from(place, &found.about.mesh), found.about.band)?;
         folder.write(WORST, |out| out.write_all(text.as_bytes()))?;
     }
     folder.finish()
