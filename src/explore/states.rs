@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn mistakes_are_reported_with_their_line() {
         assert!(
-            message("name = \"worn\"", "name = \"new\"").contains("a/states.toml:8: state \"new\": the name is taken")
+            message("name = \"worn\"", "name = \"new\"").contains("a/states.toml:9: state \"new\": the name is taken")
         );
         assert!(message("distance = 1e4", "distance = 0").contains("give wear = { distance"));
         assert!(message("distance = 1e4", "distance = 1, until_uniform = 1").contains("give wear = { distance"));
