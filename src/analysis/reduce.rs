@@ -101,7 +101,7 @@ pub fn reduce(
     let start = Instant::now();
     let place = SuperElementPlace { file: &options.file, force: options.force };
     place.begin(comm, model, observer)?;
-    let friction = options.friction.unwrap_or_else(|| model.own_friction());
+    let friction = options.friction.map_or_else(|| model.own_friction(), Ok)?;
     let limit = options.limit.unwrap_or_else(|| model.reduction_limit());
     observer.event(Event::Stage("assembling"));
     let system = model.assemble(comm, &model.families()?)?;

@@ -103,7 +103,7 @@ impl<'a> Plan<'a> {
             full.require_constrained(comm)?;
             full.interface = all;
         }
-        let reduced_at = options.reduced_at.unwrap_or_else(|| full.own_friction());
+        let reduced_at = options.reduced_at.map_or_else(|| full.own_friction(), Ok)?;
         let [model, mesh] = full.digests(comm)?;
         let (program, more) = (env!("CARGO_PKG_VERSION"), &options.identity);
         let identity = format!("squeal {program} {more}, model {model}, mesh {mesh}");

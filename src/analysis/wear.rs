@@ -81,7 +81,7 @@ pub fn wear(
     warn(comm, full, observer);
     observer.event(Event::Stage("assembling"));
     let system = full.assemble(comm, &full.families()?)?;
-    let friction = options.friction.unwrap_or_else(|| full.own_friction());
+    let friction = options.friction.map_or_else(|| full.own_friction(), Ok)?;
     let mut state = State::new(full, &system, coefficients, friction, observer)?;
     write_contact_state(folder, full, &system, (&state.u, &state.responses), "contact_before")?;
     let before = state.responses.clone();

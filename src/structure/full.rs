@@ -247,14 +247,17 @@ impl FullModel {
     /// own.
     ///
     /// # Errors
-    /// [`Error::Input`] where no pair slides.
+    /// [`Error::Input`] where no pair slides; where none is given and the pairs differ.
     pub fn friction_values(&self, given: Option<&[f64]>) -> Result<Vec<f64>> {
-        super::friction_values(given, &self.model.frictions, &self.interface, &self.model.file)
+        super::friction::friction_values(given, &self.model.frictions, &self.interface, &self.model.file)
     }
 
     /// The friction coefficient of the swept pairs in the model file; 0 where no pair slides.
-    pub fn own_friction(&self) -> f64 {
-        self.interface.pairs.iter().find(|pair| pair.swept).map_or(0.0, |pair| pair.friction)
+    ///
+    /// # Errors
+    /// [`Error::Input`] where they differ.
+    pub fn own_friction(&self) -> Result<f64> {
+        super::friction::own_friction(&self.interface, &self.model.file).map(|own| own.unwrap_or(0.0))
     }
 
     /// SHA-256 of the model's file, with its gap fields where it has any, and of the mesh's; the root has them.

@@ -17,6 +17,7 @@ mod equilibrium_checks;
 mod families;
 mod files;
 mod free_motions;
+mod friction;
 mod full;
 pub mod nodal_basis;
 pub mod plausibility;
@@ -321,22 +322,4 @@ fn pairs(interface: &Interface) -> Vec<Pair> {
         proposed_stiffness: None,
     };
     interface.pairs.iter().map(of).collect()
-}
-
-/// The values of the friction coefficient to analyse: those given, else those of a file, else the swept pairs'.
-///
-/// # Errors
-/// [`Error::Input`] where no pair slides.
-fn friction_values(given: Option<&[f64]>, own: &[f64], interface: &Interface, file: &Path) -> Result<Vec<f64>> {
-    if let Some(list) = given {
-        return Ok(list.to_vec());
-    }
-    if !own.is_empty() {
-        return Ok(own.to_vec());
-    }
-    let mut pairs = interface.pairs.iter().filter(|pair| pair.swept).map(|pair| pair.friction);
-    pairs.next().map(|mu| vec![mu]).ok_or_else(|| {
-        let what = "no contact pair slides, so there is no friction coefficient to sweep";
-        Error::input(format!("{}: {what}. Add the [[rotation]] of the disc, or give --friction 0", file.display()))
-    })
 }

@@ -136,7 +136,7 @@ impl ReducedModel {
     }
 
     pub(super) fn friction_values(&self, given: Option<&[f64]>) -> Result<Vec<f64>> {
-        super::friction_values(given, &[self.element.origin.friction], &self.interface, &self.place)
+        super::friction::friction_values(given, &[self.element.origin.friction], &self.interface, &self.place)
     }
 
     pub(super) fn assemble(&self, comm: &Comm) -> Result<System> {

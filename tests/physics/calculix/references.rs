@@ -114,14 +114,16 @@ impl Reference {
 
 fn displacements(brake: &FullModel, system: &System) -> Result<Vec<[f64; 3]>, String> {
     let mut sweep = Sweep::new(system, &brake.interface, false).map_err(|error| error.to_string())?;
-    let equilibrium = sweep.equilibrium(brake.own_friction(), &mut ()).map_err(|error| error.to_string())?;
+    let own = brake.own_friction().map_err(|error| error.to_string())?;
+    let equilibrium = sweep.equilibrium(own, &mut ()).map_err(|error| error.to_string())?;
     Ok(brake.displacements(system, &equilibrium.u).unwrap())
 }
 
 /// The frequencies below the highest reference, which is among them.
 fn frequencies(brake: &FullModel, system: &System, theirs: &[f64]) -> Result<Vec<f64>, String> {
     let mut sweep = Sweep::new(system, &brake.interface, false).map_err(|error| error.to_string())?;
-    let equilibrium = sweep.equilibrium(brake.own_friction(), &mut ()).map_err(|error| error.to_string())?;
+    let own = brake.own_friction().map_err(|error| error.to_string())?;
+    let equilibrium = sweep.equilibrium(own, &mut ()).map_err(|error| error.to_string())?;
     let highest = theirs.iter().copied().fold(0.0, f64::max) * ABOVE;
     let band = sweep.modes(&equilibrium, [0.0, highest], &mut ()).map_err(|error| error.to_string())?;
     Ok(band.modes.iter().map(Mode::frequency).collect())
