@@ -1,6 +1,8 @@
 //! What a model is, before anything is computed.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
+
+use num_complex::Complex64;
 
 use crate::Result;
 use crate::assembly::JointKind;
@@ -10,11 +12,13 @@ use crate::contact::law::Tangential;
 use crate::element::facet;
 use crate::equilibrium::tangent_precision;
 use crate::mesh::quality::scaled_jacobian;
-use crate::model::{Connector, Load, LoadKind, PointMass, ProposedStiffness, Rayleigh, RigidSet, Rotation, Tie};
+use crate::model::{
+    Connector, Load, LoadKind, Material, PointMass, ProposedStiffness, Rayleigh, RigidSet, Rotation, Tie,
+};
 use crate::native::{Comm, Factor, FactorKind};
 use crate::output::model_summary::{
     LayoutRow, LoadRow, LossRow, MassRow, MatrixSummary, MeshSummary, ModelSummary, PairRow, PartRow, RigidRow,
-    RotationRow, TieRow,
+    RotationRow, TieRow, ViscoelasticRow,
 };
 use crate::structure::{FullModel, Ranked, plausibility};
 
@@ -78,7 +82,19 @@ fn part(comm: &Comm, full: &FullModel, i: usize) -> PartRow {
         alpha_per_s: rayleigh.alpha,
         beta_s: rayleigh.beta,
         loss_factor: own.map_or(0.0, |own| own.material.loss_factor),
+        viscoelastic: own.and_then(|own| viscoelastic(&own.material, full.model.band[1])),
     }
+}
+
+/// The modulus of a viscoelastic material at rest and at the end of a band, Hz.
+fn viscoelastic(material: &Material, end: f64) -> Option<ViscoelasticRow> {
+    let r = material.viscoelastic.as_ref()?.factor(Complex64::new(0.0, TAU * end));
+    let [young, _] = material.youngs();
+    Some(ViscoelasticRow {
+        young_at_rest_pa: young,
+        young_at_band_end_pa: r.re * young,
+        loss_factor_at_band_end: r.im / r.re,
+    })
 }
 
 /// The loss factor of a connector, where it has one.

@@ -6,6 +6,7 @@ use crate::Result;
 use crate::assembly::{JointKind, System, TurningSolids};
 use crate::equilibrium::Equilibrium;
 use crate::model::Rayleigh;
+use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::native::lapack;
 use crate::reduction::parts::PartMatrices;
 use crate::reduction::super_element::SuperElement;
@@ -24,6 +25,9 @@ pub struct SourceForms<'a> {
     pub named: &'a [(Kind, String)],
     /// Their forms, in the same order.
     pub forms: FormsOf<'a>,
+    /// What the derivative of each one's stiffness with lambda is, relative to the real part of that; 0 of those
+    /// beyond.
+    pub slopes: &'a [Complex64],
 }
 
 impl Sweep<'_> {
@@ -53,7 +57,8 @@ impl Sweep<'_> {
         let Some(left) = left else { return Ok(sources) };
         let mut forms = self.forms(sources_of, equilibrium, [left, right])?;
         forms.extend(self.gyroscopic_form(turning, [left, right])?);
-        let product = self_product(lambda, &forms);
+        let viscoelastic = forms.iter().zip(sources_of.slopes).map(|(form, slope)| slope * form.k).sum::<Complex64>();
+        let product = self_product(lambda, &forms) + viscoelastic;
         for (source, form) in sources.iter_mut().zip(&forms) {
             source.sensitivity = Some(sensitivity(lambda, form, product));
         }
@@ -110,7 +115,8 @@ pub fn explain(
             let parts = element.parts.iter().map(|part| (Kind::Part, part.name.clone()));
             let named: Vec<_> = parts.chain(element.rest.iter().map(|rest| (Kind::Rest, rest.clone()))).collect();
             let forms = |system: &System, vectors: [Complex; 2]| part_forms(element, system, vectors);
-            sweep.explain(&SourceForms { named: &named, forms: &forms }, None, equilibrium, mode, left)
+            let sources = SourceForms { named: &named, forms: &forms, slopes: &[] };
+            sweep.explain(&sources, None, equilibrium, mode, left)
         }
     }
 }
@@ -133,8 +139,24 @@ pub fn explain_full(
     let joint = |e: usize| full.mesh.parts.len() + full.joints.elements[e].joint;
     let families = full.families()?;
     let sources: [Sources; 2] = [(&families.solids, &part), (families.joints, &joint)];
-    let forms = |system: &System, vectors: [Complex; 2]| of_elements(system, &sources, named.len(), vectors);
-    sweep.explain(&SourceForms { named: &named, forms: &forms }, Some(&families.turning), equilibrium, mode, left)
+    let laws: Vec<Option<&ViscoelasticLaw>> =
+        families.solids.parts().iter().map(|part| part.material.viscoelastic.as_ref()).collect();
+    let forms = |system: &System, vectors: [Complex; 2]| {
+        let mut forms = of_elements(system, &sources, named.len(), vectors)?;
+        for (form, law) in forms.iter_mut().zip(&laws).filter_map(|(form, law)| Some((form, (*law)?))) {
+            *form = viscoelastic(form, law.factor(mode.lambda));
+        }
+        Ok(forms)
+    };
+    let slope = |law: &ViscoelasticLaw| law.slope(mode.lambda) / law.factor(mode.lambda).re;
+    let slopes: Vec<Complex64> = laws.iter().map(|law| law.map_or(Complex64::ZERO, slope)).collect();
+    let sources = SourceForms { named: &named, forms: &forms, slopes: &slopes };
+    sweep.explain(&sources, Some(&families.turning), equilibrium, mode, left)
+}
+
+/// The forms of a part whose stiffness at rest is multiplied by r: the imaginary part of that is structural damping.
+fn viscoelastic(at_rest: &Forms, r: Complex64) -> Forms {
+    Forms { k: r.re * at_rest.k, g: Some(at_rest.g.unwrap_or_default() + r.im * at_rest.k), ..*at_rest }
 }
 
 /// The forms of the parts of a super-element, and of its rest where it has one.

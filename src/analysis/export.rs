@@ -83,6 +83,9 @@ pub fn export(
     folder: Option<&Folder>,
     observer: &mut dyn Observer,
 ) -> Result<Exported> {
+    if let Structure::Full(full) = structure {
+        full.model.require_no_viscoelastic("the matrices written have one stiffness whatever the frequency")?;
+    }
     let friction = if options.with_contact { Some(one_value(structure, options)?) } else { None };
     observer.event(Event::Stage("assembling"));
     let system = structure.assemble(comm)?;

@@ -11,7 +11,8 @@ use crate::matrices::{ExternalMatrices, Sums};
 use crate::model::InstabilityCriterion;
 use crate::native::{Factor, FactorKind, Mck, Precision};
 use crate::stability::{
-    self, Band, BandRequest, BandSolver, EigenOptions, Evidence, Mode, QuadraticProblem, condition, condition_at,
+    self, Band, BandRequest, BandSolver, EigenOptions, Evidence, Mode, QuadraticProblem, Viscoelastic, condition,
+    condition_at,
 };
 use crate::tracking::{Diagram, Options, track};
 use crate::{Error, Result};
@@ -104,7 +105,14 @@ impl<'a> ExternalSweep<'a> {
         let symmetry = self.given.symmetry;
         let symmetric_mc = symmetry.mass && symmetry.damping && symmetry.structural;
         let k_symmetric = k_symmetric.as_ref().unwrap_or(k);
-        QuadraticProblem { matrices: Mck { m, c, k, g: g.as_ref() }, k_symmetric, points: None, symmetric_mc }
+        let viscoelastic = Viscoelastic::default();
+        QuadraticProblem {
+            matrices: Mck { m, c, k, g: g.as_ref() },
+            k_symmetric,
+            points: None,
+            symmetric_mc,
+            viscoelastic,
+        }
     }
 
     /// The first shift at which `P(shift)` can be inverted, and the condition number there.
@@ -159,7 +167,7 @@ impl<'a> ExternalSweep<'a> {
             }
             Ok(Snapshot::of(&modes.band, band[1], &rigid, Vectors { right, left, c: Some(sums.c), m: Some(sums.m) }))
         };
-        let mut family = FrictionFamily { solutions: &mut solve, m: &first.m, c: &first.c };
+        let mut family = FrictionFamily { solutions: &mut solve, m: &first.m, c: &first.c, viscoelastic: &[] };
         let range = values.iter().fold([f64::MAX, f64::MIN], |[low, high], v| [low.min(*v), high.max(*v)]);
         let tolerance = BRACKET * (range[1] - range[0]);
         let options = Options { band: band.map(|f| TAU * f), tolerance, criterion, rigid: 0.0 };

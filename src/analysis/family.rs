@@ -9,7 +9,9 @@ use num_complex::Complex64;
 
 use super::sweep::Sweep;
 use crate::Result;
+use crate::assembly::ViscoelasticStiffness;
 use crate::model::InstabilityCriterion;
+use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::native::{Block, Matrix, Vector};
 use crate::stability::{Band, RIGID_RATE, complex_product};
 use crate::tracking::{Family, Options};
@@ -52,6 +54,8 @@ pub struct FrictionFamily<'f> {
     pub m: &'f Matrix,
     /// Damping of the system.
     pub c: &'f Matrix,
+    /// Stiffnesses of the system that depend on lambda.
+    pub viscoelastic: &'f [ViscoelasticStiffness],
 }
 
 /// Where the modes at a value come from: a solve, and what an earlier run has kept. All are collective.
@@ -221,18 +225,31 @@ impl Family for FrictionFamily<'_> {
             return Ok(known);
         }
         let (y, x) = (self.vectors(left)?, self.vectors(right)?);
-        let [m, c] = [(&y.m, self.m), (&y.c, self.c)].map(|(own, systems)| {
-            let matrix = own.as_ref().unwrap_or(systems);
+        let product = |matrix: &Matrix| -> Result<DMatrix<f64>> {
             let product = y.left.gram(&x.right.multiplied_by(matrix)?);
             Ok(DMatrix::from_vec(y.left.n_columns(), x.right.n_columns(), product))
-        });
-        let (m, c): (DMatrix<f64>, DMatrix<f64>) = (m?, c?);
+        };
+        let m = product(y.m.as_ref().unwrap_or(self.m))?;
+        let c = product(y.c.as_ref().unwrap_or(self.c))?;
+        let viscoelastic = self.viscoelastic.iter().map(|own| Ok((&own.law, product(&own.stiffness)?)));
+        let viscoelastic: Vec<(&ViscoelasticLaw, DMatrix<f64>)> = viscoelastic.collect::<Result<_>>()?;
         let [left, right] = [&left.spectrum, &right.spectrum];
         let products = DMatrix::from_fn(left.lambdas.len(), right.lambdas.len(), |i, j| {
-            let [with_m, with_c] = [&m, &c].map(|a| complex_product(a, left.places[i], right.places[j]));
-            (left.lambdas[i] + right.lambdas[j]) * with_m + with_c
+            let with = |a: &DMatrix<f64>| complex_product(a, left.places[i], right.places[j]);
+            let lambdas = [left.lambdas[i], right.lambdas[j]];
+            let of_laws = viscoelastic.iter().map(|(law, k)| divided_difference(law, lambdas) * with(k));
+            (lambdas[0] + lambdas[1]) * with(&m) + with(&c) + of_laws.sum::<Complex64>()
         });
         self.solutions.keep(numbers, &products)?;
         Ok(products)
+    }
+}
+
+/// `(r(a) - r(b)) / (a - b)`, with which the products of different modes of one problem are zero.
+fn divided_difference(law: &ViscoelasticLaw, [a, b]: [Complex64; 2]) -> Complex64 {
+    const ONE_EIGENVALUE: f64 = 1e-6;
+    match (a - b).norm() <= ONE_EIGENVALUE * a.norm() {
+        true => law.slope(a),
+        false => (law.factor(a) - law.factor(b)) / (a - b),
     }
 }

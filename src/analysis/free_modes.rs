@@ -51,7 +51,7 @@ pub fn free_modes(
 ) -> Result<FreeModes> {
     let start = Instant::now();
     let measured = comm.agree(options.measured.as_deref().map(measured::read).transpose())?;
-    part.require_mass()?;
+    require_modes(part)?;
     warn(comm, part, observer);
     observer.event(Event::Stage("assembling"));
     let system = part.assemble(comm, &part.families()?)?;
@@ -86,6 +86,12 @@ pub fn free_modes(
         seconds: start.elapsed().as_secs_f64(),
         n_ranks: comm.size(),
     })
+}
+
+/// Refuses a part without mass, and one whose stiffness depends on the frequency.
+fn require_modes(part: &FullModel) -> Result<()> {
+    part.require_mass()?;
+    part.model.require_no_viscoelastic("free modes are those of one stiffness whatever the frequency")
 }
 
 /// All modes up to the band's end, rigid motions among them. Collective.

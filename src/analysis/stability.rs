@@ -158,7 +158,7 @@ fn follow(run: &mut Run) -> Result<()> {
     let (system, values) = (run.system, run.values());
     let About { band, criterion, .. } = run.results.about;
     let options = tracking_options(band, criterion);
-    let mut family = FrictionFamily { solutions: run, m: &system.m, c: &system.c };
+    let mut family = FrictionFamily { solutions: run, m: &system.m, c: &system.c, viscoelastic: &system.viscoelastic };
     let (diagram, outcome) = track(&mut family, &values, &options);
     run.results.diagram = Some(diagram);
     outcome

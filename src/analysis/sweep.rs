@@ -3,6 +3,7 @@
 //! [`Sweep`] owns what all values share: the system, its contact evaluation, the factors' analysis, the last
 //! equilibrium. Each call of [`Sweep::equilibrium`] and [`Sweep::modes`] adds one value.
 
+use std::f64::consts::TAU;
 use std::time::Instant;
 
 use super::observer::{Event, Observer};
@@ -90,7 +91,7 @@ impl<'a> Sweep<'a> {
             path: Path::new(system, interface)?,
             solver: BandSolver::new(EigenOptions::default(), system.dofs.labels()),
             linearised: Linearised::default(),
-            terms: LinearTerms { friction_damping, prestress: None },
+            terms: LinearTerms { friction_damping, ..LinearTerms::default() },
             seconds: [0.0; 3],
         })
     }
@@ -126,12 +127,13 @@ impl<'a> Sweep<'a> {
         outcome
     }
 
-    /// All modes of a band (Hz) about an equilibrium. Collective.
+    /// All modes of a band (Hz) about an equilibrium, their reference frequency the band's end. Collective.
     ///
     /// # Errors
     /// See [`BandSolver::solve_band`].
     pub fn modes(&mut self, equilibrium: &Equilibrium, band: [f64; 2], observer: &mut dyn Observer) -> Result<Band> {
         let start = Instant::now();
+        self.terms.reference = TAU * band[1];
         let LinearSystem { contacts, tangent, factor } = self.path.linear_system();
         self.linearised = Linearised::new(self.system, contacts, equilibrium, self.terms, tangent)?;
         let problem = self.linearised.problem(self.system, contacts, tangent);

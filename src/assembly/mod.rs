@@ -30,4 +30,4 @@ pub use loads::{add_prescribed, constraints, forces_of_prescribed, loads, prescr
 pub use pattern::Pattern;
 pub use rotation::{Prestress, TurningSolids};
 pub use solids::Solids;
-pub use system::{Connectivity, ElementMatrices, Elements, System, element_forces};
+pub use system::{Connectivity, ElementMatrices, Elements, System, ViscoelasticStiffness, element_forces};

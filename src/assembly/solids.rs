@@ -2,6 +2,7 @@
 
 use crate::element::solid;
 use crate::mesh::Mesh;
+use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::model::{Model, Part};
 use crate::{Error, Result};
 
@@ -13,6 +14,10 @@ pub struct Solids<'a> {
     mesh: &'a Mesh,
     /// Model part of each mesh part.
     parts: Vec<&'a Part>,
+    /// The viscoelastic laws of the materials, each once.
+    laws: Vec<ViscoelasticLaw>,
+    /// For each mesh part the number of its law.
+    law_of_part: Vec<Option<usize>>,
 }
 
 impl<'a> Solids<'a> {
@@ -26,7 +31,16 @@ impl<'a> Solids<'a> {
                 Error::input(format!("{}: the mesh's part {name:?} has no material", model.file.display()))
             })
         };
-        Ok(Solids { mesh, parts: mesh.parts.iter().map(part).collect::<Result<_>>()? })
+        let parts: Vec<&Part> = mesh.parts.iter().map(part).collect::<Result<_>>()?;
+        let mut laws: Vec<ViscoelasticLaw> = Vec::new();
+        let mut number = |law: &ViscoelasticLaw| {
+            laws.iter().position(|known| known == law).unwrap_or_else(|| {
+                laws.push(law.clone());
+                laws.len() - 1
+            })
+        };
+        let law_of_part = parts.iter().map(|part| part.material.viscoelastic.as_ref().map(&mut number)).collect();
+        Ok(Solids { mesh, parts, laws, law_of_part })
     }
 
     /// The mesh.
@@ -107,6 +121,14 @@ impl Elements for Solids<'_> {
 
     fn has_structural_damping(&self) -> bool {
         self.parts.iter().any(|part| part.material.loss_factor != 0.0)
+    }
+
+    fn viscoelastic_laws(&self) -> &[ViscoelasticLaw] {
+        &self.laws
+    }
+
+    fn law_of(&self, e: usize) -> Option<usize> {
+        self.law_of_part[self.mesh.elements.get(e).part as usize]
     }
 
     /// `C = alpha M + beta K` with the part's own coefficients, `G = g K` with its material's loss factor; the mass

@@ -8,6 +8,7 @@ use super::scatter::{Places, Scatter};
 use super::{DofMap, Pattern};
 use crate::Result;
 use crate::mesh::Numbering;
+use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::native::{Comm, Gather, Matrix, Mck, Vector};
 
 /// Anything that couples lists of nodes.
@@ -31,6 +32,14 @@ pub trait Elements: Connectivity {
     /// Whether a member may have structural damping: the same on all ranks.
     fn has_structural_damping(&self) -> bool {
         false
+    }
+    /// The viscoelastic laws of the members: the same on all ranks.
+    fn viscoelastic_laws(&self) -> &[ViscoelasticLaw] {
+        &[]
+    }
+    /// Which of the laws multiplies the stiffness of member `e`; none where that does not depend on the frequency.
+    fn law_of(&self, _e: usize) -> Option<usize> {
+        None
     }
     /// Whether the damping of a member may have a skew part: the same on all ranks.
     fn is_gyroscopic(&self) -> bool {
@@ -68,6 +77,15 @@ impl ElementMatrices {
     }
 }
 
+/// The stiffness of all elements of a viscoelastic material: at rest it is in K, at the eigenvalue s it is `r(s)` times
+/// that.
+pub struct ViscoelasticStiffness {
+    /// r.
+    pub law: ViscoelasticLaw,
+    /// At rest, N/m, on the pattern of K.
+    pub stiffness: Matrix,
+}
+
 /// M, C, K and G of a structure without its contacts, on a pattern that has room for them.
 pub struct System {
     /// Numbers of the free dofs.
@@ -82,6 +100,8 @@ pub struct System {
     pub is_gyroscopic: bool,
     /// Structural damping, N/m: `sum g_e K_e` of stiffnesses with loss factors `g_e`; none where all of these are 0.
     pub g: Option<Matrix>,
+    /// What of K depends on the frequency: a matrix for each viscoelastic law.
+    pub viscoelastic: Vec<ViscoelasticStiffness>,
     /// External forces, N.
     pub load: Vector,
     /// What it took to find which entries there are, s; the rest went into their values.
@@ -130,9 +150,10 @@ impl System {
         let (c, pattern_seconds) = (k.zeros_like()?, start.elapsed().as_secs_f64());
         let [k, m, c] = sum([k, m, c], mass, &scatter, families)?;
         let g = structural_damping(&k, &scatter, families)?;
+        let viscoelastic = viscoelastic(&k, &scatter, families)?;
         let load = Vector::zeros(comm, dofs.n_local())?;
         let is_gyroscopic = families.iter().any(|family| family.is_gyroscopic());
-        Ok(System { dofs, k, m, c, is_gyroscopic, g, load, pattern_seconds })
+        Ok(System { dofs, k, m, c, is_gyroscopic, g, viscoelastic, load, pattern_seconds })
     }
 
     /// Adds forces (N) at nodes to the load; those at constrained dofs go into the support.
@@ -239,11 +260,37 @@ fn structural_damping(k: &Matrix, scatter: &Scatter, families: &[&dyn Elements])
     Ok(Some(g))
 }
 
+/// The stiffness at rest of each viscoelastic law, on the pattern of K, by a pass over its elements alone.
+fn viscoelastic(k: &Matrix, scatter: &Scatter, families: &[&dyn Elements]) -> Result<Vec<ViscoelasticStiffness>> {
+    let mut all = Vec::new();
+    for family in families {
+        for (i, law) in family.viscoelastic_laws().iter().enumerate() {
+            let mut stiffness = k.zeros_like()?;
+            Matrix::change_values(&mut [&mut stiffness], |values| {
+                let is_member = |family: &dyn Elements, e: usize| family.law_of(e) == Some(i);
+                pass_some(scatter, &[*family], is_member, |element, places| places.add(&element.k, &mut values[0]));
+            })?;
+            all.push(ViscoelasticStiffness { law: law.clone(), stiffness });
+        }
+    }
+    Ok(all)
+}
+
 /// Visits the elements that touch this rank's rows.
-fn pass(scatter: &Scatter, families: &[&dyn Elements], mut visit: impl FnMut(&ElementMatrices, &Places)) {
+fn pass(scatter: &Scatter, families: &[&dyn Elements], visit: impl FnMut(&ElementMatrices, &Places)) {
+    pass_some(scatter, families, |_, _| true, visit);
+}
+
+/// Visits those of them that are wanted.
+fn pass_some(
+    scatter: &Scatter,
+    families: &[&dyn Elements],
+    is_wanted: impl Fn(&dyn Elements, usize) -> bool,
+    mut visit: impl FnMut(&ElementMatrices, &Places),
+) {
     let (mut element, mut places) = (ElementMatrices::default(), Places::default());
     for family in families {
-        for e in 0..family.len() {
+        for e in (0..family.len()).filter(|&e| is_wanted(*family, e)) {
             let nodes = family.nodes(e);
             if nodes.iter().any(|&n| scatter.owns(n)) {
                 family.matrices(e, &mut element);

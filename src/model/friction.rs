@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use super::grid::{Grid, GridInterval, columns};
 use super::item::Item;
 use super::keys;
 use crate::Result;
@@ -58,7 +59,7 @@ pub struct FrictionTable {
     pub values: Vec<f64>,
 }
 
-/// What a table may depend on, in the order of [`TableAxes`].
+/// What a table may depend on.
 const VARIABLES: [&str; 3] = ["speed", "pressure", "temperature"];
 
 /// The friction value of a contact, and how its coefficient depends on other things.
@@ -143,7 +144,7 @@ impl FrictionTable {
         temperature: Option<f64>,
     ) -> std::result::Result<(f64, FrictionTable), Refusal> {
         let refuse = |what: String, advice: &'static str| Refusal { what, advice };
-        let columns = columns(by).ok_or_else(|| {
+        let columns = columns(VARIABLES, by, 1).ok_or_else(|| {
             let advice = "Give by = [\"speed\"], or several of \"speed\", \"pressure\" and \"temperature\", each once";
             refuse(format!("the friction table is by {by:?}"), advice)
         })?;
@@ -151,12 +152,12 @@ impl FrictionTable {
             let advice = "Give temperature = ... beside a table by temperature, in the table's unit, and only there";
             return Err(refuse("the table and the temperature do not go together".into(), advice));
         }
-        let grid = Grid::new(rows, by.len(), columns).map_err(|what| {
+        let grid = grid(rows, columns).map_err(|what| {
             let advice = "A row is [mu, value, ...] in the order of `by`, all finite, mu from 0 to 2; \
                           every combination of the values once";
             refuse(what, advice)
         })?;
-        let table = grid.at_temperature(temperature);
+        let table = at_temperature(grid, temperature);
         let value = table.values[0];
         if value <= 0.0 {
             let advice = "It is the friction value, and must be above 0";
@@ -166,120 +167,25 @@ impl FrictionTable {
     }
 }
 
-/// The column of speed, pressure and temperature in the rows, each where the table depends on it; none where `by` has
-/// an unknown variable or one twice.
-fn columns(by: &[&str]) -> Option<[Option<usize>; 3]> {
-    let mut columns = [None; 3];
-    for (i, name) in by.iter().enumerate() {
-        let variable = VARIABLES.iter().position(|known| known == name)?;
-        if columns[variable].replace(i + 1).is_some() {
-            return None;
-        }
+/// The grid of rows `[mu, value, ...]`.
+fn grid(rows: &[Vec<f64>], columns: [Option<usize>; 3]) -> std::result::Result<Grid<3>, String> {
+    if rows.is_empty() {
+        return Err("the friction table is empty".into());
     }
-    Some(columns)
+    let n_columns = 1 + columns.iter().flatten().count();
+    let is_wrong =
+        |row: &&Vec<f64>| row.len() != n_columns || !row.iter().all(|x| x.is_finite()) || !is_coefficient(row[0]);
+    if let Some(row) = rows.iter().find(is_wrong) {
+        return Err(format!("the friction table has the row {row:?}"));
+    }
+    Grid::new(rows, columns)
+        .ok_or_else(|| "the friction table has a combination of values not at all or twice".to_owned())
 }
 
-/// Coefficients on the full grid of speeds, pressures and temperatures.
-struct Grid {
-    /// Rising values of each.
-    axes: [Vec<f64>; 3],
-    /// Speed by speed, in it pressure by pressure.
-    mu: Vec<f64>,
-}
-
-impl Grid {
-    fn new(rows: &[Vec<f64>], n_variables: usize, columns: [Option<usize>; 3]) -> std::result::Result<Grid, String> {
-        if rows.is_empty() {
-            return Err("the friction table is empty".into());
-        }
-        let is_wrong = |row: &&Vec<f64>| {
-            row.len() != n_variables + 1 || !row.iter().all(|x| x.is_finite()) || !is_coefficient(row[0])
-        };
-        if let Some(row) = rows.iter().find(is_wrong) {
-            return Err(format!("the friction table has the row {row:?}"));
-        }
-        let at = |row: &[f64], variable: usize| columns[variable].map_or(0.0, |column| row[column]);
-        let axes = [0, 1, 2].map(|variable| {
-            let mut values: Vec<f64> = rows.iter().map(|row| at(row, variable)).collect();
-            values.sort_by(f64::total_cmp);
-            values.dedup();
-            values
-        });
-        // A full grid has as many rows as combinations, and no combination twice.
-        let place = |row: &[f64]| [0, 1, 2].map(|variable| at(row, variable));
-        let mut sorted: Vec<&Vec<f64>> = rows.iter().collect();
-        sorted.sort_by(|a, b| place(a).partial_cmp(&place(b)).expect("all are finite"));
-        let is_twice = sorted.windows(2).any(|pair| place(pair[0]) == place(pair[1]));
-        if is_twice || rows.len() != axes.iter().map(Vec::len).product::<usize>() {
-            return Err("the friction table has a combination of values not at all or twice".into());
-        }
-        Ok(Grid { axes, mu: sorted.into_iter().map(|row| row[0]).collect() })
-    }
-
-    /// mu at a temperature, linear between the table's.
-    fn at_temperature(self, temperature: Option<f64>) -> FrictionTable {
-        let [speeds, pressures, temperatures] = self.axes;
-        let interval = GridInterval::around(&temperatures, temperature.unwrap_or(0.0));
-        let between = |mu: &[f64]| interval.between(mu[interval.lower], mu[interval.upper]);
-        FrictionTable { speeds, pressures, values: self.mu.chunks(temperatures.len()).map(between).collect() }
-    }
-}
-
-/// Where an argument lies among rising values.
-pub struct GridInterval {
-    /// Place of the last value that is not above the argument; the first beyond that end.
-    pub lower: usize,
-    /// Place of the next value; `lower` beyond the ends.
-    pub upper: usize,
-    /// How far the argument is on the way; 0 beyond the ends.
-    fraction: f64,
-    /// 1 over the distance of the two values; 0 beyond the ends.
-    per_unit: f64,
-}
-
-impl GridInterval {
-    /// The interval that x is in; at a value that is the one above it.
-    pub fn around(values: &[f64], x: f64) -> GridInterval {
-        let above = values.partition_point(|&value| value <= x);
-        if above == 0 || above == values.len() {
-            let lower = above.saturating_sub(1);
-            return GridInterval { lower, upper: lower, fraction: 0.0, per_unit: 0.0 };
-        }
-        let (lower, upper) = (above - 1, above);
-        let per_unit = 1.0 / (values[upper] - values[lower]);
-        GridInterval { lower, upper, fraction: per_unit * (x - values[lower]), per_unit }
-    }
-
-    /// A function linear between its values at the two ends.
-    pub fn between(&self, lower: f64, upper: f64) -> f64 {
-        lower + self.fraction * (upper - lower)
-    }
-
-    /// Its slope.
-    pub fn slope(&self, lower: f64, upper: f64) -> f64 {
-        self.per_unit * (upper - lower)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn arguments_are_between_their_neighbours_and_at_the_ends_beyond() {
-        let values = [1.0, 2.0, 4.0];
-        for (x, expected) in [
-            (0.5, (0, 0, 0.0)),
-            (1.0, (0, 1, 0.0)),
-            (1.5, (0, 1, 0.5)),
-            (2.0, (1, 2, 0.0)),
-            (3.5, (1, 2, 0.75)),
-            (4.0, (2, 2, 0.0)),
-            (9.0, (2, 2, 0.0)),
-        ] {
-            let GridInterval { lower, upper, fraction, .. } = GridInterval::around(&values, x);
-            assert_eq!((lower, upper, fraction), expected, "{x}");
-        }
-        assert_eq!(GridInterval::around(&[3.0], 7.0).upper, 0);
-    }
+/// mu at a temperature, linear between the table's.
+fn at_temperature(grid: Grid<3>, temperature: Option<f64>) -> FrictionTable {
+    let Grid { axes: [speeds, pressures, temperatures], rows } = grid;
+    let interval = GridInterval::around(&temperatures, temperature.unwrap_or(0.0));
+    let between = |rows: &[Vec<f64>]| interval.between(rows[interval.lower][0], rows[interval.upper][0]);
+    FrictionTable { speeds, pressures, values: rows.chunks(temperatures.len()).map(between).collect() }
 }

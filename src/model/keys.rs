@@ -39,6 +39,20 @@ pub enum Friction {
     Table(FrictionRows),
 }
 
+/// How the modulus of a material depends on frequency and temperature.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "expected { by = [\"frequency\"], table = [[2e6, 0.3, 100], [9e6, 0.9, 3000]] }, { maxwell = [[5e6, 1e-4]] } or \
+                 { unrelaxed = 1e9, relaxation_time = 1e-7, order = 0.6 }"
+)]
+pub enum Viscoelastic {
+    Table(ViscoelasticRows),
+    Maxwell(MaxwellTable),
+    FractionalZener(ZenerTable),
+}
+
 /// Friction without a number.
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -143,6 +157,24 @@ tables! {
         pub y_axis: Option<Vector>,
         pub elasticity: Option<Spanned<[[f64; 6]; 6]>>,
         pub loss_factor: Option<Number>,
+        pub viscoelastic: Option<Spanned<Viscoelastic>>,
+    }
+
+    pub struct ViscoelasticRows {
+        pub by: Vec<String>,
+        pub table: Vec<Vec<f64>>,
+        pub temperature: Option<f64>,
+    }
+
+    pub struct MaxwellTable {
+        pub maxwell: Vec<[f64; 2]>,
+    }
+
+    #[derive(Clone, Copy)]
+    pub struct ZenerTable {
+        pub unrelaxed: f64,
+        pub relaxation_time: f64,
+        pub order: f64,
     }
 
     pub struct PartTable {

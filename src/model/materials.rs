@@ -6,12 +6,14 @@ use super::elasticity::{self, Transverse};
 use super::item::{Item, Number, Vector};
 use super::keys::{self, OneOrThree, Text};
 use super::source::{ModelText, Span};
+use super::viscoelastic::{self, ViscoelasticLaw};
 use super::{Material, names};
 use crate::Result;
 use nalgebra::{Matrix3, Matrix6};
 use toml::Spanned;
 
-/// The kinds of material and the keys that belong to each, besides `kind`, `density` and `loss_factor`.
+/// The kinds of material and the keys that belong to each, besides `kind`, `density`, `loss_factor` and
+/// `viscoelastic`.
 const KINDS: [(&str, &[&str]); 4] = [
     ("isotropic", &["young", "poisson"]),
     ("transverse", &["axis", "young", "young_axial", "poisson", "poisson_axial", "shear_axial"]),
@@ -46,15 +48,38 @@ impl<'a> MaterialReader<'a> {
 
     fn read(&self) -> Result<Material> {
         let density = self.item.positive(&self.raw.density, "density", "Give kg/m3, such as 7850")?;
-        let elasticity = match self.kind()? {
-            "transverse" => self.transverse()?,
-            "orthotropic" => self.orthotropic()?,
-            "full" => self.full()?,
-            _ => self.isotropic()?,
+        let kind = self.kind()?;
+        let viscoelastic = self.viscoelastic(kind)?;
+        let elasticity = match (kind, &viscoelastic) {
+            (_, Some((young, _))) => self.isotropic(*young)?,
+            ("transverse", _) => self.transverse()?,
+            ("orthotropic", _) => self.orthotropic()?,
+            ("full", _) => self.full()?,
+            _ => self.isotropic(self.young()?)?,
         };
         let elasticity = std::array::from_fn(|i| std::array::from_fn(|j| elasticity[(i, j)]));
         let loss_factor = self.item.loss_factor(&self.raw.loss_factor)?;
-        Ok(Material { name: self.name.to_owned(), density, elasticity, loss_factor })
+        let viscoelastic = viscoelastic.map(|(_, law)| law);
+        Ok(Material { name: self.name.to_owned(), density, elasticity, loss_factor, viscoelastic })
+    }
+
+    /// Young's modulus at rest (Pa) and the viscoelastic law, where there is one.
+    fn viscoelastic(&self, kind: &str) -> Result<Option<(f64, ViscoelasticLaw)>> {
+        let Some(raw) = &self.raw.viscoelastic else { return Ok(None) };
+        let require = |holds: bool, what: &str, advice: &str| self.item.require_at(&raw.span(), holds, what, advice);
+        require(
+            kind == "isotropic",
+            "viscoelastic is for isotropic materials",
+            "Leave kind out, or give a loss_factor",
+        )?;
+        let has_loss = self.raw.loss_factor.is_some();
+        require(
+            !has_loss,
+            "viscoelastic and loss_factor are both given",
+            "Leave loss_factor out: the law has the loss",
+        )?;
+        let young = self.raw.young.as_ref().map(|_| self.young()).transpose()?;
+        viscoelastic::law(&self.item, raw, young).map(Some)
     }
 
     /// The material's kind, once all keys given belong to it.
@@ -94,8 +119,7 @@ impl<'a> MaterialReader<'a> {
         places.into_iter().flatten().collect()
     }
 
-    fn isotropic(&self) -> Result<Matrix6<f64>> {
-        let young = self.young()?;
+    fn isotropic(&self, young: f64) -> Result<Matrix6<f64>> {
         self.invert(&elasticity::isotropic_compliance(young, self.poisson(0.5, "Give Poisson's ratio, such as 0.3")?))
     }
 

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::elasticity::youngs;
 use super::friction::FrictionCurve;
 use super::gap_field::GapField;
+use super::viscoelastic::ViscoelasticLaw;
 use super::{Connector, Equation, InstabilityCriterion, Place, PointMass, RigidSet, Tie, names, paths};
 use crate::algebra::{cross, scale, sub};
 use crate::element::ElementKind;
@@ -87,6 +88,7 @@ impl Model {
             || self.parts.iter().any(|part| part.rayleigh != Rayleigh::default())
             || self.connectors.iter().any(|connector| connector.damping != [0.0; 3])
             || self.has_structural_damping()
+            || self.viscoelastic_part().is_some()
     }
 
     /// Whether modes have the geometric stiffness of the equilibrium: as the file says, else where a rotation has
@@ -99,6 +101,24 @@ impl Model {
     pub fn has_structural_damping(&self) -> bool {
         self.parts.iter().any(|part| part.material.loss_factor != 0.0)
             || self.connectors.iter().any(|connector| connector.loss_factor != 0.0)
+    }
+
+    /// The first part with a viscoelastic material, where there is one.
+    pub fn viscoelastic_part(&self) -> Option<&Part> {
+        self.parts.iter().find(|part| part.material.viscoelastic.is_some())
+    }
+
+    /// Refuses a viscoelastic material for what has one stiffness whatever the frequency. `what` says what that is, as
+    /// "a super-element has one stiffness whatever the frequency".
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names part and material.
+    pub fn require_no_viscoelastic(&self, what: &str) -> Result<()> {
+        let Some(Part { name, material, place, .. }) = self.viscoelastic_part() else { return Ok(()) };
+        let advice = "Give the material a young and a loss_factor at the frequency of interest";
+        let message =
+            format_args!("{what}, and the material {:?} of the part {name:?} is viscoelastic. {advice}", material.name);
+        Err(self.error(*place, message))
     }
 
     /// The model of one part alone, which nothing constrains, touches or loads, so that there is nothing to sweep
@@ -156,6 +176,8 @@ pub struct Material {
     pub elasticity: [[f64; 6]; 6],
     /// Loss factor `g` of structural damping: the stiffness is `K (1 + i g)`.
     pub loss_factor: f64,
+    /// How the stiffness depends on frequency, where it does: the elasticity is then that at rest.
+    pub viscoelastic: Option<ViscoelasticLaw>,
 }
 
 impl Material {

@@ -10,6 +10,7 @@ use nalgebra::Matrix6;
 use super::elasticity::{from_compliance, isotropic_compliance};
 use super::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use super::read::UNITS;
+use super::viscoelastic::{FractionalZener, MaxwellElement, ModulusTable, ViscoelasticLaw};
 use super::{Contact, Inertia, InstabilityCriterion, Material, Model, NormalLaw, ROUGH};
 use loads::loads;
 
@@ -127,8 +128,11 @@ fn material(out: &mut Text, name: &str, material: &Material) {
     out.table(format!("[material.{}]", quoted(name)));
     match isotropic(material) {
         Some([young, poisson]) => {
-            out.line("young", number(young));
+            if !matches!(material.viscoelastic, Some(ViscoelasticLaw::Table(_))) {
+                out.line("young", number(young));
+            }
             out.line("poisson", number(poisson));
+            material.viscoelastic.iter().for_each(|law| out.line("viscoelastic", viscoelastic(law, young)));
         }
         None => {
             let rows: Vec<String> = material.elasticity.iter().map(|row| format!("    {},\n", list(row))).collect();
@@ -139,6 +143,30 @@ fn material(out: &mut Text, name: &str, material: &Material) {
     out.line("density", number(material.density));
     if material.loss_factor != 0.0 {
         out.line("loss_factor", number(material.loss_factor));
+    }
+}
+
+/// The key `viscoelastic` of a material with a Young's modulus at rest, Pa.
+fn viscoelastic(law: &ViscoelasticLaw, young: f64) -> String {
+    let modulus = |ratio: f64| number(rounded(ratio * young));
+    match law {
+        ViscoelasticLaw::Maxwell(elements) => {
+            let row = |own: &MaxwellElement| format!("[{}, {}]", modulus(own.ratio), number(own.relaxation_time));
+            format!("{{ maxwell = [{}] }}", elements.iter().map(row).collect::<Vec<_>>().join(", "))
+        }
+        ViscoelasticLaw::FractionalZener(FractionalZener { unrelaxed_ratio, relaxation_time, order }) => {
+            let [unrelaxed, time, order] = [modulus(*unrelaxed_ratio), number(*relaxation_time), number(*order)];
+            format!("{{ unrelaxed = {unrelaxed}, relaxation_time = {time}, order = {order} }}")
+        }
+        ViscoelasticLaw::Table(ModulusTable { frequencies, ratios, loss_factors }) => {
+            // Of a table by temperature alone one frequency is left, which is any.
+            let frequencies = frequencies.iter().map(|&f| if f > 0.0 { f } else { 1.0 });
+            let values = ratios.iter().zip(loss_factors).zip(frequencies);
+            let row = |((ratio, loss), f): ((&f64, &f64), f64)| {
+                format!("[{}, {}, {}]", modulus(*ratio), number(*loss), number(f))
+            };
+            format!("{{ by = [\"frequency\"], table = [{}] }}", values.map(row).collect::<Vec<_>>().join(", "))
+        }
     }
 }
 
@@ -284,6 +312,23 @@ mod tests {
             let back = parse(&write(model.as_ref().unwrap(), "brake.msh"), Path::new("brake.toml")).unwrap();
             assert!(contact.friction_curve.is_some(), "{curve}");
             assert_eq!(back.contacts[0].friction_curve, contact.friction_curve);
+        }
+    }
+
+    #[test]
+    fn viscoelastic_laws_are_written_and_read_back() {
+        for key in [
+            "young = 110e9\nviscoelastic = { maxwell = [[5e6, 1e-4], [2e7, 1e-5]] }",
+            "young = 110e9\nviscoelastic = { unrelaxed = 3e11, relaxation_time = 1e-7, order = 0.6 }",
+            "viscoelastic = { by = [\"frequency\"], table = [[2e6, 0.3, 100], [9e6, 0.9, 3000]] }",
+        ] {
+            let text = EXAMPLE.replacen("young = 110e9                  # Pa", key, 1);
+            let model = parse(&text, Path::new("brake.toml")).unwrap();
+            let back = parse(&write(&model, "brake.msh"), Path::new("brake.toml")).unwrap();
+            let of = |model: &Model| model.viscoelastic_part().unwrap().material.clone();
+            let (own, back) = (of(&model), of(&back));
+            assert_eq!(own.viscoelastic, back.viscoelastic);
+            assert!((own.elasticity[0][0] / back.elasticity[0][0] - 1.0).abs() < 1e-12);
         }
     }
 

@@ -88,6 +88,19 @@ pub struct PartRow {
     pub beta_s: f64,
     /// Loss factor of its material.
     pub loss_factor: f64,
+    /// Of a viscoelastic material.
+    pub viscoelastic: Option<ViscoelasticRow>,
+}
+
+/// A viscoelastic material.
+#[derive(Serialize)]
+pub struct ViscoelasticRow {
+    /// Young's modulus at rest.
+    pub young_at_rest_pa: f64,
+    /// That at the end of the band.
+    pub young_at_band_end_pa: f64,
+    /// The loss factor there.
+    pub loss_factor_at_band_end: f64,
 }
 
 /// A connector with a loss factor.
@@ -226,14 +239,20 @@ impl ModelSummary {
 }
 
 impl PartRow {
-    /// Rayleigh's coefficients and the loss factor, those that there are.
+    /// Rayleigh's coefficients, the loss factor and the viscoelastic law, those that there are.
     fn damping(&self) -> String {
         let rayleigh = match (self.alpha_per_s, self.beta_s) {
             (0.0, 0.0) => None,
             (alpha, beta) => Some(format!("{alpha} {beta:e}")),
         };
         let loss = (self.loss_factor != 0.0).then(|| format!("loss factor {}", self.loss_factor));
-        let all: Vec<String> = rayleigh.into_iter().chain(loss).collect();
+        let law = self.viscoelastic.as_ref().map(|law| {
+            let ViscoelasticRow { young_at_rest_pa, young_at_band_end_pa, loss_factor_at_band_end } = law;
+            let end =
+                format!("{young_at_band_end_pa:.3e} Pa and loss factor {loss_factor_at_band_end:.2} at the band's end");
+            format!("viscoelastic (E {young_at_rest_pa:.3e} Pa at rest, {end})")
+        });
+        let all: Vec<String> = rayleigh.into_iter().chain(loss).chain(law).collect();
         if all.is_empty() { "none".to_owned() } else { all.join(", ") }
     }
 }
@@ -283,6 +302,11 @@ pub(super) mod tests {
             alpha_per_s: 5.0,
             beta_s: 1e-7,
             loss_factor: 0.0,
+            viscoelastic: Some(ViscoelasticRow {
+                young_at_rest_pa: 2e6,
+                young_at_band_end_pa: 8e7,
+                loss_factor_at_band_end: 0.9,
+            }),
         };
         let pair = PairRow {
             pair: "disc / pad".into(),

@@ -13,6 +13,11 @@ pub fn stability(results: &Results, place: &str) -> String {
         summary += &format!("{}\n", sweep_text::sweep(results));
     }
     summary += &sweep_text::verdict(results);
+    if about.viscoelastic {
+        let error = results.modes().map(|(_, _, mode)| mode.backward_error).fold(0.0, f64::max);
+        let what = "viscoelastic materials: each mode has the stiffness of its own frequency";
+        summary += &format!("{what}, largest backward error {error:.1e}\n");
+    }
     let explained = results.modes().filter(|(_, _, mode)| !mode.sources.is_empty());
     let strongest = explained.max_by(|(_, _, a), (_, _, b)| a.growth_rate().total_cmp(&b.growth_rate()));
     summary += &strongest.map_or_else(String::new, |(friction, _, mode)| explain::sentence(friction, mode) + "\n");

@@ -123,6 +123,9 @@ pub struct About {
     /// Whether a stiffness has a loss factor.
     #[serde(default)]
     pub structural_damping: bool,
+    /// Whether a material is viscoelastic, so that each mode has the stiffness of its own frequency.
+    #[serde(default)]
+    pub viscoelastic: bool,
     /// Doubtful properties of the model, a sentence each.
     pub warnings: Vec<String>,
     /// The parts, which `Surface::part` counts.

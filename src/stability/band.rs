@@ -4,6 +4,8 @@
 mod structural_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod viscoelastic_tests;
 
 use std::f64::consts::TAU;
 
@@ -51,7 +53,7 @@ pub struct Band {
     pub count: Count,
     /// What was done.
     pub report: BandReport,
-    /// Whether the conjugate of an eigenvalue is one, too: not with structural damping.
+    /// Whether the conjugate of an eigenvalue is one, too: not with a complex stiffness.
     pub has_conjugates: bool,
 }
 
@@ -154,7 +156,7 @@ impl BandSolver {
             self.blocked.drop_start();
         }
         let (search, count, report) = last.ok_or_else(|| not_converged(band, expected))?;
-        Ok(Band { modes: modes_of(search, band)?, count, report, has_conjugates: problem.matrices.g.is_none() })
+        Ok(Band { modes: modes_of(search, band)?, count, report, has_conjugates: !problem.is_complex() })
     }
 
     /// About how many modes there are; the factor that counts and the one that solves give way to one another where
@@ -191,10 +193,10 @@ impl BandSolver {
         Ok(None)
     }
 
-    /// The solvers for a request, the fastest first. TOAR is the last resort, but for structural damping, which the
+    /// The solvers for a request, the fastest first. TOAR is the last resort, but for complex stiffnesses, which the
     /// blocked search alone can take.
     fn choose(&mut self, problem: &QuadraticProblem, request: &SearchRequest) -> Result<Vec<SolverKind>> {
-        let (mut kinds, is_complex) = (Vec::new(), problem.matrices.g.is_some());
+        let (mut kinds, is_complex) = (Vec::new(), problem.is_complex());
         if self.blocked.reach(problem, request).is_some() {
             let search_mb = self.blocked.needs_mb(request.n_modes, problem.n_dofs());
             if self.memory.before_search(problem, &mut self.blocked, &mut self.counter.sturm, search_mb) || is_complex {

@@ -82,10 +82,10 @@ impl Blocked {
     }
 
     /// How far a search would go, Hz; none where it is not for such a problem, or not for such an attempt any more.
-    /// With structural damping it is the only search that there is, and every attempt goes farther. Collective.
+    /// With a complex stiffness it is the only search that there is, and every attempt goes farther. Collective.
     pub fn reach(&self, problem: &QuadraticProblem, request: &SearchRequest) -> Option<f64> {
         let margins = self.options.band_margins;
-        if problem.matrices.g.is_some() {
+        if problem.is_complex() {
             let margin = if request.attempt == 0 { margins[0] } else { margins[1].powi(request.attempt as i32) };
             return Some(margin * request.end);
         }

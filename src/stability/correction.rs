@@ -68,9 +68,8 @@ pub fn corrections(
 /// `P(lambda_i) x_i`, or `P(lambda_i)^H y_i` of left vectors.
 fn residuals(problem: &QuadraticProblem, x: &Block, lambdas: &[Complex64], side: Side) -> Result<Block> {
     let mut residuals = Block::zeros(x.comm(), x.n_local(), x.n_columns());
-    let terms = lambdas.iter().map(|&lambda| problem.matrices.terms(lambda).map(|(factor, _)| factor).collect());
-    let factors: Vec<Vec<Complex64>> = terms.collect();
-    for (at, (_, matrix)) in problem.matrices.terms(Complex64::ONE).enumerate() {
+    let factors: Vec<Vec<Complex64>> = lambdas.iter().map(|&lambda| problem.coefficients(lambda)).collect();
+    for (at, matrix) in problem.all_matrices().into_iter().enumerate() {
         let image = if side == Side::Left { x.multiplied_by_transpose(matrix)? } else { x.multiplied_by(matrix)? };
         for (i, factors) in factors.iter().enumerate() {
             let factor = if side == Side::Left { factors[at].conj() } else { factors[at] };

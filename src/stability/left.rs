@@ -92,7 +92,7 @@ fn improve(space: &Space, vector: &mut Ritz) -> f64 {
 fn inverse_iterate(space: &Space, lambda: Complex64, start: &[Complex64]) -> Option<Vec<Complex64>> {
     let n = start.len();
     let mut matrix = DMatrix::from_element(n, n, Complex64::default());
-    for (factor, projected) in space.projected.as_ref().terms(lambda) {
+    for (factor, projected) in space.problem().coefficients(lambda).into_iter().zip(&space.projected) {
         matrix.zip_apply(projected, |z, x| *z += factor * x);
     }
     let mut x = start.to_vec();

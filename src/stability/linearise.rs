@@ -6,7 +6,7 @@ use crate::contact::{Response, Status, Tangent, Tangential};
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::{Matrix, Mck};
 
-use super::{FrozenPoints, QuadraticProblem};
+use super::{FrozenPoints, QuadraticProblem, Viscoelastic};
 
 /// What a linearisation has beside the tangents of the contact points.
 #[derive(Clone, Copy, Default)]
@@ -15,6 +15,8 @@ pub struct LinearTerms<'a> {
     pub friction_damping: bool,
     /// The geometric stiffness of the equilibrium, where it is in the problem.
     pub prestress: Option<&'a Prestress<'a>>,
+    /// Frequency at which K has the stiffness of viscoelastic materials, rad/s: 0 for that at rest.
+    pub reference: f64,
 }
 
 /// A system linearised about an equilibrium with the status of every point frozen; its stiffness is kept elsewhere.
@@ -22,9 +24,12 @@ pub struct LinearTerms<'a> {
 pub struct Linearised {
     /// `C`, with friction damping where it is asked for.
     pub c: Option<Matrix>,
-    /// `K + K_g + B^T S B` with the tangents S without friction's coupling, where there is a geometric stiffness `K_g`.
-    /// That differs from one equilibrium to the next, so that neither counts nor projections follow the points alone.
-    prestressed: Option<Matrix>,
+    /// `K + K_g + B^T S B` with the tangents S without friction's coupling, where there is a geometric stiffness `K_g`,
+    /// or K is not the system's. The first differs from one equilibrium to the next, so that neither counts nor
+    /// projections follow the points alone.
+    own_stiffness: Option<Matrix>,
+    /// Frequency at which K has the stiffness of viscoelastic materials, rad/s.
+    reference: f64,
     /// What each contact point has without friction's coupling.
     symmetric: Vec<Tangent>,
     /// What each contact point does, its tangent that of the stiffness.
@@ -33,7 +38,8 @@ pub struct Linearised {
 
 impl Linearised {
     /// Linearises about `equilibrium`, and writes `k = K + B^T D B`: open points give nothing, closed sliding points
-    /// `(dp/dd)(n n^T + mu t n^T)`, all other closed points stick. With prestress `k` has `K_g(u)`, too. Collective.
+    /// `(dp/dd)(n n^T + mu t n^T)`, all other closed points stick. With prestress `k` has `K_g(u)`, too,
+    /// and viscoelastic stiffnesses are those at the reference frequency. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -61,18 +67,18 @@ impl Linearised {
         let frozen: Vec<Response> = tangents(&frictions).into_iter().enumerate().map(freeze).collect();
         let symmetric = tangents(&none);
         k.copy_from(&system.k)?;
-        let prestressed = match terms.prestress {
-            None => None,
-            Some(prestress) => {
-                prestress.add(system, &equilibrium.u, k)?;
-                let mut stiffness = k.duplicate()?;
-                contacts.add_blocks(symmetric.iter().copied(), &mut stiffness)?;
-                Some(stiffness)
-            }
-        };
+        let viscoelastic = Viscoelastic { stiffnesses: &system.viscoelastic, reference: terms.reference };
+        viscoelastic.add_to(k)?;
+        terms.prestress.map_or(Ok(()), |prestress| prestress.add(system, &equilibrium.u, k))?;
+        let mut own_stiffness = None;
+        if terms.prestress.is_some() || !system.viscoelastic.is_empty() {
+            let mut stiffness = k.duplicate()?;
+            contacts.add_blocks(symmetric.iter().copied(), &mut stiffness)?;
+            own_stiffness = Some(stiffness);
+        }
         contacts.add_blocks(frozen.iter().map(|response| response.tangent), k)?;
         let c = terms.friction_damping.then(damped).transpose()?;
-        Ok(Linearised { c, prestressed, symmetric, frozen })
+        Ok(Linearised { c, own_stiffness, reference: terms.reference, symmetric, frozen })
     }
 
     /// The problem, with the stiffness that [`Linearised::new`] has written.
@@ -84,11 +90,12 @@ impl Linearised {
     ) -> QuadraticProblem<'a> {
         let matrices = Mck { m: &system.m, c: self.c.as_ref().unwrap_or(&system.c), k, g: system.g.as_ref() };
         let points = FrozenPoints { contacts, responses: &self.frozen, symmetric: &self.symmetric };
-        let (k_symmetric, points) = match &self.prestressed {
+        let (k_symmetric, points) = match &self.own_stiffness {
             Some(stiffness) => (stiffness, None),
             None => (&system.k, Some(points)),
         };
-        QuadraticProblem { matrices, k_symmetric, points, symmetric_mc: !system.is_gyroscopic }
+        let viscoelastic = Viscoelastic { stiffnesses: &system.viscoelastic, reference: self.reference };
+        QuadraticProblem { matrices, k_symmetric, points, symmetric_mc: !system.is_gyroscopic, viscoelastic }
     }
 }
 

@@ -1,12 +1,13 @@
 //! Complex modes about an equilibrium: `(lambda^2 M + lambda C + K + i G) x = 0`, all of a frequency band.
 //!
-//! [`QuadraticProblem`] is the linearised problem, with friction's unsymmetric part in K, and with structural damping G
-//! where a stiffness has a loss factor. [`BandSolver::solve_band`]
-//! chooses an eigensolver, searches, counts, and widens the search until no mode is missing:
+//! [`QuadraticProblem`] is the linearised problem, with friction's unsymmetric part in K, with structural damping G
+//! where a stiffness has a loss factor, and with stiffnesses that depend on lambda where a material is viscoelastic
+//! ([`Viscoelastic`]). [`BandSolver::solve_band`] chooses an eigensolver, searches, counts, and widens the search until
+//! no mode is missing:
 //!
 //! | eigensolver | method | used for |
 //! |---|---|---|
-//! | `blocked` | a growing subspace, many right-hand sides at a time | large problems; structural damping |
+//! | `blocked` | a growing subspace, many right-hand sides at a time | large problems; complex stiffnesses |
 //! | `modal` | TOAR in the modal coordinates of a reference | super-elements |
 //! | `toar` | SLEPc's TOAR about a real shift: one real factor serves the band | all others, the last resort |
 //!
@@ -26,6 +27,7 @@ mod linearise;
 mod memory;
 mod modal;
 mod mode;
+mod nonlinear;
 mod options;
 mod problem;
 mod projected;
@@ -35,6 +37,7 @@ mod sturm;
 #[cfg(test)]
 mod testing;
 mod toar;
+mod viscoelastic;
 
 pub use band::{Band, BandReport, BandRequest, BandSolver};
 pub use condition::{condition, condition_at};
@@ -48,3 +51,4 @@ pub use mode::{Mode, RIGID_RATE};
 pub use options::{BlockedOptions, EigenOptions, Evidence};
 pub use problem::{FrozenPoints, QuadraticProblem};
 pub use shares::{Sensitivity, Share, self_product, sensitivity, shares};
+pub use viscoelastic::Viscoelastic;

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use super::QuadraticProblem;
 use crate::Result;
 use crate::model::InstabilityCriterion;
-use crate::native::{Block, Matrix, Vector};
+use crate::native::{Block, Vector};
 
 /// A real eigenvalue up to this (1/s) is no divergence: a rigid motion's double zero may come out as a real pair of
 /// some 1e-2/s.
@@ -81,14 +81,15 @@ fn largest(re: &Vector, im: &Vector) -> Result<(Complex64, f64)> {
 const BLOCK: usize = 32;
 
 /// Backward errors `|P(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K| + |G|) |x|)` of eigenpairs, maximum norms
-/// and moduli of complex entries. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i.
+/// and moduli of complex entries, of the problem at the eigenvalue itself: viscoelastic stiffnesses add `|r_m(lambda) -
+/// rho_m| |K_m|` to the sum. Columns 2i and 2i + 1 of `x` are the real and the imaginary part of vector i.
 /// Collective.
 ///
 /// # Errors
 /// PETSc's.
 pub(super) fn backward_errors(problem: &QuadraticProblem, lambdas: &[Complex64], x: &Block) -> Result<Vec<f64>> {
-    let matrices: Vec<&Matrix> = problem.matrices.terms(Complex64::ONE).map(|(_, matrix)| matrix).collect();
-    let norms = problem.matrices.try_map(Matrix::norm_inf)?;
+    let matrices = problem.all_matrices();
+    let norms: Vec<f64> = matrices.iter().map(|matrix| matrix.norm_inf()).collect::<Result<_>>()?;
     let mut errors = Vec::new();
     for (part, lambdas) in lambdas.chunks(BLOCK / 2).enumerate() {
         let x = x.columns(BLOCK * part..BLOCK * part + 2 * lambdas.len());
@@ -96,15 +97,15 @@ pub(super) fn backward_errors(problem: &QuadraticProblem, lambdas: &[Complex64],
         let mut images = Block::zeros(x.comm(), x.n_local(), matrices.len() * n);
         images.add_products(&matrices, &x, 0..n)?;
         for (i, lambda) in lambdas.iter().enumerate() {
-            let terms: Vec<(Complex64, f64)> = norms.terms(*lambda).collect();
+            let coefficients = problem.coefficients(*lambda);
             let residual = |row: usize| -> Complex64 {
                 let image = |b: usize| entry(&images, b * lambdas.len() + i, row);
-                terms.iter().enumerate().map(|(b, (factor, _))| factor * image(b)).sum()
+                coefficients.iter().enumerate().map(|(b, factor)| factor * image(b)).sum()
             };
             let largest = |value: &dyn Fn(usize) -> Complex64| {
                 (0..x.n_local()).map(|row| value(row).norm_sqr()).fold(0.0, f64::max).sqrt()
             };
-            let scale: f64 = terms.iter().map(|(factor, norm)| factor.norm() * norm).sum();
+            let scale: f64 = coefficients.iter().zip(&norms).map(|(factor, norm)| factor.norm() * norm).sum();
             let comm = x.comm();
             errors.push(comm.max(largest(&residual)) / (scale * comm.max(largest(&|row| entry(&x, i, row)))));
         }

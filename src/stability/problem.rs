@@ -1,19 +1,25 @@
-//! The quadratic eigenproblem `(lambda^2 M + lambda C + K + i G) x = 0` and its linear systems.
+//! The eigenproblem `(lambda^2 M + lambda C + K + i G) x = 0` and its linear systems.
+//!
+//! With viscoelastic materials the stiffness depends on lambda: [`Viscoelastic`].
 
 use std::array::from_fn;
 
+use num_complex::Complex64;
+
+use super::Viscoelastic;
 use crate::Result;
 use crate::algebra::dot;
 use crate::contact::{Response, Tangent};
 use crate::equilibrium::{Contacts, Label, LabelledFactor};
 use crate::native::{Block, Comm, Factor, Matrix, Mck};
 
-/// The matrices of `P(lambda) = lambda^2 M + lambda C + K + i G`.
+/// The matrices of `P(lambda) = lambda^2 M + lambda C + K + i G`, and what of the stiffness depends on lambda.
 ///
 /// Structural damping `i G` is meant for the half plane `Im lambda > 0`: with it eigenvalues do not come as conjugate
 /// pairs, and those of the other half plane mean nothing. What is factorised and counted is the real part.
 pub struct QuadraticProblem<'a> {
-    /// M, C, K and G, K with the tangent of contact and friction.
+    /// M, C, K and G, K with the tangent of contact and friction, and with viscoelastic stiffnesses at a reference
+    /// frequency.
     pub matrices: Mck<&'a Matrix>,
     /// Symmetric stiffness, for counting: without friction, and without the points below.
     pub k_symmetric: &'a Matrix,
@@ -21,6 +27,8 @@ pub struct QuadraticProblem<'a> {
     pub points: Option<FrozenPoints<'a>>,
     /// Whether M, C and G are symmetric, so that K alone has to be transposed for left vectors.
     pub symmetric_mc: bool,
+    /// What of the stiffness depends on lambda.
+    pub viscoelastic: Viscoelastic<'a>,
 }
 
 /// Contact points with what each adds to the stiffness, its status frozen.
@@ -38,7 +46,26 @@ pub struct FrozenPoints<'a> {
 impl<'a> QuadraticProblem<'a> {
     /// With symmetric matrices and without contact points.
     pub fn symmetric(matrices: Mck<&'a Matrix>) -> QuadraticProblem<'a> {
-        QuadraticProblem { matrices, k_symmetric: matrices.k, points: None, symmetric_mc: true }
+        let viscoelastic = Viscoelastic::default();
+        QuadraticProblem { matrices, k_symmetric: matrices.k, points: None, symmetric_mc: true, viscoelastic }
+    }
+
+    /// Whether the stiffness is complex, so that eigenvalues do not come as conjugate pairs.
+    pub fn is_complex(&self) -> bool {
+        self.matrices.g.is_some() || !self.viscoelastic.stiffnesses.is_empty()
+    }
+
+    /// M, C, K, G where there is one, and the viscoelastic stiffnesses.
+    pub fn all_matrices(&self) -> Vec<&'a Matrix> {
+        let Mck { m, c, k, g } = self.matrices;
+        let viscoelastic = self.viscoelastic.stiffnesses.iter().map(|own| &own.stiffness);
+        [m, c, k].into_iter().chain(g).chain(viscoelastic).collect()
+    }
+
+    /// What each of them is multiplied by in `P(lambda)`.
+    pub fn coefficients(&self, lambda: Complex64) -> Vec<Complex64> {
+        let terms = self.matrices.terms(lambda).map(|(factor, _)| factor);
+        terms.chain(self.viscoelastic.coefficients(lambda)).collect()
     }
 
     /// The communicator.

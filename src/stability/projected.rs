@@ -1,4 +1,5 @@
-//! The projected problem of the blocked search, all of whose pairs within a radius are found.
+//! The projected problem of the blocked search, all of whose pairs within a radius are found. With viscoelastic
+//! materials what follows is about the reference problem, whose pairs [`super::nonlinear`] refines.
 //!
 //! Without structural damping it is real, and TOAR solves it like a full problem. With it `V^T (K + i G) V` is complex,
 //! and LAPACK solves the companion matrix: with `lambda = sigma + s / mu`, `P` the projected polynomial, sigma the real
@@ -18,6 +19,8 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use super::QuadraticProblem;
+use super::nonlinear::{self, Projection};
 use super::space::{Ritz, Space};
 use crate::Result;
 use crate::native::petsc::eigen::{self, Found, Pair, Quadratic};
@@ -44,18 +47,36 @@ pub(super) struct Target {
 /// # Errors
 /// PETSc's, LAPACK's.
 pub(super) fn solve(space: &Space, target: &Target) -> Result<Option<Vec<Ritz>>> {
-    let comm = space.v.comm();
+    let (comm, problem) = (space.v.comm(), space.problem());
     // The same numbers on every rank, to the last bit.
     let same = |a: &DMatrix<f64>| DMatrix::from_vec(a.nrows(), a.ncols(), comm.broadcast(0, a.as_slice().to_vec()));
-    let projected = space.projected.as_ref().map(same);
-    let found = match projected.g {
-        Some(_) => Some(complex_pairs(&projected, target)?),
-        None => real_pairs(space, &projected, target)?,
+    let matrices: Vec<DMatrix<f64>> = space.projected.iter().map(same).collect();
+    let reference = reference_problem(problem, &matrices);
+    let found = match reference.g {
+        None => real_pairs(space, &reference, target)?,
+        Some(_) if problem.viscoelastic.stiffnesses.is_empty() => Some(complex_pairs(&reference, target)?),
+        Some(_) => {
+            let projection = Projection { problem, matrices: &matrices };
+            nonlinear::refine(&projection, &complex_pairs(&reference, target)?)?
+        }
     };
     Ok(found.map(|mut ritz| {
+        ritz.retain(|ritz| ritz.lambda.norm() <= target.radius);
         ritz.sort_by(|a, b| a.lambda.norm().total_cmp(&b.lambda.norm()));
         ritz
     }))
+}
+
+/// M, C, K and G with what viscoelastic materials dissipate at the reference frequency in G.
+fn reference_problem(problem: &QuadraticProblem, matrices: &[DMatrix<f64>]) -> Mck<DMatrix<f64>> {
+    let [m, c, k] = [0, 1, 2].map(|i| matrices[i].clone());
+    let viscoelastic = &matrices[matrices.len() - problem.viscoelastic.stiffnesses.len()..];
+    let mut g = problem.matrices.g.map(|_| matrices[3].clone());
+    for (factor, stiffness) in problem.viscoelastic.coefficients_at_reference().zip(viscoelastic) {
+        let g = g.get_or_insert_with(|| DMatrix::zeros(m.nrows(), m.ncols()));
+        *g += factor.im * stiffness;
+    }
+    Mck { m, c, k, g }
 }
 
 /// By TOAR.

@@ -41,10 +41,11 @@ pub(super) enum Side {
     Left,
 }
 
-/// Orthonormal columns V with the projections `V^T M V`, `V^T C V`, `V^T K V` and `V^T G V`.
+/// Orthonormal columns V with the projections `V^T M V`, `V^T C V`, `V^T K V`, `V^T G V` and of viscoelastic
+/// stiffnesses.
 pub(super) struct Basis {
     v: Block,
-    projected: Mck<DMatrix<f64>>,
+    projected: Vec<DMatrix<f64>>,
 }
 
 /// What a search leaves for the next: orthonormal columns V with the projections of the problem that they were found
@@ -59,12 +60,14 @@ pub(super) struct Start {
     versions: Mck<[i64; 2]>,
 }
 
-/// Orthonormal columns V with the projections of M, C, K and G, or of their transposes for left vectors.
+/// Orthonormal columns V with the projections of M, C, K, G and viscoelastic stiffnesses, or of their transposes for
+/// left vectors.
 pub(super) struct Space<'a> {
     searched: FactoredProblem<'a>,
     side: Side,
     pub v: Block,
-    pub projected: Mck<DMatrix<f64>>,
+    /// In the order of [`QuadraticProblem::all_matrices`].
+    pub projected: Vec<DMatrix<f64>>,
     noise: Noise<'a>,
     /// On all ranks.
     pub n_dofs: usize,
@@ -100,14 +103,14 @@ impl<'a> Space<'a> {
     pub fn with_capacity(searched: FactoredProblem<'a>, side: Side, n_columns: usize) -> Space<'a> {
         let problem = searched.problem;
         let v = Block::with_room(problem.comm(), problem.n_local(), n_columns);
-        let projected = problem.matrices.map(|_| DMatrix::zeros(0, 0));
+        let projected = vec![DMatrix::zeros(0, 0); problem.all_matrices().len()];
         let (noise, n_dofs) = (Noise::new(searched.labels), problem.n_dofs());
         Space { searched, side, v, projected, noise, n_dofs, n_solves: 0 }
     }
 
     /// For left vectors, with the columns that a search for right ones has left.
     pub fn of_left_vectors(searched: FactoredProblem<'a>, basis: Basis) -> Space<'a> {
-        let projected = basis.projected.map(|a| a.transpose());
+        let projected = basis.projected.iter().map(DMatrix::transpose).collect();
         Space { v: basis.v, projected, ..Space::with_capacity(searched, Side::Left, 0) }
     }
 
@@ -130,7 +133,7 @@ impl<'a> Space<'a> {
         match points {
             Some(points) if versions(searched.problem)? == start.versions => {
                 let change = v.gram_of_few_rows(&points.change_times(&start.tangents, &v)?);
-                projected.k += DMatrix::from_vec(v.n_columns(), v.n_columns(), change);
+                projected[STIFFNESS] += DMatrix::from_vec(v.n_columns(), v.n_columns(), change);
                 space.projected = projected;
                 space.v.append(&v);
             }
@@ -147,7 +150,7 @@ impl<'a> Space<'a> {
     /// PETSc's.
     pub fn start(&self, ritz: &[Ritz]) -> Result<Start> {
         let q = self.coefficients(ritz).qr().q();
-        let projected = self.projected.as_ref().map(|a| q.tr_mul(&(a * &q)));
+        let projected = self.projected.iter().map(|a| q.tr_mul(&(a * &q))).collect();
         let v = self.v.combined(q.as_slice(), q.ncols());
         let tangents = self.problem().points.map_or(Vec::new(), |points| points.tangents().collect());
         Ok(Start { basis: Basis { v, projected }, q, tangents, versions: versions(self.problem())? })
@@ -202,42 +205,43 @@ impl<'a> Space<'a> {
         let mut images = self.images(&w)?;
         // One pass over V for all images: it is the longest of the operands.
         let products = self.v.gram(&images);
-        let mut numbers = 0..;
-        let mut next = || {
-            let first = numbers.next().unwrap_or_default() * n * p;
-            DMatrix::from_column_slice(n, p, &products[first..first + n * p])
-        };
-        let direct = self.problem().matrices.map(|_| next());
-        // K and its transpose differ where contact points slide: a few rows tell the difference.
+        let product = |i: usize| DMatrix::from_column_slice(n, p, &products[i * n * p..(i + 1) * n * p]);
+        let n_matrices = self.projected.len();
+        let direct: Vec<DMatrix<f64>> = (0..n_matrices).map(product).collect();
+        // K and its transpose differ where contact points slide: a few rows tell the difference. Viscoelastic
+        // stiffnesses are symmetric.
+        let mut transposed = direct.clone();
         let skew = self.v.gram_of_few_rows(&self.problem().skew_times(&w)?);
-        let k_t = &direct.k + DMatrix::from_vec(n, p, skew);
-        let transposed = match self.problem().symmetric_mc {
-            true => Mck { k: k_t, ..direct.clone() },
-            false => Mck { m: next(), c: next(), k: k_t, g: direct.g.as_ref().map(|_| next()) },
-        };
+        transposed[STIFFNESS] += DMatrix::from_vec(n, p, skew);
+        for ((place, _), own) in self.unsymmetric().into_iter().zip(n_matrices..) {
+            transposed[place] = product(own);
+        }
         let (columns, rows) = match self.side {
             Side::Right => (direct, transposed),
             Side::Left => (transposed, direct),
         };
-        self.projected =
-            self.projected.as_ref().zip(columns.zip(rows)).map(|(old, (new, new_t))| joined(old, &new, &new_t));
+        let old = self.projected.iter().zip(columns.iter().zip(&rows));
+        self.projected = old.map(|(old, (new, new_t))| joined(old, new, new_t)).collect();
         images.truncate(p);
         Ok(images)
     }
 
-    /// `M W`, `C W`, `K W` and `G W` side by side; where M, C and G are not symmetric, `M^T W`, `C^T W` and `G^T W`,
-    /// too.
+    /// `M W`, `C W`, `K W` and so on side by side, then the transposed ones of the matrices that are not symmetric.
     fn images(&self, w: &Block) -> Result<Block> {
-        let (Mck { m, c, k, g }, p) = (self.problem().matrices, w.n_columns());
-        let direct: Vec<&Matrix> = [m, c, k].into_iter().chain(g).collect();
-        let transposed = [m, c].into_iter().chain(g).filter(|_| !self.problem().symmetric_mc);
-        let transposed: Vec<&Matrix> = transposed.collect();
+        let (direct, transposed, p) = (self.problem().all_matrices(), self.unsymmetric(), w.n_columns());
         let mut images = Block::zeros(w.comm(), w.n_local(), (direct.len() + transposed.len()) * p);
         images.add_products(&direct, w, 0..p)?;
-        for (i, matrix) in (direct.len()..).zip(transposed) {
+        for (i, (_, matrix)) in (direct.len()..).zip(transposed) {
             images.set_columns(i * p, &w.multiplied_by_transpose(matrix)?);
         }
         Ok(images)
+    }
+
+    /// Where M, C and G are not symmetric, these, with their places among the terms.
+    fn unsymmetric(&self) -> Vec<(usize, &'a Matrix)> {
+        let Mck { m, c, g, .. } = self.problem().matrices;
+        let all = [(0, m), (1, c)].into_iter().chain(g.map(|g| (STIFFNESS + 1, g)));
+        all.filter(|_| !self.problem().symmetric_mc).collect()
     }
 
     /// An orthonormal basis of what V lacks of some columns. Projection on V and W needs independent columns and not
@@ -288,13 +292,16 @@ impl<'a> Space<'a> {
     /// PETSc's.
     pub fn sketch(&mut self, ritz: &[&Ritz]) -> Result<Block> {
         let (n, problem) = (self.v.n_columns(), self.problem());
-        let matrices: Vec<&Matrix> = problem.matrices.terms(Complex64::ONE).map(|(_, matrix)| matrix).collect();
+        let matrices = problem.all_matrices();
         let weights = self.sketch_weights(ritz);
         let n_columns = weights.ncols();
         let mut coefficients = vec![0.0; matrices.len() * n * n_columns];
         for (j, (i, r)) in (0..n_columns).flat_map(|j| ritz.iter().enumerate().map(move |pair| (j, pair))) {
             let z = weights[(i, j)];
-            for (term, (factor, _)) in problem.matrices.terms(r.lambda).enumerate().filter(|_| z != Complex64::ZERO) {
+            if z == Complex64::ZERO {
+                continue;
+            }
+            for (term, factor) in problem.coefficients(r.lambda).into_iter().enumerate() {
                 let factor = z.conj() * factor;
                 let column = &mut coefficients[(term * n_columns + j) * n..][..n];
                 let column = column.iter_mut().zip(r.re.iter().zip(&r.im));

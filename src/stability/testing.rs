@@ -6,10 +6,11 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::{LinearTerms, Linearised, QuadraticProblem, SearchResult, SolverKind};
-use crate::assembly::System;
+use crate::assembly::{System, ViscoelasticStiffness};
 use crate::contact::{Interface, Stage};
 use crate::equilibrium::testing::{ALONG_X, belt, blocks, blocks_on_belt, system};
 use crate::equilibrium::{Contacts, Equilibrium};
+use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::native::petsc::eigen::Pair;
 use crate::native::{Comm, Matrix, Mck, Vector, lapack};
 
@@ -46,13 +47,15 @@ pub fn found(comm: &Comm, frequencies: &[f64], reach: f64) -> SearchResult {
 pub struct Blocks {
     pub system: System,
     pub interface: Interface,
+    /// Frequency of viscoelastic stiffnesses, Hz.
+    pub reference: f64,
 }
 
 impl Blocks {
     /// Stored sparsely.
     pub fn new(comm: &Comm, n: usize) -> Blocks {
         let (system, interface) = blocks_on_belt(comm, n, 0, ALONG_X);
-        Blocks { system, interface }
+        Blocks { system, interface, reference: 0.0 }
     }
 
     /// With loss factors between 0.02 and 0.1, another one for each neighbouring dof.
@@ -62,7 +65,21 @@ impl Blocks {
         let own = |i: usize, j: usize| if i == j { loss(i) * real.k[(i, i)] } else { 0.0 };
         let g = Some(DMatrix::from_fn(3 * n, 3 * n, own));
         let system = system(comm, Mck { g, ..real }, &interface.gap_operator, &[]);
-        Blocks { system, interface }
+        Blocks { system, interface, reference: 0.0 }
+    }
+
+    /// With a law for a share of each dof's spring, one law for the dofs with an even number and another for the odd
+    /// ones.
+    pub fn with_viscoelastic(comm: &Comm, n: usize, laws: [ViscoelasticLaw; 2], share: f64) -> Blocks {
+        let mut blocks = Blocks::new(comm, n);
+        for (i, law) in laws.into_iter().enumerate() {
+            let real = self::blocks(n);
+            let own = |row: usize, j: usize| if row == j && row % 2 == i { share * real.k[(row, row)] } else { 0.0 };
+            let g = Some(DMatrix::from_fn(3 * n, 3 * n, own));
+            let stiffness = system(comm, Mck { g, ..real }, &blocks.interface.gap_operator, &[]).g.unwrap();
+            blocks.system.viscoelastic.push(ViscoelasticStiffness { law, stiffness });
+        }
+        blocks
     }
 
     /// Stored densely.
@@ -82,8 +99,8 @@ impl Blocks {
         let responses = contacts.respond(&u, &Stage::Solve { friction: vec![mu] }).unwrap();
         let equilibrium = Equilibrium { u, responses, friction: mu, steps: Vec::new() };
         let mut k = self.system.k.duplicate().unwrap();
-        let linearised =
-            Linearised::new(&self.system, &contacts, &equilibrium, LinearTerms::default(), &mut k).unwrap();
+        let terms = LinearTerms { reference: TAU * self.reference, ..LinearTerms::default() };
+        let linearised = Linearised::new(&self.system, &contacts, &equilibrium, terms, &mut k).unwrap();
         look(&linearised.problem(&self.system, &contacts, &k))
     }
 }

@@ -308,6 +308,7 @@ impl FullModel {
             unloaded: self.is_unloaded(),
             undamped: !self.model.is_damped(),
             structural_damping: self.model.has_structural_damping(),
+            viscoelastic: self.model.viscoelastic_part().is_some(),
             warnings: plausibility::warnings(self, comm),
             pairs: self.pairs(),
             ..About::default()

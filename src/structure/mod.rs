@@ -52,6 +52,9 @@ use crate::native::Comm;
 use crate::results::{About, ContactFaces, Pair};
 use crate::{Error, Result};
 
+/// Why a super-element cannot be made of viscoelastic materials.
+pub const ONE_STIFFNESS: &str = "a super-element has one stiffness whatever the frequency";
+
 /// A brake, full or reduced.
 pub enum Structure {
     /// With all nodes of its mesh.
@@ -277,6 +280,7 @@ impl Structure {
         match self {
             Structure::Full(full) => {
                 full.require_no_prestress()?;
+                full.model.require_no_viscoelastic(ONE_STIFFNESS)?;
                 let limit = full.reduction_limit();
                 let (element, surface, _) = full.reduce(system.k.comm(), system, equilibrium, limit, &mut |_| ())?;
                 let reduced = ReducedModel::new(&full.model.file, element, surface);

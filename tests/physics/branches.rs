@@ -24,7 +24,8 @@ fn followed(comm: &Comm, values: &[f64], band: [f64; 2]) -> Diagram {
         let modes = sweep.modes(&equilibrium, widened(band), &mut ())?;
         Snapshot::new(&mut sweep, &modes, band[1])
     };
-    let mut family = FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c };
+    let mut family =
+        FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c, viscoelastic: &system.viscoelastic };
     let (diagram, outcome) = track(&mut family, values, &tracking_options(band, InstabilityCriterion::default()));
     outcome.unwrap();
     assert_eq!(diagram.doubtful, Vec::<[f64; 2]>::new());

@@ -137,7 +137,8 @@ fn followed(comm: &Comm, size: &str) -> Diagram {
         let modes = sweep.modes(&equilibrium, widened(band), &mut ())?;
         Snapshot::new(&mut sweep, &modes, band[1])
     };
-    let mut family = FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c };
+    let mut family =
+        FrictionFamily { solutions: &mut solve, m: &system.m, c: &system.c, viscoelastic: &system.viscoelastic };
     let (diagram, outcome) =
         track(&mut family, &brake.model.frictions, &tracking_options(band, InstabilityCriterion::default()));
     outcome.unwrap();

@@ -129,7 +129,7 @@ fn a_tie_without_points_names_the_distance() {
 fn part(name: &str, young: f64) -> Part {
     let mut elasticity = [[0.0; 6]; 6];
     (0..6).for_each(|i| elasticity[i][i] = young);
-    let material = Material { name: name.into(), density: 1.0, elasticity, loss_factor: 0.0 };
+    let material = Material { name: name.into(), density: 1.0, elasticity, loss_factor: 0.0, viscoelastic: None };
     Part { name: name.into(), material, rayleigh: Rayleigh::default(), elements: vec![], place: Place::default() }
 }
 

@@ -1,7 +1,8 @@
 //! The friction laws of model files as functions of sliding speed and pressure, with their derivatives.
 
 use super::friction::{FrictionFactor, FrictionFunction};
-use crate::model::friction::{FrictionCurve, FrictionTable, GridInterval, SpeedDecay, Stribeck};
+use crate::model::GridInterval;
+use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 
 impl FrictionFunction for FrictionCurve {
     fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {

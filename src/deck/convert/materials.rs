@@ -92,7 +92,8 @@ pub fn material(
     let rows = [0, 1, 2, 3, 4, 5].map(|i| [0, 1, 2, 3, 4, 5].map(|j| elasticity[(i, j)]));
     let rayleigh = model::Rayleigh { alpha: material.alpha / units.time, beta: material.beta * units.time };
     let density = density.map_or(0.0, |density| density * units.density());
-    Ok((model::Material { name, density, elasticity: rows, loss_factor: material.structural }, rayleigh))
+    let loss_factor = material.structural;
+    Ok((model::Material { name, density, elasticity: rows, loss_factor, viscoelastic: None }, rayleigh))
 }
 
 /// What is noted of materials without a density.

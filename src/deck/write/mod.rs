@@ -178,6 +178,10 @@ impl DeckWriter<'_> {
         if model.reduction.is_some() {
             losses.push("the reduction is not written".to_owned());
         }
+        for part in model.parts.iter().filter(|part| part.material.viscoelastic.is_some()) {
+            let what = "is not written: the deck has its modulus at rest";
+            losses.push(format!("the viscoelastic law of {:?} {what}", part.material.name));
+        }
         for contact in model.contacts.iter().filter(|contact| contact.friction_curve.is_some()) {
             losses.push(format!("how the friction of {:?} depends on speed and pressure is not written", contact.name));
         }

@@ -105,3 +105,66 @@ fn a_model_with_a_loss_factor_alone_is_damped() {
     assert!(!model.is_damped() && !model.has_structural_damping());
     assert!(parsed(&text.replace("density = 2600", "density = 2600\nloss_factor = 0.01")).unwrap().is_damped());
 }
+
+const LINING: &str = "density = 2600";
+
+/// The material "iron" with a law in the place of its modulus.
+fn with_law(young: &str, law: &str) -> Result<crate::model::Model, String> {
+    parsed(&GOOD.replace("young = 110e9\n", &format!("{young}\nviscoelastic = {law}\n")))
+}
+
+#[test]
+fn viscoelastic_laws_have_the_modulus_at_rest() {
+    let maxwell = with_law("young = 2e6", "{ maxwell = [[4e6, 1e-4]] }").unwrap();
+    let zener = with_law("young = 2e6", "{ unrelaxed = 1e9, relaxation_time = 1e-7, order = 0.6 }").unwrap();
+    let table = "{ by = [\"frequency\", \"temperature\"], temperature = 30, table = [[1e6, 0.2, 100, 20], [4e6, 0.4, 100, 40], \
+                 [1e7, 0.9, 1e4, 20], [1e7, 0.9, 1e4, 40]] }";
+    let table = with_law("", table).unwrap();
+    for model in [maxwell, zener, table] {
+        let part = model.viscoelastic_part().unwrap();
+        let [young, _] = part.material.youngs();
+        assert!((young / 2e6 - 1.0).abs() < 1e-12, "{young}");
+        assert!(model.is_damped() && !model.has_structural_damping());
+        assert!(model.require_no_viscoelastic("it").unwrap_err().to_string().contains("is viscoelastic. Give"));
+    }
+    assert!(parsed(GOOD).unwrap().require_no_viscoelastic("it").is_ok());
+}
+
+#[test]
+fn impossible_viscoelastic_laws_are_refused() {
+    let zener = |text: &str| format!("{{ {text} }}");
+    for (young, law, said) in [
+        ("young = 2e6", "{ maxwell = [] }", "viscoelastic has maxwell = []"),
+        ("young = 2e6", "{ maxwell = [[1e6, 0]] }", "viscoelastic has maxwell = [[1000000.0, 0.0]]"),
+        ("", "{ maxwell = [[1e6, 1e-3]] }", "young is missing"),
+        (
+            "young = 2e6",
+            &zener("unrelaxed = 1e6, relaxation_time = 1, order = 0.5"),
+            "viscoelastic has unrelaxed = 1e6",
+        ),
+        ("young = 2e6", &zener("unrelaxed = 1e9, relaxation_time = 1, order = 1.5"), "order = 1.5"),
+        (
+            "young = 2e6",
+            "{ by = [\"frequency\"], table = [[1e6, 0.1, 10]] }",
+            "young is in the viscoelastic table, too",
+        ),
+        ("", "{ by = [\"speed\"], table = [[1e6, 0.1, 10]] }", "the viscoelastic table is by [\"speed\"]"),
+        (
+            "",
+            "{ by = [\"frequency\"], table = [[1e6, 0.1, 0]] }",
+            "the viscoelastic table has the row [1000000.0, 0.1, 0.0]",
+        ),
+        ("", "{ by = [\"frequency\"], table = [[1e6, 0.1]] }", "the viscoelastic table has the row"),
+        ("", "{ by = [\"frequency\"], table = [] }", "the viscoelastic table is empty"),
+        ("", "{ by = [\"temperature\"], table = [[1e6, 0.1, 10]] }", "do not go together"),
+    ] {
+        let complaint = with_law(young, law).unwrap_err();
+        assert!(complaint.contains(said), "{law}: {complaint}");
+    }
+    let said = "viscoelastic is for isotropic materials (material \"lining\"). Leave kind out, or give a loss_factor";
+    complains(LINING, &format!("{LINING}\nviscoelastic = {{ maxwell = [[1e6, 1e-3]] }}"), 1, said);
+    let said =
+        "viscoelastic and loss_factor are both given (material \"iron\"). Leave loss_factor out: the law has the loss";
+    let both = "young = 110e9\nloss_factor = 0.1\nviscoelastic = { maxwell = [[1e6, 1e-3]] }";
+    complains("young = 110e9", both, 2, said);
+}

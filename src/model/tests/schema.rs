@@ -89,7 +89,7 @@ fn every_table_of_the_schema_is_one_of_the_model_file() {
     let tables: Vec<&str> = keys::tables().into_iter().map(|(table, _)| table).collect();
     let definitions = schema()["$defs"].as_object().unwrap().clone();
     let others: Vec<&String> = definitions.keys().filter(|name| !tables.contains(&name.as_str())).collect();
-    assert_eq!(others, ["Friction", "InstabilityCriterion", "Band"]);
+    assert_eq!(others, ["Viscoelastic", "Friction", "InstabilityCriterion", "Band"]);
 }
 
 #[test]

@@ -248,12 +248,13 @@ fn real_and_double_eigenvalues_are_found() {
 
 /// `|P(lambda)^T v| / sum |matrices|` of `v = conj(y)`, y of length 1 in M, is small for all modes.
 pub(super) fn require_left(problem: &QuadraticProblem, modes: &[Mode], y: &Block, accuracy: f64) {
-    let matrices = problem.matrices.map(crate::stability::testing::entries);
-    let m = &matrices.m;
+    let matrices: Vec<DMatrix<f64>> =
+        problem.all_matrices().into_iter().map(crate::stability::testing::entries).collect();
+    let m = &matrices[0];
     for (i, mode) in modes.iter().enumerate() {
         let v =
             DMatrix::from_fn(m.nrows(), 1, |row, _| Complex64::new(y.column(2 * i)[row], -y.column(2 * i + 1)[row]));
-        let terms = matrices.as_ref().terms(mode.lambda);
+        let terms = problem.coefficients(mode.lambda).into_iter().zip(&matrices);
         let p: DMatrix<Complex64> = terms.map(|(factor, a)| a.transpose().map(Complex64::from) * factor).sum();
         let residual = (&p * &v).norm() / (p.norm() * v.norm());
         assert!(residual < accuracy, "mode {i}: {residual:e}");

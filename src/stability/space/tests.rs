@@ -11,8 +11,8 @@ fn dense(block: &Block) -> DMatrix<f64> {
 fn require_projections(space: &Space) {
     let v = dense(&space.v);
     assert!((v.tr_mul(&v) - DMatrix::identity(v.ncols(), v.ncols())).norm() < 1e-12);
-    let matrices = space.problem().matrices.map(entries);
-    for (projected, a) in space.projected.as_ref().zip(matrices).into_array() {
+    let matrices = space.problem().all_matrices().into_iter().map(entries);
+    for (projected, a) in space.projected.iter().zip(matrices) {
         let a = if space.side == Side::Left { a.transpose() } else { a };
         assert!((projected - v.tr_mul(&(&a * &v))).norm() < 1e-10 * a.norm());
     }
