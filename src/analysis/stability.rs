@@ -12,7 +12,7 @@ use crate::output::fields::FieldWriter;
 use crate::output::summary;
 use crate::results::{About, Results, Source};
 use crate::stability::{Complex, Mode};
-use crate::structure::Structure;
+use crate::structure::{ONE_STIFFNESS, Structure};
 use crate::tracking::track;
 use crate::{Error, Result};
 
@@ -111,6 +111,9 @@ impl StabilityOptions {
     fn job(&self, structure: &Structure) -> Result<Job> {
         if self.reduce_each && matches!(structure, Structure::Reduced(_)) {
             return Err(Error::input("a super-element cannot be reduced again: --reduce-each is for models"));
+        }
+        if let (true, Structure::Full(full)) = (self.reduce_each, structure) {
+            full.model.require_no_viscoelastic(ONE_STIFFNESS)?;
         }
         match (&self.certify, structure) {
             (Some(_), Structure::Reduced(reduced)) => reduced.require_basis()?,

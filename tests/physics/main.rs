@@ -18,3 +18,4 @@ mod structural_damping;
 mod super_element;
 #[path = "../support/mod.rs"]
 mod support;
+mod viscoelastic;
