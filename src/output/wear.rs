@@ -17,7 +17,7 @@ pub fn summary(wear: &Wear, place: &str) -> String {
         ("summary.txt", "this text"),
         ("steps.csv", "wear by step and pair"),
         (GAPS, "gaps and pressures by contact point: gap = \"worn.csv\" of a [[contact]] reads it"),
-        ("contact_before.vtu, contact_worn.vtu", "pressure before and after, for ParaView"),
+        ("contact_before.vtu, _worn.vtu", "pressure before and after, for ParaView"),
     ];
     text(wear) + &cost(wear.seconds, wear.n_ranks) + &files_text(place, &files)
 }

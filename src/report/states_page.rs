@@ -38,7 +38,9 @@ pub fn page(document: &StatesDocument, states: &[StateResults]) -> String {
                     }
                     section aria-label="Contact pressure" {
                         h2 { "Contact pressure of the sliding pairs" }
-                        p.hint { "At the friction value in the middle; one scale of colours for all states of a pair." }
+                        @if let Some(value) = states.first().and_then(|state| middle(&state.results)) {
+                            p.hint { "At \u{3bc} = " (value.friction) "; one scale of colours for all states of a pair." }
+                        }
                         @for map in maps(states) { figure.card.plot { (PreEscaped(map)) } }
                     }
                 }
@@ -133,7 +135,9 @@ fn growth(states: &[StateResults]) -> String {
     let [from, to] = range(0);
     sheet.line(panel.at(from, 0.0), panel.at(to, 0.0), &format!(r#"stroke="{PALE}" stroke-dasharray="4 3""#));
     for (k, (state, points)) in states.iter().zip(&lines).enumerate() {
-        let style = format!(r#"stroke="{}" stroke-width="1.8""#, colour(k));
+        // States that agree are seen beside each other.
+        let width = (5.0 - 1.2 * k as f64).max(1.4);
+        let style = format!(r#"stroke="{}" stroke-width="{width:.1}""#, colour(k));
         let places: Vec<[f64; 2]> = points.iter().map(|&[mu, rate]| panel.at(mu, rate)).collect();
         sheet.polyline(&places, &style);
         places.iter().for_each(|place| sheet.circle(*place, 3.0, &format!(r#"fill="{}""#, colour(k))));
