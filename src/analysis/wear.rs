@@ -196,6 +196,7 @@ impl<'a> State<'a> {
 
     /// One implicit step over a sliding distance (m): `h += k p v dt` with the pressure at its end. Collective.
     fn step(&mut self, distance: f64, observer: &mut dyn Observer) -> Result<()> {
+        observer.event(Event::Stage(&format!("wear to {:.3e} m", self.distance + distance)));
         let time = distance / self.mean_speed;
         let mut wearing = self.interface.clone();
         for a in self.wearing() {
@@ -346,4 +347,28 @@ impl<'a> State<'a> {
 fn change(a: &[f64], b: &[f64]) -> f64 {
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>().sqrt();
     norm(&mut a.iter().zip(b).map(|(a, b)| b - a)) / norm(&mut b.iter().copied()).max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_is_relative_to_what_it_leads_to() {
+        assert_eq!(change(&[3.0, 4.0], &[3.0, 4.0]), 0.0);
+        assert!((change(&[3.0, 4.0], &[6.0, 8.0]) - 0.5).abs() < 1e-15);
+        assert_eq!(change(&[], &[]), 0.0);
+    }
+
+    #[test]
+    fn only_sliding_pairs_with_a_coefficient_wear() {
+        let comm = crate::native::Session::start(&[]).unwrap();
+        let mut brake = FullModel::read(&comm, "tests/data/pads_on_disc.toml".as_ref()).unwrap();
+        let message = |brake: &FullModel| require_wear(brake).unwrap_err().to_string();
+        assert!(message(&brake).contains("no sliding contact has a wear coefficient. Give wear = 1e-14"));
+        brake.model.contacts[1].wear = Some(2e-14);
+        assert_eq!(coefficients(&brake).unwrap(), [0.0, 2e-14]);
+        brake.interface.pairs[1].kind = crate::contact::TangentialKind::StickSlip;
+        assert!(message(&brake).contains("it has wear and does not slide"));
+    }
 }

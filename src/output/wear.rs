@@ -89,3 +89,45 @@ pub fn write(wear: &Wear, folder: &Folder, summary: &str) -> Result<()> {
     folder.write("steps.csv", |out| write_csv(out, rows))?;
     folder.write(GAPS, |out| write_csv(out, wear.points.iter().cloned()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::WearStep;
+
+    fn wear(end: WearEnd) -> Wear {
+        let pair = |volume: f64| PairWear {
+            pair: "disc / pad".into(),
+            mean: 2.5e6,
+            spread: 0.21,
+            depth: 3e-6,
+            volume,
+            archard_volume: 2e-9,
+            ..PairWear::default()
+        };
+        let step = |distance: f64, volume: f64| WearStep { distance, pairs: vec![pair(volume)] };
+        Wear { title: "brake".into(), end, steps: vec![step(0.0, 0.0), step(50.0, 2.002e-9)], ..Wear::default() }
+    }
+
+    #[test]
+    fn the_text_has_each_step_the_end_and_the_balance() {
+        let text = text(&wear(WearEnd::Steady));
+        assert!(text.contains("p v differs by 21.000 %. Parts tilt at a constant rate"), "{text}");
+        assert!(text.contains("differ by 1.0e-3\n"), "{text}");
+        let last = text.lines().find(|line| line.contains("5.0000e1")).unwrap();
+        assert!(last.starts_with("disc / pad") && last.contains("2500.00") && last.contains("2.0020"), "{last}");
+        assert!(super::text(&wear(WearEnd::Uniform)).contains("the wear rate is uniform"));
+        assert!(!super::text(&wear(WearEnd::Distance)).contains("wear rate"));
+    }
+
+    #[test]
+    fn a_row_has_its_step_and_pair() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::open(&place.path().join("run"), false).unwrap();
+        write(&wear(WearEnd::Distance), &folder, "summary").unwrap();
+        folder.finish().unwrap();
+        let steps = std::fs::read_to_string(place.path().join("run/steps.csv")).unwrap();
+        assert!(steps.starts_with("step,distance_m,pair,pv_mean_w_per_m2,pv_spread,"), "{steps}");
+        assert!(steps.lines().nth(2).unwrap().starts_with("1,50.0,disc / pad,2500000.0,0.21,"), "{steps}");
+    }
+}
