@@ -128,6 +128,6 @@ mod tests {
         folder.finish().unwrap();
         let steps = std::fs::read_to_string(place.path().join("run/steps.csv")).unwrap();
         assert!(steps.starts_with("step,distance_m,pair,pv_mean_w_per_m2,pv_spread,"), "{steps}");
-        assert!(steps.lines().nth(2).unwrap().starts_with("1,50.0,disc / pad,2500000.0,0.21,"), "{steps}");
+        assert!(steps.lines().nth(2).unwrap().starts_with("1,50,disc / pad,2500000,0.21,"), "{steps}");
     }
 }
