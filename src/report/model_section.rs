@@ -33,6 +33,9 @@ fn facts(about: &About) -> Markup {
         @if about.structural_damping {
             dt { "Damping" } dd { "structural, by loss factors g: stiffness K (1 + i g) at positive frequencies" }
         }
+        @if about.viscoelastic {
+            dt { "Viscoelastic" } dd { "each mode has the stiffness of its own frequency; backward errors are those of that" }
+        }
         dt { "Command" } dd { code { "squeal " (about.command) } }
         dt { "Program" } dd { (about.program) }
         dt { "Libraries" } dd { (about.libraries) }

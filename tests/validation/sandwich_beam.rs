@@ -24,8 +24,8 @@
 //! Measured with 20 and 40 elements along the beam, core of loss factor 0.1: the fourth frequency 0.95 % and 0.02 %
 //! above the theory's.
 //!
-//! Goal: frequencies within 0.3 % [0.2 %], loss factors within 1 % [0.9 %], for cores of loss factors 0.1 and 1 and for a
-//! fractional Zener core.
+//! Goal: frequencies within 0.3 % [0.2 %], loss factors within 1 % [0.9 %], for cores of loss factors 0.1 and 1 and for
+//! a fractional Zener core.
 
 use std::f64::consts::TAU;
 
