@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::contact::search::{Alone, Options, find};
 use crate::contact::surface_points::surface_points;
+use crate::element::facet::{area, pressure_load};
 use crate::element::solid::{MassProperties, mass_properties};
 use crate::mesh::Mesh;
 
@@ -35,6 +36,11 @@ const PROPERTIES: [(&str, f64, f64, f64, &str); 3] = [
 /// Words in the names of surfaces that are bolted or clamped.
 const HOLDING: [&str; 6] = ["hub", "bolt", "fix", "mount", "clamp", "ground"];
 
+/// Damping of a part, as a comment.
+const DAMPING: &str = "#rayleigh = { alpha = 5, beta = 1e-7 }   # 1/s and s; choose: without damping no mode decays\n";
+/// Cosine of the angle between a face and the axis above which a load on it presses pads against the disc.
+const ALONG_AXIS: f64 = 0.9;
+
 /// Two surfaces that touch.
 struct Touching {
     slave: String,
@@ -55,7 +61,7 @@ pub fn propose_model(mesh: &Mesh, mesh_file: &Path) -> String {
         mesh_file.display()
     );
     materials(&mut text, mesh);
-    supports_and_loads(&mut text, mesh, &pairs);
+    supports_and_loads(&mut text, mesh, &pairs, turning.as_ref());
     rotation(&mut text, mesh, turning.as_ref());
     contacts(&mut text, &pairs);
     text += "\n[stability]\nband = [0, 6000]   # Hz\n";
@@ -151,22 +157,60 @@ fn materials(text: &mut String, mesh: &Mesh) {
     for part in &mesh.parts {
         let is_bare = part.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c));
         let key = if is_bare { part.clone() } else { format!("{part:?}") };
-        let _ = write!(text, "\n[part.{key}]\nmaterial = \"{}\"\n", material_of(part));
+        let _ = write!(text, "\n[part.{key}]\nmaterial = \"{}\"\n{DAMPING}", material_of(part));
     }
 }
 
-fn supports_and_loads(text: &mut String, mesh: &Mesh, pairs: &[Touching]) {
+/// What holds the disc: a surface that is called so, or another one of the part that turns. What presses the pads: faces
+/// across the axis on other parts, as comments.
+fn supports_and_loads(text: &mut String, mesh: &Mesh, pairs: &[Touching], turning: Option<&Turning>) {
     let touches = |name: &String| pairs.iter().any(|pair| [&pair.slave, &pair.master].contains(&name));
     let free: Vec<&String> = mesh.surfaces.keys().chain(mesh.node_sets.keys()).filter(|name| !touches(name)).collect();
+    let _ = write!(text, "\n# Surfaces and sets that touch nothing: {free:?}\n\n");
     let holds = |name: &&&String| HOLDING.iter().any(|word| name.to_lowercase().contains(word));
-    let first = free.iter().find(holds).or(free.first()).map_or("hub", |name| name.as_str());
+    let turns = |name: &String| turning.is_some_and(|own| mesh.part_of_surface(name) == Some(own.part));
+    let held = free.iter().find(holds).or_else(|| free.iter().find(|name| turns(name)));
+    let (mark, name) = held.map_or(("#", "..."), |name| ("", name.as_str()));
     let _ = write!(
         text,
-        "\n# Surfaces and sets that touch nothing: {free:?}\n\n\
-         [[fix]]                      # choose: what holds the disc, the bracket, the pads\nnodes = {first:?}\naxes = \"xyz\"\n\n\
-         #[[load]]                    # choose: what presses the pads against the disc\n#on = \"...\"\n\
-         #force = [0, 0, 4000]        # N in total; or pressure = 2e6, Pa\n"
+        "{mark}[[fix]]                      # choose: what holds the disc, the bracket, the pads\n{mark}nodes = {name:?}\n\
+         {mark}axes = \"xyz\"\n\n"
     );
+    let pressed: Vec<String> = free
+        .iter()
+        .filter(|name| held != Some(name) && !turns(name))
+        .filter_map(|name| Some(pressed(name, into_part(mesh, name)?, turning?.axis)?))
+        .collect();
+    *text += &match pressed[..] {
+        [] => "#[[load]]                    # choose: what presses the pads against the disc\n#on = \"...\"\n\
+               #force = [0, 0, 4000]        # N in total; or pressure = 2e6, Pa\n"
+            .to_owned(),
+        _ => pressed.concat(),
+    };
+}
+
+/// The mean direction into the part behind a surface; none of node sets.
+fn into_part(mesh: &Mesh, surface: &str) -> Option<Vector3<f64>> {
+    let facets = &mesh.surfaces.get(surface)?.facets;
+    let of_unit_pressure = facets.iter().flat_map(|facet| pressure_load(&facet.positions(&mesh.nodes), 1.0));
+    let sum: Vector3<f64> = of_unit_pressure.map(Vector3::from).sum();
+    let area: f64 = facets.iter().map(|facet| area(&facet.positions(&mesh.nodes))).sum();
+    Some(sum / area)
+}
+
+/// A support across the axis and a load along it, as comments; none where the surface is not across the axis.
+fn pressed(surface: &str, into: Vector3<f64>, axis: Vector3<f64>) -> Option<String> {
+    let along = into.dot(&axis);
+    (along.abs() > ALONG_AXIS).then(|| {
+        let across: String = "xyz".chars().zip(axis.iter()).filter(|(_, a)| a.abs() < 0.5).map(|(c, _)| c).collect();
+        let force = (axis * along.signum() * 4000.0).map(|f| f.round() + 0.0);
+        format!(
+            "#[[fix]]                     # choose: {surface:?} guided across the axis\n#nodes = {surface:?}\n#axes = {across:?}\n\
+             #[[load]]                    # choose: {surface:?} pressed\n#on = {surface:?}\n\
+             #force = [{}, {}, {}]        # N in total; or pressure = 2e6, Pa\n#spread = \"area\"\n\n",
+            force.x, force.y, force.z
+        )
+    })
 }
 
 fn rotation(text: &mut String, mesh: &Mesh, turning: Option<&Turning>) {
@@ -198,7 +242,8 @@ fn contacts(text: &mut String, pairs: &[Touching]) {
         );
     }
     if pairs.is_empty() {
-        *text += "\n# No two named surfaces touch. Name the faces of pads and disc as physical surfaces in Gmsh.\n";
+        *text += "\n# No two named surfaces of different parts touch. Name the faces of pads and disc as physical surfaces in Gmsh,\n\
+                  # and do not glue pads and disc: parts in contact share no nodes.\n";
     }
 }
 
@@ -232,6 +277,24 @@ mod tests {
             touching(&mesh, disc).into_iter().map(|pair| (pair.slave, pair.master, pair.sliding)).collect();
         let pair = |side: &str| (format!("lining_{side}_face"), format!("disc_{side}_face"), true);
         assert_eq!(pairs, [pair("inner"), pair("outer")]);
+    }
+
+    #[test]
+    fn what_turns_is_held_and_what_lies_across_the_axis_is_pressed() {
+        let mut mesh = pads_on_disc();
+        let proposed = propose_model(&mesh, "brake.msh".as_ref());
+        assert!(proposed.contains(
+            "[[fix]]                      # choose: what holds the disc, the bracket, the pads\nnodes = \"hub\""
+        ));
+        let load = |side: &str, force: &str| format!("#on = \"backplate_{side}_back\"\n#force = [0, 0, {force}] ");
+        assert!(proposed.contains(&load("inner", "4000")) && proposed.contains(&load("outer", "-4000")), "{proposed}");
+        assert!(proposed.contains("#nodes = \"backplate_inner_back\"\n#axes = \"xy\"\n"));
+        // A surface of the disc without a telling name is held, too; without one, nothing is.
+        let hub = mesh.surfaces.remove("hub").expect("the mesh has it");
+        mesh.surfaces.insert("zone".into(), hub);
+        assert!(propose_model(&mesh, "brake.msh".as_ref()).contains("\nnodes = \"zone\"\naxes = \"xyz\""));
+        mesh.surfaces.remove("zone");
+        assert!(propose_model(&mesh, "brake.msh".as_ref()).contains("\n#nodes = \"...\"\n"));
     }
 
     #[test]

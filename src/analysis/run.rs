@@ -190,6 +190,10 @@ impl Run<'_> {
             Err(error) => return Err(self.give_up(friction, error)?),
         };
         let checks = self.structure.check_equilibrium(self.system, &equilibrium)?;
+        if !self.results.about.has_contact(&checks.pairs) {
+            let what = format!("no sliding contact carries a force at friction {friction:.3}: the loads close none");
+            self.observer.event(Event::Warning(&what));
+        }
         if asked {
             self.fields.equilibrium(&equilibrium)?;
         }

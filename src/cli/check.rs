@@ -49,12 +49,14 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     if let Some(file) = output {
         draw(comm, file, &full, contacts.is_some())?;
     }
+    let outcome = full.require_constrained(comm).and_then(|()| matrix_summary(comm, &full)).and_then(|matrix| {
+        text += &matrix.text();
+        summary.matrix = Some(matrix);
+        shell.print(&text, &summary)
+    });
+    // Last, so that nobody overlooks them.
     shell.warn(&summary.warnings);
-    full.require_constrained(comm)?;
-    let matrix = matrix_summary(comm, &full)?;
-    text += &matrix.text();
-    summary.matrix = Some(matrix);
-    shell.print(&text, &summary)
+    outcome
 }
 
 /// Writes the picture of the model, or that of the cells of the reference nodes. Collective.

@@ -181,7 +181,7 @@ struct Run {
     model: PathBuf,
     /// Friction coefficient of the swept contacts: one value, a list 0.2,0.5 or a range FROM:TO:STEP (default: the
     /// model file's)
-    #[arg(long, value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
+    #[arg(long, alias = "mu", value_name = "MU", value_parser = values::parse, allow_hyphen_values = true)]
     friction: Option<Values>,
     /// Number of reference pairs in place of the contact points of the sliding contacts, e.g. 104
     #[arg(long, value_name = "N", value_parser = values::count)]

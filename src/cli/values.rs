@@ -70,7 +70,10 @@ pub fn frequency(text: &str) -> Result<f64, String> {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
+    let value: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| format!("{text:?} is not a number: numbers are 0.4, lists 0.2,0.5, ranges FROM:TO:STEP"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }
 }
 

@@ -77,8 +77,9 @@ impl KeyPath {
             let below: Vec<(Vec<String>, Address)> =
                 places.iter().flat_map(|place| children(at(document, place), place)).collect();
             let is_match = |labels: &Vec<String>| labels.iter().any(|label| matches(segment, label));
-            places = below.iter().filter(|(labels, _)| is_match(labels)).map(|(_, place)| place.clone()).collect();
-            if places.is_empty() {
+            let found: Vec<Address> =
+                below.iter().filter(|(labels, _)| is_match(labels)).map(|(_, place)| place.clone()).collect();
+            if found.is_empty() {
                 let mut known: Vec<&str> = below.iter().map(|(labels, _)| labels[0].as_str()).collect();
                 known.sort_unstable();
                 known.dedup();
@@ -86,8 +87,16 @@ impl KeyPath {
                     0 => "the model file".to_owned(),
                     _ => self.segments[..depth].join("."),
                 };
-                return Err(self.error(&format!("{above} has no {segment:?}"), &names::advice(segment, known)));
+                let is_proposed = places.iter().any(|place| at(document, place).as_str() == Some("auto"));
+                let advice = match is_proposed {
+                    true => {
+                        "It is \"auto\": write the number that `squeal check` prints, such as { linear = 2e13 }".into()
+                    }
+                    false => names::advice(segment, known),
+                };
+                return Err(self.error(&format!("{above} has no {segment:?}"), &advice));
             }
+            places = found;
         }
         let numbers = places.iter().map(|place| self.numbers(document, place, is_group)).collect::<Result<Vec<_>>>()?;
         Ok(numbers.concat())
@@ -230,6 +239,15 @@ mod tests {
         };
         assert!(message("material.linign.young").contains("material has no \"linign\". Did you mean \"lining\"?"));
         assert!(message("materials.x").contains("the model file has no \"materials\". Did you mean \"material\"?"));
+        let proposed: DocumentMut = "[[contact]]\nname = \"pad\"\nlaw = \"auto\"\n".parse().unwrap();
+        let error = KeyPath::parse("contact.pad.law.linear").unwrap().find(proposed.as_item(), false).unwrap_err();
+        assert!(
+            error.to_string().ends_with(
+                "has no \"linear\". It is \"auto\": write the number that `squeal check` \
+                                             prints, such as { linear = 2e13 }"
+            ),
+            "{error}"
+        );
         assert!(message("load.*.moment").contains("load.* has no \"moment\""));
         assert!(message("load.piston.force").contains("x or 1, y or 2, z or 3, or factor = true"));
         assert!(message("material.lining").contains("no number. Add one of young, density"));

@@ -216,7 +216,8 @@ impl ModelSummary {
             let centre = of_mass(joined(row.centre_m, 1e3, 2, " "));
             let inertia = of_mass(joined(row.inertia_kg_m2, 1e6, 2, " "));
             format!(
-                "{part}\t{elements}\t{mass_kg:.4}\t{centre}\t{inertia}\t{quality_min:.3} {quality_median:.3}\t{}",
+                "{part}\t{elements}\t{}\t{centre}\t{inertia}\t{quality_min:.3} {quality_median:.3}\t{}",
+                mass(*mass_kg),
                 row.damping()
             )
         };
@@ -228,7 +229,7 @@ impl ModelSummary {
     fn pairs_text(&self) -> String {
         let row = |row: &PairRow| {
             let PairRow { pair, kind, points, dropped, touching, friction, .. } = row;
-            let (area, low, high) = (1e6 * row.area_m2, 1e3 * row.gap_min_m, 1e3 * row.gap_max_m);
+            let (area, low, high) = (1e6 * row.area_m2, 1e3 * row.gap_min_m + 0.0, 1e3 * row.gap_max_m + 0.0);
             let friction = if *friction == ROUGH { "rough".to_owned() } else { friction.to_string() };
             format!("{pair}\t{kind}\t{points}\t{dropped}\t{touching}\t{area:.2}\t{low:.2e} {high:.2e}\t{friction}")
         };
@@ -277,6 +278,11 @@ impl MatrixSummary {
             "{free_dofs} free dofs, {millions:.1} M entries in K; the LU factor will take about {factor_gb:.1} GB\n"
         )
     }
+}
+
+/// A mass in kg; with an exponent where digits would be lost, as by a density in a wrong unit.
+fn mass(kg: f64) -> String {
+    if kg == 0.0 || (1e-3..1e6).contains(&kg) { format!("{kg:.4}") } else { format!("{kg:.3e}") }
 }
 
 /// Three numbers in another unit with so many decimals, where rounding leaves no `-0.00`.
@@ -378,6 +384,14 @@ pub(super) mod tests {
     #[test]
     fn units_are_those_of_the_headings_and_no_zero_is_negative() {
         insta::assert_snapshot!(summary().text());
+    }
+
+    #[test]
+    fn masses_of_a_wrong_unit_keep_their_digits() {
+        assert_eq!(
+            [0.0, 0.0639, 4.8, 4.8e-12, 2.65e9].map(mass),
+            ["0.0000", "0.0639", "4.8000", "4.800e-12", "2.650e9"]
+        );
     }
 
     #[test]

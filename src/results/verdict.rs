@@ -10,7 +10,8 @@ use serde::Serialize;
 
 use crate::stability::Count;
 
-use super::{Results, Value};
+use super::{About, Results, Value};
+use crate::equilibrium::PairForces;
 
 /// The verdict of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -72,10 +73,8 @@ impl Results {
         Verdict { status, reasons }
     }
 
-    /// Whether a sliding contact carries a force at a value; true where no pair slides.
     fn has_contact(&self, value: &Value) -> bool {
-        let mut sliding = self.about.pairs.iter().zip(&value.pairs).filter(|(pair, _)| pair.sliding).peekable();
-        sliding.peek().is_none() || sliding.any(|(_, forces)| forces.is_pressed())
+        self.about.has_contact(&value.pairs)
     }
 
     fn doubts(&self) -> Vec<Doubt> {
@@ -108,6 +107,14 @@ impl Results {
     fn unconfirmed(&self) -> impl Iterator<Item = Doubt> {
         let counts = self.asked().filter_map(|value| Some((value.friction, value.count?)));
         counts.filter(|(_, count)| !count.agrees()).map(|(friction, count)| Doubt::NotConfirmed(friction, count))
+    }
+}
+
+impl About {
+    /// Whether a sliding contact carries a force; true where no pair slides.
+    pub fn has_contact(&self, pairs: &[PairForces]) -> bool {
+        let mut sliding = self.pairs.iter().zip(pairs).filter(|(pair, _)| pair.sliding).peekable();
+        sliding.peek().is_none() || sliding.any(|(_, forces)| forces.is_pressed())
     }
 }
 

@@ -38,9 +38,9 @@ const FREE: f64 = 1e-5;
 const NOTICEABLE: f64 = 0.1;
 
 /// Bodies: parts that share nodes move together.
-struct Bodies {
+pub(super) struct Bodies {
     /// Body of each node.
-    of_node: Vec<usize>,
+    pub of_node: Vec<usize>,
     /// Names of the parts of each body.
     parts: Vec<Vec<String>>,
     centroid: Vec<[f64; 3]>,
@@ -49,7 +49,7 @@ struct Bodies {
 
 impl Bodies {
     /// The bodies of a mesh of which this rank has a piece. Collective.
-    fn new(comm: &Comm, mesh: &Mesh, nodes: &Numbering) -> Bodies {
+    pub fn new(comm: &Comm, mesh: &Mesh, nodes: &Numbering) -> Bodies {
         let (part_of, meet) = parts_of_nodes(comm, mesh);
         let n_parts = mesh.parts.len();
         let body = bodies_of_parts(n_parts, |a, b| meet[n_parts * a + b] > 0);

@@ -133,7 +133,8 @@ impl FullModel {
             ),
         };
         Err(Error::input(format!(
-            "{}: unconstrained:\n{free}\nAdd a [[fix]], a [[connector]], a [[tie]] or a [[contact]] that stops these motions{gaps}",
+            "{}: unconstrained:\n{free}\nAdd a [[fix]], a [[connector]], a [[tie]] or a [[contact]] that stops these motions{gaps}. \
+             Parts that are glued share nodes (BooleanFragments in Gmsh), or need a [[tie]]",
             self.model.file.display()
         )))
     }

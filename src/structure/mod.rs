@@ -11,6 +11,7 @@
 //! come from.
 
 pub mod contact_surface;
+mod damping_range;
 mod digest;
 mod distribution;
 mod equilibrium_checks;
@@ -19,6 +20,7 @@ mod files;
 mod free_motions;
 mod friction;
 mod full;
+mod loading;
 pub mod nodal_basis;
 pub mod plausibility;
 mod ranked;

@@ -188,6 +188,8 @@ pub fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
         .chain(size)
         .chain(stiff_elements(full, comm))
         .chain(geometry(full, comm))
+        .chain(super::loading::warnings(full, comm))
+        .chain(super::damping_range::warnings(model))
         .collect()
 }
 

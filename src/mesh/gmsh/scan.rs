@@ -57,7 +57,8 @@ impl<'a> Scan<'a> {
                 Ok(Some(self.section))
             }
             None => Err(self.error(format_args!(
-                "expected a section such as $Nodes, found {:?}. Is this a Gmsh mesh?",
+                "expected a section such as $Nodes, found {:?}. Is this a Gmsh mesh? CAD files such as STEP are meshed with \
+                 Gmsh first; a deck needs no mesh file",
                 line.chars().take(40).collect::<String>()
             ))),
         }
