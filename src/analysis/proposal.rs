@@ -161,8 +161,8 @@ fn materials(text: &mut String, mesh: &Mesh) {
     }
 }
 
-/// What holds the disc: a surface that is called so, or another one of the part that turns. What presses the pads: faces
-/// across the axis on other parts, as comments.
+/// What holds the disc: a surface that is called so, or another one of the part that turns. What presses the pads:
+/// faces across the axis on other parts, as comments.
 fn supports_and_loads(text: &mut String, mesh: &Mesh, pairs: &[Touching], turning: Option<&Turning>) {
     let touches = |name: &String| pairs.iter().any(|pair| [&pair.slave, &pair.master].contains(&name));
     let free: Vec<&String> = mesh.surfaces.keys().chain(mesh.node_sets.keys()).filter(|name| !touches(name)).collect();

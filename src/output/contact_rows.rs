@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::model_summary::joined;
+use super::text::joined;
 use crate::model::{Inertia, ProposedStiffness};
 
 /// A rotation.

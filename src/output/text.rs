@@ -89,9 +89,28 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
+/// A mass in kg; with an exponent where digits would be lost, as by a density in a wrong unit.
+pub fn mass(kg: f64) -> String {
+    if kg == 0.0 || (1e-3..1e6).contains(&kg) { format!("{kg:.4}") } else { format!("{kg:.3e}") }
+}
+
+/// Three numbers in another unit with so many decimals, where rounding leaves no `-0.00`.
+pub fn joined(x: [f64; 3], unit: f64, decimals: usize, separator: &str) -> String {
+    let scale = 10_f64.powi(decimals as i32);
+    x.map(|x| format!("{:.decimals$}", ((unit * x * scale).round() + 0.0) / scale)).join(separator)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn masses_of_a_wrong_unit_keep_their_digits() {
+        assert_eq!(
+            [0.0, 0.0639, 4.8, 4.8e-12, 2.65e9].map(mass),
+            ["0.0000", "0.0639", "4.8000", "4.800e-12", "2.650e9"]
+        );
+    }
 
     #[test]
     fn control_characters_are_spelled_out() {

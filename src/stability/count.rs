@@ -3,9 +3,9 @@
 //! With [`Evidence::SturmCount`] the number of modes below a frequency is known from the symmetric problem. Friction
 //! may carry a mode across that frequency, where the two problems then differ by one: the count is then taken again in
 //! the widest gap between modes beyond the band's end, and the next value's count begins there. Damping that makes
-//! eigenvalues real, such as that of friction at low speed, separates the two problems: a pair of eigenvalues far beyond
-//! the frequency becomes one far below it and one still farther away. Then, as with [`Evidence::Repetition`], two
-//! searches have to agree.
+//! eigenvalues real, such as that of friction at low speed, separates the two problems: a pair of eigenvalues far
+//! beyond the frequency becomes one far below it and one still farther away. Then, as with [`Evidence::Repetition`],
+//! two searches have to agree.
 
 use std::f64::consts::TAU;
 use std::fmt::{self, Display};
