@@ -205,15 +205,18 @@ fn amount(full: &FullModel, load: &Load) -> String {
     }
 }
 
-/// Size of the stiffness matrix and of its factor, which is not made. Collective.
+/// Size of the stiffness matrix and of its factor, which is not made; `finished` is called with the name of each stage
+/// at its end. Collective.
 ///
 /// # Errors
 /// PETSc's and MUMPS's.
-pub fn matrix_summary(comm: &Comm, full: &FullModel) -> Result<MatrixSummary> {
+pub fn matrix_summary(comm: &Comm, full: &FullModel, finished: &mut dyn FnMut(&str)) -> Result<MatrixSummary> {
     let system = full.assemble(comm, &full.families()?)?;
+    finished("assembling M, C and K");
     let mut factor = Factor::new(FactorKind::Unsymmetric);
     factor.set_precision(tangent_precision(&system));
     factor.analyse(&system.k)?;
+    finished("analysing the factor");
     Ok(MatrixSummary {
         free_dofs: system.dofs.n_global(),
         entries: system.k.n_entries()?,

@@ -14,6 +14,7 @@ use crate::output::overwrite::may_write_file;
 use crate::output::vtu::{self, Grid};
 use crate::structure::FullModel;
 
+use super::progress::Stages;
 use super::{Shell, values};
 
 /// What `check` takes.
@@ -32,14 +33,18 @@ pub struct Check {
     /// Replace an earlier VTU file
     #[arg(long, requires = "output")]
     force: bool,
+    /// Print a line for each finished stage on standard error: its seconds, and the most memory taken so far
+    #[arg(short, long)]
+    verbose: bool,
 }
 
 pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     let comm = shell.comm;
-    let Check { model, contacts, output, force } = arguments;
+    let Check { model, contacts, output, force, verbose } = arguments;
+    let mut stages = Stages::new(comm, *verbose);
     let may_draw = || output.as_ref().map_or(Ok(()), |file| may_write_file(file, &vtu::KIND, *force));
     comm.agree(if comm.is_root() { may_draw() } else { Ok(()) })?;
-    let full = FullModel::read_with_contacts(comm, model, *contacts)?;
+    let full = FullModel::read_in_stages(comm, model, *contacts, &mut |stage| stages.end(stage))?;
     let mut summary = model_summary(comm, &full, contacts.is_some());
     let mut text = summary.text();
     if !shell.json {
@@ -49,7 +54,11 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
     if let Some(file) = output {
         draw(comm, file, &full, contacts.is_some())?;
     }
-    let outcome = full.require_constrained(comm).and_then(|()| matrix_summary(comm, &full)).and_then(|matrix| {
+    let matrix = full.require_constrained(comm).and_then(|()| {
+        stages.end("checking the model");
+        matrix_summary(comm, &full, &mut |stage| stages.end(stage))
+    });
+    let outcome = matrix.and_then(|matrix| {
         text += &matrix.text();
         summary.matrix = Some(matrix);
         shell.print(&text, &summary)

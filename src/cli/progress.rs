@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::native::Comm;
+use crate::native::machine::peak_mb;
 use crate::output::text::printable;
 
 /// A line with stage, detail and elapsed time, and a bar over the values of a sweep.
@@ -111,5 +112,33 @@ impl Progress {
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// A line for each finished stage of a command, for those who asked for lines.
+pub struct Stages<'a> {
+    comm: &'a Comm,
+    has_lines: bool,
+    /// When the last stage ended.
+    last: Instant,
+}
+
+impl<'a> Stages<'a> {
+    /// The first stage begins.
+    pub fn new(comm: &'a Comm, verbose: bool) -> Stages<'a> {
+        Stages { comm, has_lines: verbose, last: Instant::now() }
+    }
+
+    /// A stage has ended, and the next begins: prints the seconds that it took, and the most memory that all ranks
+    /// together have had so far. Collective.
+    pub fn end(&mut self, stage: &str) {
+        if !self.has_lines {
+            return;
+        }
+        let peak_gb = peak_mb(self.comm) / 1024.0;
+        if self.comm.is_root() {
+            eprintln!("{stage}: {:.1} s, peak memory {peak_gb:.2} GB", self.last.elapsed().as_secs_f64());
+        }
+        self.last = Instant::now();
     }
 }

@@ -8,7 +8,7 @@ impl Model {
     ///
     /// Parts, contacts, connectors, ties, rigid sets, masses, equations and loads of the file take the place of those
     /// of the same name, rotations of those of the same part; fixes are added; band, sweep, reduction and title are the
-    /// file's.
+    /// file's; prestress, too, where it has it.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a rotation of no part, and a sweep of no contact.
@@ -28,8 +28,21 @@ impl Model {
         deck.fixes.append(&mut self.fixes);
         let Model { parts, contacts, connectors, ties, rigid_sets, masses, equations, loads, rotations, fixes, .. } =
             deck;
-        let model =
-            Model { parts, contacts, connectors, ties, rigid_sets, masses, equations, loads, rotations, fixes, ..self };
+        let prestress = self.prestress.or(deck.prestress);
+        let model = Model {
+            parts,
+            contacts,
+            connectors,
+            ties,
+            rigid_sets,
+            masses,
+            equations,
+            loads,
+            rotations,
+            fixes,
+            prestress,
+            ..self
+        };
         model.check_names()?;
         Ok(model)
     }
@@ -104,6 +117,18 @@ mod tests {
         assert_eq!((model.contacts[0].friction, model.contacts[0].place.file), (0.5, 0));
         assert_eq!((model.parts[0].place.file, model.files[1].as_path()), (1, Path::new("b.toml")));
         assert_eq!(model.band, [0.0, 9.0]);
+    }
+
+    #[test]
+    fn prestress_is_the_files_where_it_has_it() {
+        let both = |file: &str, deck: &str| {
+            let with = |text: &str, key: &str| text.replace("[stability]\n", &format!("[stability]\n{key}\n"));
+            let deck = parse(&with(DECK, deck), Path::new("b.toml")).unwrap();
+            parse(&with(FILE, file), Path::new("brake.toml")).unwrap().over(deck).unwrap().prestress
+        };
+        assert_eq!(both("", "prestress = true"), Some(true));
+        assert_eq!(both("prestress = false", "prestress = true"), Some(false));
+        assert_eq!(both("", ""), None);
     }
 
     #[test]

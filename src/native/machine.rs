@@ -33,6 +33,14 @@ pub fn available_mb(comm: &Comm) -> f64 {
     limits(comm).0
 }
 
+/// The most memory that the ranks together have had so far, MB: the sum of their largest resident sets. Collective.
+pub fn peak_mb(comm: &Comm) -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mut total = [kilobytes(&status, "VmHWM:").unwrap_or(0.0) / 1024.0];
+    comm.sum_all(&mut total);
+    total[0]
+}
+
 /// Whether the ranks together may reserve so much address space, MB, and use so much of it. Collective.
 pub(in crate::native) fn has_room(comm: &Comm, used_mb: f64, reserved_mb: f64) -> bool {
     let each = comm.min(address_space_mb().unwrap_or(f64::INFINITY));
@@ -150,5 +158,13 @@ mod tests {
     fn the_kernel_is_understood() {
         assert_eq!(kilobytes("MemTotal: 3 kB\nMemAvailable:    2048 kB\n", "MemAvailable:"), Some(2048.0));
         assert!(machine_mb().is_some_and(|mb| mb > 1.0));
+    }
+
+    #[test]
+    fn the_peak_of_memory_rises_with_what_is_used() {
+        let comm = crate::native::Session::start(&[]).unwrap();
+        let before = peak_mb(&comm);
+        let used = vec![1_u8; 64 << 20];
+        assert!(before > 1.0 && peak_mb(&comm) > before + 32.0, "{before} {} {}", peak_mb(&comm), used.len());
     }
 }

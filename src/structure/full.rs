@@ -55,22 +55,27 @@ impl FullModel {
     /// # Errors
     /// [`Error::Input`] with file and line, whatever is wrong.
     pub fn read(comm: &Comm, path: &Path) -> Result<FullModel> {
-        FullModel::from_files(comm, path, |model, mesh| Ok((model, mesh)))
+        FullModel::from_files(comm, path, &mut |_| (), |model, mesh| Ok((model, mesh)))
     }
 
-    /// Reads model and mesh, changes both, and gives each rank its piece. Collective.
+    /// Reads model and mesh, changes both, and gives each rank its piece; `finished` is called with the name of each
+    /// stage at its end. Collective.
     ///
     /// # Errors
     /// Those of reading and of the change.
     pub(super) fn from_files(
         comm: &Comm,
         path: &Path,
+        finished: &mut dyn FnMut(&str),
         change: impl Fn(Model, Option<Mesh>) -> Result<(Model, Option<Mesh>)>,
     ) -> Result<FullModel> {
         let (model, mesh, deck) = ModelFiles::shared(comm, path)?;
         let (model, mesh) = comm.agree(change(model, mesh))?;
+        finished("reading model and mesh");
         let piece = distribute(comm, || Ok(mesh.expect("the root has read it")))?;
+        finished("dividing the mesh");
         let full = comm.agree(FullModel::new(model, piece, comm))?;
+        finished("finding contact points");
         Ok(FullModel { deck, ..full })
     }
 
@@ -80,7 +85,20 @@ impl FullModel {
     /// # Errors
     /// See [`FullModel::read`] and [`reduction::contacts::reduce`].
     pub fn read_with_contacts(comm: &Comm, path: &Path, n_contacts: Option<usize>) -> Result<FullModel> {
-        let mut brake = FullModel::read(comm, path)?;
+        FullModel::read_in_stages(comm, path, n_contacts, &mut |_| ())
+    }
+
+    /// As [`FullModel::read_with_contacts`]; `finished` is called with the name of each stage at its end. Collective.
+    ///
+    /// # Errors
+    /// As [`FullModel::read_with_contacts`].
+    pub fn read_in_stages(
+        comm: &Comm,
+        path: &Path,
+        n_contacts: Option<usize>,
+        finished: &mut dyn FnMut(&str),
+    ) -> Result<FullModel> {
+        let mut brake = FullModel::from_files(comm, path, finished, |model, mesh| Ok((model, mesh)))?;
         n_contacts.map_or(Ok(()), |n| brake.reduce_contacts(n))?;
         Ok(brake)
     }

@@ -20,7 +20,9 @@ impl FullModel {
         let one = |mesh: Mesh| {
             mesh.only(part).ok_or_else(|| Error::input(format!("{}: the mesh has no part {part:?}", path.display())))
         };
-        FullModel::from_files(comm, path, |model, mesh| Ok((model.only(part)?, mesh.map(one).transpose()?)))
+        FullModel::from_files(comm, path, &mut |_| (), |model, mesh| {
+            Ok((model.only(part)?, mesh.map(one).transpose()?))
+        })
     }
 }
 

@@ -36,6 +36,20 @@ fn check_prints_what_was_understood_of_a_deck() {
 }
 
 #[test]
+fn check_prints_the_seconds_and_memory_of_its_stages_where_they_are_asked_for() {
+    let place = place();
+    let stages = ["reading model and mesh", "dividing the mesh", "finding contact points", "checking the model"];
+    let stages: Vec<&str> = stages.into_iter().chain(["assembling M, C and K", "analysing the factor"]).collect();
+    for n in [1, 2] {
+        let said = place.run_on(n, &["check", "brake.inp", "-v"]);
+        let lines: Vec<&str> = said.err.lines().filter(|line| line.contains(" s, peak memory 0.")).collect();
+        let names: Vec<&str> = lines.iter().filter_map(|line| line.split(':').next()).collect();
+        assert_eq!((said.code, names), (0, stages.clone()), "{}", said.err);
+    }
+    assert!(!place.run(&["check", "brake.inp"]).err.contains("peak memory"));
+}
+
+#[test]
 fn a_deck_squeals_as_its_model_does() {
     let place = Place::blocks();
     assert_eq!(place.run(&["convert", "brake.toml", "-o", "deck.inp"]).code, 0);

@@ -12,6 +12,8 @@ pub(super) struct Settings {
     pub band: [f64; 2],
     /// Whether friction damps.
     pub friction_damping: bool,
+    /// Whether stresses stiffen the modes, where the deck says so.
+    pub prestress: Option<bool>,
 }
 
 impl Conversion<'_> {
@@ -19,7 +21,7 @@ impl Conversion<'_> {
     pub(super) fn settings(&mut self) -> Settings {
         let procedures = || self.deck.steps.iter().rev().map(|step| step.procedure);
         let complex = procedures().find_map(|procedure| match procedure {
-            Procedure::ComplexFrequency { band, friction_damping } => Some((band, friction_damping)),
+            Procedure::ComplexFrequency { band, friction_damping, .. } => Some((band, friction_damping)),
             _ => None,
         });
         let real = procedures().find_map(|procedure| match procedure {
@@ -36,6 +38,17 @@ impl Conversion<'_> {
                 USUAL_BAND[0], USUAL_BAND[1]
             ));
         }
-        Settings { band: band.unwrap_or(USUAL_BAND), friction_damping }
+        Settings { band: band.unwrap_or(USUAL_BAND), friction_damping, prestress: self.prestress() }
+    }
+
+    /// Stresses stiffen modes in a step with PERTURBATION, after one with NLGEOM. Abaqus needs both.
+    fn prestress(&mut self) -> Option<bool> {
+        let steps = &self.deck.steps;
+        let modes = steps.iter().position(|step| step.perturbation && step.procedure.is_of_modes())?;
+        if steps[..modes].iter().any(|step| step.nlgeom) {
+            return Some(true);
+        }
+        self.notes.push("PERTURBATION without NLGEOM in a step before: stresses do not stiffen the modes".to_owned());
+        None
     }
 }

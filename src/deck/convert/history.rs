@@ -3,7 +3,7 @@
 //! Supports, loads and motions last from step to step; `OP=NEW` ends those of its kind that began in earlier steps. A
 //! force on the same displacement adds to one of the same step and replaces one of an earlier step.
 
-use crate::deck::types::{Action, ActionKind, Deck, Friction, NothingKind, Spin};
+use crate::deck::types::{Action, ActionKind, Deck, Friction, NothingKind};
 
 /// The actions that last, with the step that they began in.
 pub struct State<'d> {
@@ -15,7 +15,7 @@ pub struct State<'d> {
 enum Ended {
     Boundary,
     Force,
-    FacePressure,
+    Distributed,
     SurfacePressure,
     Rotation,
     Friction,
@@ -26,7 +26,9 @@ impl From<&ActionKind> for Ended {
         match what {
             ActionKind::Boundary(..) | ActionKind::Nothing(NothingKind::Boundary) => Ended::Boundary,
             ActionKind::Force(..) | ActionKind::Nothing(NothingKind::Force) => Ended::Force,
-            ActionKind::FacePressure(..) | ActionKind::Nothing(NothingKind::FacePressure) => Ended::FacePressure,
+            ActionKind::FacePressure(..)
+            | ActionKind::Centrifugal(..)
+            | ActionKind::Nothing(NothingKind::Distributed) => Ended::Distributed,
             ActionKind::SurfacePressure(..) | ActionKind::Nothing(NothingKind::SurfacePressure) => {
                 Ended::SurfacePressure
             }
@@ -57,15 +59,6 @@ impl<'d> State<'d> {
         self.actions.iter().copied()
     }
 
-    /// The rotations.
-    pub fn rotations(&self) -> Vec<(&'d Action, &'d crate::deck::types::Entry, Spin)> {
-        let rotation = |(_, action): (usize, &'d Action)| match &action.what {
-            ActionKind::Rotation(of, spin) => Some((action, of, *spin)),
-            _ => None,
-        };
-        self.actions().filter_map(rotation).collect()
-    }
-
     /// The friction that an interaction changes to.
     pub fn friction(&self, interaction: &str) -> Option<&Friction> {
         let changed = self.actions().filter_map(|(_, action)| match &action.what {
@@ -90,7 +83,13 @@ mod tests {
     fn new_ends_what_began_earlier_and_no_other_kind() {
         let nothing =
             Action { what: ActionKind::Nothing(NothingKind::Boundary), is_new: true, place: Place::default() };
-        let step = |actions| Step { procedure: Procedure::Static, actions, place: Place::default() };
+        let step = |actions| Step {
+            procedure: Procedure::Static,
+            actions,
+            nlgeom: false,
+            perturbation: false,
+            place: Place::default(),
+        };
         let boundary = ActionKind::Boundary(Entry::Number(1), [1, 3], 0.0);
         let deck = Deck {
             initial: vec![Action { what: boundary, is_new: false, place: Place::default() }, force(1.0, false)],

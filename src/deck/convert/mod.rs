@@ -23,6 +23,7 @@ mod orientations;
 mod pairs;
 mod references;
 mod regions;
+mod rotations;
 mod supports;
 #[cfg(test)]
 mod tests;
@@ -106,6 +107,7 @@ impl Conversion<'_> {
         let fixes = self.supports(&state, &mut equations)?;
         let loads = self.loads(&state)?;
         let references = self.references(&state)?;
+        let rotations = self.rotations(&state)?;
         let settings = self.settings();
         let file = self.deck.files[0].clone();
         let mut model = Model {
@@ -117,7 +119,7 @@ impl Conversion<'_> {
             unit_system: None,
             mesh_place: Place { file: 0, line: 1 },
             parts: self.bodies.parts.clone(),
-            rotations: self.rotations(&state)?,
+            rotations,
             fixes,
             contacts: self.with_friction_of(&state, contacts)?,
             connectors: Vec::new(),
@@ -128,7 +130,7 @@ impl Conversion<'_> {
             loads,
             band: settings.band,
             friction_damping: settings.friction_damping,
-            prestress: None,
+            prestress: settings.prestress,
             criterion: InstabilityCriterion::default(),
             swept: Vec::new(),
             frictions: Vec::new(),

@@ -1,16 +1,14 @@
-//! Supports, loads and rotations.
+//! Supports and loads.
 
 use std::collections::BTreeMap;
 
 use super::Conversion;
-use super::bodies::UNUSED;
 use super::equations::Axes;
 use super::history::State;
 use crate::Result;
-use crate::algebra::{norm, scale, sub};
 use crate::deck::sets::Kind;
-use crate::deck::types::{Action, ActionKind, Entry, Spin};
-use crate::model::{Equation, Fix, Inertia, Load, LoadKind, Place, Rotation};
+use crate::deck::types::{Action, ActionKind, Entry};
+use crate::model::{Equation, Fix, Load, LoadKind, Place};
 
 /// A force on a node, by axis, with the step that it began in.
 type Forces = BTreeMap<u32, [(usize, f64); 3]>;
@@ -223,42 +221,6 @@ impl Conversion<'_> {
         }
         Ok(loads)
     }
-
-    /// Each part of which all nodes turn is a turning part.
-    pub(super) fn rotations(&self, state: &State) -> Result<Vec<Rotation>> {
-        let mut rotations: Vec<Rotation> = Vec::new();
-        for (action, of, spin) in state.rotations() {
-            let turning = self.assembly.set(Kind::Node, 0, of, action.place)?;
-            for part in self.turning_parts(&turning, action.place)? {
-                rotations.retain(|rotation| rotation.part != part);
-                if spin.speed != 0.0 {
-                    rotations.push(rotation(part, spin, self.units.length, self.units.time, action.place));
-                }
-            }
-        }
-        Ok(rotations)
-    }
-
-    fn turning_parts(&self, turning: &[u32], place: Place) -> Result<Vec<String>> {
-        let mesh = &self.regions.mesh;
-        let mut turns = vec![false; mesh.nodes.len()];
-        let nodes = turning.iter().map(|&node| self.bodies.node_of[node as usize]).filter(|&node| node != UNUSED);
-        nodes.for_each(|node| turns[node as usize] = true);
-        let mut whole = vec![true; mesh.parts.len()];
-        for element in mesh.elements.iter() {
-            whole[element.part as usize] &= element.nodes.iter().all(|&node| turns[node as usize]);
-        }
-        for element in mesh.elements.iter().filter(|element| whole[element.part as usize]) {
-            element.nodes.iter().for_each(|&node| turns[node as usize] = false);
-        }
-        let parts: Vec<String> =
-            mesh.parts.iter().zip(whole).filter(|(_, whole)| *whole).map(|(part, _)| part.clone()).collect();
-        if parts.is_empty() || turns.contains(&true) {
-            let what = "a rotation needs all nodes of each part that turns, and no others";
-            return Err(self.assembly.error(place, what));
-        }
-        Ok(parts)
-    }
 }
 
 /// Holds a set along axes.
@@ -266,17 +228,5 @@ fn fix(fixes: &mut Vec<Fix>, nodes: String, axes: [bool; 3], place: Place) {
     match fixes.iter_mut().find(|fix| fix.nodes == nodes) {
         Some(fix) => (0..3).for_each(|i| fix.axes[i] |= axes[i]),
         None => fixes.push(Fix { nodes, axes, displacement: [0.0; 3], place }),
-    }
-}
-
-fn rotation(part: String, spin: Spin, length: f64, time: f64, place: Place) -> Rotation {
-    let axis = sub(spin.to, spin.from);
-    Rotation {
-        part,
-        axis: scale(1.0 / norm(axis), axis),
-        through: spin.from.map(|x| x * length),
-        speed: spin.speed / time,
-        inertia: Inertia::None,
-        place,
     }
 }

@@ -28,7 +28,7 @@ impl Parser {
             "AMPLITUDE" => self.amplitude(card),
             "BOUNDARY" => self.boundary(card),
             "CLOAD" => self.rows(card, NothingKind::Force, force),
-            "DLOAD" => self.rows(card, NothingKind::FacePressure, face_pressure),
+            "DLOAD" => self.rows(card, NothingKind::Distributed, distributed),
             "DSLOAD" => self.rows(card, NothingKind::SurfacePressure, surface_pressure),
             "MOTION" => self.motion(card),
             other => Err(card.error(format_args!("*{other} is not read yet"))),
@@ -40,15 +40,15 @@ impl Parser {
             let line = self.deck.steps[open].place.line;
             return Err(card.error(format_args!("a step within the step of line {line}, which has not ended")));
         }
-        if card.choice("NLGEOM", &["", "YES", "NO"])? != 2 && card.has("NLGEOM") {
-            self.note("NLGEOM: displacements and strains are small, and stresses do not stiffen");
+        let nlgeom = card.choice("NLGEOM", &["", "YES", "NO"])? != 2 && card.has("NLGEOM");
+        if nlgeom {
+            self.note("NLGEOM: displacements and strains are small");
         }
-        if card.has("PERTURBATION") {
-            self.note("PERTURBATION: stresses of the steps before do not stiffen");
-        }
+        let perturbation = card.has("PERTURBATION");
         // The line below is a text.
         self.open_step = Some(self.deck.steps.len());
-        self.deck.steps.push(Step { procedure: Procedure::None, actions: Vec::new(), place: card.place });
+        let (procedure, actions) = (Procedure::None, Vec::new());
+        self.deck.steps.push(Step { procedure, actions, nlgeom, perturbation, place: card.place });
         Ok(())
     }
 
@@ -106,12 +106,10 @@ impl Parser {
     }
 
     fn complex_frequency(&mut self, card: &Card) -> Result<()> {
-        if card.has("CORIOLIS") {
-            return Err(card.error("CORIOLIS is not supported (*COMPLEX FREQUENCY)"));
-        }
+        let coriolis = card.has("CORIOLIS");
         let friction_damping = card.choice("FRICTIONDAMPING", &["NO", "YES"])? == 1;
         let band = self.band()?;
-        self.procedure(card, Procedure::ComplexFrequency { band, friction_damping })
+        self.procedure(card, Procedure::ComplexFrequency { band, friction_damping, coriolis })
     }
 
     /// Pairs of time and value; the last value is what a step ends with.
@@ -228,17 +226,33 @@ fn force(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {
     Ok(())
 }
 
-fn face_pressure(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {
+fn distributed(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {
     let of: Entry = target(row, 0)?;
     let label = row.field(1).to_uppercase();
+    if label == "CENTRIF" {
+        found.push(ActionKind::Centrifugal(of, centrifugal(row)?));
+        return Ok(());
+    }
     if !label.starts_with('P') {
-        let what =
-            format_args!("the load {:?} is not supported. On solids: P1 to P6, a pressure on a face", row.field(1));
-        return Err(row.error(what));
+        let known = "On solids: P1 to P6, a pressure on a face, and CENTRIF, the centrifugal force";
+        return Err(row.error(format_args!("the load {:?} is not supported. {known}", row.field(1))));
     }
     let face = face(row, &label, 'P')?;
     found.push(ActionKind::FacePressure(of, face, row.real(2, "the pressure")?));
     Ok(())
+}
+
+/// The square of a speed, a point of the axis and its direction.
+fn centrifugal(row: &Row) -> Result<Spin> {
+    let square = row.real(2, "the square of the speed of rotation")?;
+    if square < 0.0 {
+        return Err(row.error(format_args!("the square of the speed of rotation is {square}, below 0")));
+    }
+    let (from, axis): ([f64; 3], [f64; 3]) = (row.reals(3, "a coordinate")?, row.reals(6, "a component")?);
+    if axis == [0.0; 3] {
+        return Err(row.error("the direction of the axis of rotation is missing (CENTRIF)"));
+    }
+    Ok(Spin { speed: square.sqrt(), from, to: [0, 1, 2].map(|i| from[i] + axis[i]) })
 }
 
 fn surface_pressure(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {

@@ -148,16 +148,22 @@ fn steps_keep_what_acts_in_them() {
     );
     assert!(matches!(&deck.steps[1].actions[0].what, ActionKind::Friction(_, friction) if friction.coefficient == 0.5));
     let band = [Some(0.0), Some(6000.0)];
-    assert_eq!(deck.steps[1].procedure, Procedure::ComplexFrequency { band, friction_damping: true });
+    assert_eq!(deck.steps[1].procedure, Procedure::ComplexFrequency { band, friction_damping: true, coriolis: false });
     assert!(deck.notes[0].starts_with("NLGEOM"));
-    let deck = read("*STEP, PERTURBATION\n*FREQUENCY\n10\n*END STEP\n").unwrap();
-    assert!(deck.notes[0].starts_with("PERTURBATION"));
+    let deck = read("*STEP, PERTURBATION\n*COMPLEX FREQUENCY, CORIOLIS\n10\n*END STEP\n").unwrap();
+    assert!(deck.steps[0].perturbation && !deck.steps[0].nlgeom);
+    assert!(matches!(deck.steps[0].procedure, Procedure::ComplexFrequency { coriolis: true, .. }));
     refused("*STEP\n*STATIC\n", "a.inp:1: the step does not end: the deck is cut off");
     refused("*STEP\n*END STEP\n", "a.inp:1: the step has no procedure");
     refused("*STEP\n*DYNAMIC\n", "a.inp:2: *DYNAMIC is not supported: the procedures are");
     refused("*STATIC\n", "a.inp:1: *STATIC outside a step");
     refused("*BOUNDARY\n1,11,11\n", "a.inp:2: the displacement \"11\" is not supported");
     refused("*AMPLITUDE, NAME=a\n0.,0.,1.,.5\n*CLOAD, AMPLITUDE=A\n1,1,1.\n", "a.inp:3: the amplitude A ends with 0.5");
+    let deck = read("*DLOAD\nall, Centrif, 9., 1,2,3, 0,0,2\n").unwrap();
+    assert!(matches!(deck.initial[0].what, ActionKind::Centrifugal(_, spin)
+        if (spin.speed, spin.from, spin.to) == (3.0, [1.0, 2.0, 3.0], [1.0, 2.0, 5.0])));
+    refused("*DLOAD\nall,CENTRIF,-9.,0,0,0,0,0,1\n", "a.inp:2: the square of the speed of rotation is -9, below 0");
+    refused("*DLOAD\nall,CENTRIF,9.,0,0,0\n", "a.inp:2: the direction of the axis of rotation is missing");
     refused("*DLOAD\nall,GRAV,9.81,0,0,-1\n", "a.inp:2: the load \"GRAV\" is not supported");
 }
 

@@ -10,6 +10,10 @@ pub struct Step {
     pub procedure: Procedure,
     /// Supports, loads, motions and changes of friction.
     pub actions: Vec<Action>,
+    /// Whether its displacements are large.
+    pub nlgeom: bool,
+    /// Whether it starts from the state of the steps before.
+    pub perturbation: bool,
     /// Where it begins.
     pub place: Place,
 }
@@ -29,6 +33,8 @@ pub enum Procedure {
         band: [Option<f64>; 2],
         /// Whether friction damps.
         friction_damping: bool,
+        /// Whether Coriolis forces act.
+        coriolis: bool,
     },
 }
 
@@ -61,8 +67,10 @@ pub enum ActionKind {
     FacePressure(Entry, u8, f64),
     /// Pressure on a surface.
     SurfacePressure(String, f64),
-    /// Steady rotation.
+    /// Steady rotation of nodes.
     Rotation(Entry, Spin),
+    /// Centrifugal force of elements.
+    Centrifugal(Entry, Spin),
     /// Another friction of an interaction.
     Friction(String, Friction),
     /// A header without data: it may end what acted before.
@@ -77,7 +85,7 @@ pub enum NothingKind {
     /// `*CLOAD`
     Force,
     /// `*DLOAD`
-    FacePressure,
+    Distributed,
     /// `*DSLOAD`
     SurfacePressure,
 }

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use super::joints::PointForce;
 use super::{DeckWriter, number};
-use crate::model::{Fix, Load, LoadKind, Rotation};
+use crate::algebra::scale;
+use crate::model::{Fix, Inertia, Load, LoadKind, Rotation};
 
 /// Modes that a step asks for, at most.
 const N_MODES: usize = 200;
@@ -19,17 +20,21 @@ impl DeckWriter<'_> {
                 writeln!(out, "{0},{1},{1}", self.names.region(&fix.nodes), axis + 1).expect("a string takes all");
             }
         }
-        out += "*STEP\n*STATIC\n";
+        out += if self.model.has_prestress() { "*STEP,NLGEOM\n*STATIC\n" } else { "*STEP\n*STATIC\n" };
         self.model.fixes.iter().for_each(|fix| out += &self.displacement(fix));
         self.model.loads.iter().for_each(|load| out += &self.load(load));
         forces.iter().for_each(|force| out += &self.point_force(force));
         self.model.rotations.iter().for_each(|rotation| out += &self.rotation(rotation));
         let [low, high] = self.model.band.map(|hertz| number(hertz * self.units.time));
-        let procedure = match self.model.friction_damping {
-            true => "*COMPLEX FREQUENCY,FRICTION DAMPING=YES",
-            false => "*FREQUENCY",
+        let turns = self.model.rotations.iter().any(|rotation| rotation.inertia != Inertia::None);
+        let procedure = match (self.model.friction_damping, turns) {
+            (true, true) => "*COMPLEX FREQUENCY,FRICTION DAMPING=YES,CORIOLIS",
+            (true, false) => "*COMPLEX FREQUENCY,FRICTION DAMPING=YES",
+            (false, true) => "*COMPLEX FREQUENCY,CORIOLIS",
+            (false, false) => "*FREQUENCY",
         };
-        out + &format!("*END STEP\n*STEP\n{procedure}\n{N_MODES},{low},{high}\n*END STEP\n")
+        let perturbation = if self.model.has_prestress() { ",PERTURBATION" } else { "" };
+        out + &format!("*END STEP\n*STEP{perturbation}\n{procedure}\n{N_MODES},{low},{high}\n*END STEP\n")
     }
 
     fn displacement(&self, fix: &Fix) -> String {
@@ -69,11 +74,28 @@ impl DeckWriter<'_> {
         self.force(&node.to_string(), *force, 1.0) + &moment
     }
 
+    /// The motion, and the centrifugal force of a part that has inertia: that of a rotor has no motion in its frame.
     fn rotation(&self, rotation: &Rotation) -> String {
         let from = rotation.through.map(|x| x / self.units.length);
         let to = [0, 1, 2].map(|i| from[i] + rotation.axis[i]);
-        let points: Vec<String> = from.iter().chain(&to).map(|&x| number(x)).collect();
-        let speed = number(rotation.speed * self.units.time);
-        format!("*MOTION,ROTATION\n{},{speed},{}\n", self.names.turning(&rotation.part), points.join(","))
+        let list = |values: &[[f64; 3]]| values.as_flattened().iter().map(|&x| number(x)).collect::<Vec<_>>().join(",");
+        let speed = rotation.speed * self.units.time;
+        let motion = || {
+            let set = self.names.turning(&rotation.part);
+            format!("*MOTION,ROTATION\n{set},{},{}\n", number(speed), list(&[from, to]))
+        };
+        let force = || {
+            let set = self.names.part(&rotation.part);
+            format!(
+                "*DLOAD\n{set},CENTRIF,{},{}\n",
+                number(speed * speed),
+                list(&[from, scale(speed.signum(), rotation.axis)])
+            )
+        };
+        match rotation.inertia {
+            Inertia::None => motion(),
+            Inertia::FixedFrame => motion() + &force(),
+            Inertia::RotatingFrame => force(),
+        }
     }
 }

@@ -15,7 +15,7 @@ use std::io::{self, Write};
 
 use super::elements::{Class, by_name};
 use crate::mesh::{Facet, Mesh};
-use crate::model::{Load, LoadKind, Model, UnitSystem};
+use crate::model::{Inertia, Load, LoadKind, Model, UnitSystem};
 use names::Names;
 
 /// Nodes of an element on its first line.
@@ -181,6 +181,9 @@ impl DeckWriter<'_> {
         for part in model.parts.iter().filter(|part| part.material.viscoelastic.is_some()) {
             let what = "is not written: the deck has its modulus at rest";
             losses.push(format!("the viscoelastic law of {:?} {what}", part.material.name));
+        }
+        if model.prestress == Some(false) && model.rotations.iter().any(|rotation| rotation.inertia != Inertia::None) {
+            losses.push("prestress = false is not written: parts with inertia have prestress".to_owned());
         }
         for contact in model.contacts.iter().filter(|contact| contact.friction_curve.is_some()) {
             losses.push(format!("how the friction of {:?} depends on speed and pressure is not written", contact.name));

@@ -5,12 +5,14 @@
 
 use std::collections::{HashMap, HashSet};
 
+use nalgebra::Vector3;
 use squeal::analysis::Sweep;
-use squeal::assembly::System;
+use squeal::assembly::{ElementMatrices, Elements, System};
 use squeal::contact::search::Alone;
 use squeal::deck::elements::Class;
 use squeal::deck::{self, Converted, Deck};
 use squeal::mesh::{Numbering, Piece};
+use squeal::model::{Inertia, Rotation};
 use squeal::native::Comm;
 use squeal::stability::Mode;
 use squeal::structure::FullModel;
@@ -67,24 +69,58 @@ fn node_indices(deck: &Deck) -> HashMap<u32, usize> {
     numbers.into_iter().zip(0..).collect()
 }
 
-/// What we find for a deck, of the kind of a reference.
-pub fn compute(comm: &Comm, deck: &Deck, converted: Converted, wanted: &Reference) -> Result<Reference, String> {
+/// The model of a deck.
+pub fn model(converted: Converted) -> Result<FullModel, String> {
     let Converted { mut model, mesh, .. } = converted;
     deck::settle(&mut model, &mesh, |_| true);
     let nodes = Numbering::even(mesh.nodes.len(), 0, 1);
-    let brake = FullModel::new(model, Piece { mesh, nodes }, &Alone).map_err(|error| error.to_string())?;
+    FullModel::new(model, Piece { mesh, nodes }, &Alone).map_err(|error| error.to_string())
+}
+
+/// What we find for a deck, of the kind of a reference. Centrifugal forces are those of CalculiX's points, of
+/// linear statics at x and not at `x + u`. Linear modes have no prestress.
+pub fn compute(
+    comm: &Comm,
+    deck: &Deck,
+    brake: &FullModel,
+    wanted: &Reference,
+    is_linear: bool,
+) -> Result<Reference, String> {
+    let families = brake.families().unwrap();
+    let inertia = Some(&families.turning as &dyn Elements).filter(|turning| !turning.is_empty());
+    let their_mass = TheirMass::of(brake);
+    let (solids, inertia) = match wanted {
+        Reference::Displacements(_) => (&families.solids as &dyn Elements, inertia.filter(|_| !is_linear)),
+        Reference::Frequencies(_) => (&their_mass as &dyn Elements, inertia),
+    };
+    let all: Vec<&dyn Elements> = [solids, &brake.joints].into_iter().chain(inertia).collect();
+    let mut system = brake.assemble_families(comm, &all).unwrap();
+    system.add_load(&centrifugal_forces(brake, &their_mass)).unwrap();
     match wanted {
         Reference::Displacements(_) => {
-            let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
-            let u = displacements(&brake, &system)?;
+            let u = displacements(brake, &system)?;
             Ok(Reference::Displacements(node_indices(deck).into_iter().map(|(number, i)| (number, u[i])).collect()))
         }
-        Reference::Frequencies(theirs) => {
-            let families = [&TheirMass::of(&brake) as &dyn squeal::assembly::Elements, &brake.joints];
-            let system = brake.assemble_families(comm, &families).unwrap();
-            Ok(Reference::Frequencies(frequencies(&brake, &system, theirs)?))
+        Reference::Frequencies(theirs) => Ok(Reference::Frequencies(frequencies(brake, &system, theirs, is_linear)?)),
+    }
+}
+
+/// The centrifugal forces (N) with the mass of CalculiX's points.
+fn centrifugal_forces(brake: &FullModel, masses: &TheirMass) -> Vec<(u32, [f64; 3])> {
+    let (mut element, mut forces) = (ElementMatrices::default(), Vec::new());
+    for (e, own) in brake.mesh.elements.iter().enumerate() {
+        let part = &brake.mesh.parts[own.part as usize];
+        let turns = |rotation: &&Rotation| rotation.part == *part && rotation.inertia != Inertia::None;
+        let Some(rotation) = brake.model.rotations.iter().find(turns) else { continue };
+        masses.matrices(e, &mut element);
+        let omega = Vector3::from(rotation.angular_velocity());
+        let at = |n: u32| omega.cross(&Vector3::from(rotation.velocity(brake.mesh.nodes[n as usize])));
+        for (&node, row) in own.nodes.iter().zip(element.m.chunks_exact(own.nodes.len())) {
+            let force: Vector3<f64> = row.iter().zip(own.nodes).map(|(m, &n)| -*m * at(n)).sum();
+            forces.push((node, force.into()));
         }
     }
+    forces
 }
 
 impl Reference {
@@ -120,8 +156,10 @@ fn displacements(brake: &FullModel, system: &System) -> Result<Vec<[f64; 3]>, St
 }
 
 /// The frequencies below the highest reference, which is among them.
-fn frequencies(brake: &FullModel, system: &System, theirs: &[f64]) -> Result<Vec<f64>, String> {
-    let mut sweep = Sweep::new(system, &brake.interface, false).map_err(|error| error.to_string())?;
+fn frequencies(brake: &FullModel, system: &System, theirs: &[f64], is_linear: bool) -> Result<Vec<f64>, String> {
+    let prestress = brake.prestress().unwrap().filter(|_| !is_linear);
+    let sweep = Sweep::new(system, &brake.interface, false).map_err(|error| error.to_string())?;
+    let mut sweep = sweep.with_prestress(prestress.as_ref());
     let own = brake.own_friction().map_err(|error| error.to_string())?;
     let equilibrium = sweep.equilibrium(own, &mut ()).map_err(|error| error.to_string())?;
     let highest = theirs.iter().copied().fold(0.0, f64::max) * ABOVE;

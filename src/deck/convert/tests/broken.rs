@@ -106,6 +106,21 @@ fn broken_decks_are_refused_with_one_message_at_its_place() {
     assert!(BROKEN.len() + BROKEN_JOINTS.len() >= 100 && wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+#[test]
+fn an_inverted_hexahedron_is_refused() {
+    let corners = ["0,0,0", "1,0,0", "1,1,0", "0,1,0", "0,0,1", "1,0,1", "1,1,1", "0,1,1"];
+    let nodes: String = (1..).zip(corners).map(|(n, x)| format!("{n}, {x}\n")).collect();
+    let (_, material) = REST.split_once("*MATERIAL").unwrap();
+    let (material, _) = material.split_once("*SOLID").unwrap();
+    let deck = |order: &str| {
+        let element = format!("*ELEMENT, TYPE=C3D8, ELSET=ALL\n1, {order}\n");
+        let rest = format!("*MATERIAL{material}*SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n*STEP\n*STATIC\n*END STEP\n");
+        read(&format!("*NODE\n{nodes}{element}{rest}")).map(|converted| converted.mesh.elements.len())
+    };
+    assert_eq!(deck("1, 2, 3, 4, 5, 6, 7, 8"), Ok(1));
+    assert!(deck("5, 6, 7, 8, 1, 2, 3, 4").unwrap_err().starts_with("a.inp:11: 1 of 1 elements are inverted"));
+}
+
 /// A deck with bytes exchanged, lines left out and lines doubled is read or refused, and nothing panics.
 #[test]
 fn damaged_decks_never_panic() {

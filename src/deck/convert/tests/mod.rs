@@ -9,6 +9,7 @@
 mod broken;
 mod broken_joints;
 mod joints;
+mod rotations;
 mod supports;
 
 use super::*;
