@@ -179,7 +179,7 @@ fn supports_and_loads(text: &mut String, mesh: &Mesh, pairs: &[Touching], turnin
     let pressed: Vec<String> = free
         .iter()
         .filter(|name| held != Some(name) && !turns(name))
-        .filter_map(|name| Some(pressed(name, into_part(mesh, name)?, turning?.axis)?))
+        .filter_map(|name| pressed(name, into_part(mesh, name)?, turning?.axis))
         .collect();
     *text += &match pressed[..] {
         [] => "#[[load]]                    # choose: what presses the pads against the disc\n#on = \"...\"\n\
