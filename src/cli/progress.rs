@@ -14,6 +14,8 @@ use crate::output::text::printable;
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,
+    /// When the values at hand began.
+    began: Cell<Instant>,
     /// Values that took no time.
     n_skipped: Cell<u64>,
     is_root: bool,
@@ -37,6 +39,7 @@ impl Progress {
         Progress {
             bar,
             start,
+            began: Cell::new(start),
             printed: Cell::new(start),
             n_skipped: Cell::new(0),
             is_root: comm.is_root(),
@@ -79,9 +82,13 @@ impl Progress {
         }
     }
 
-    /// So many values are to come.
-    pub fn set_length(&self, n: usize) {
+    /// So many values are to come, of a sweep that begins.
+    pub fn begin(&self, n: usize) {
         self.bar.set_length(n as u64);
+        self.bar.set_position(0);
+        self.bar.reset_eta();
+        self.n_skipped.set(0);
+        self.began.set(Instant::now());
     }
 
     /// One more value is to come.
@@ -102,11 +109,16 @@ impl Progress {
     /// One more value is done, which the text describes.
     pub fn advance(&self, done: &str) {
         self.bar.inc(1);
+        self.line(&self.state(done));
+    }
+
+    /// How many values are done, and the time left.
+    fn state(&self, done: &str) -> String {
         let (position, length) = (self.bar.position(), self.bar.length().unwrap_or(0));
-        let elapsed = self.start.elapsed().as_secs_f64();
+        let elapsed = self.began.get().elapsed().as_secs_f64();
         let n_computed = (position - self.n_skipped.get()) as f64;
         let left = elapsed / n_computed * length.saturating_sub(position) as f64;
-        self.line(&format!("{position}/{length} {done}; about {left:.0} s left"));
+        format!("{position}/{length} {done}; about {left:.0} s left")
     }
 
     /// Removes the bar.
@@ -140,5 +152,26 @@ impl<'a> Stages<'a> {
             eprintln!("{stage}: {:.1} s, peak memory {peak_gb:.2} GB", self.last.elapsed().as_secs_f64());
         }
         self.last = Instant::now();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::native::Session;
+
+    #[test]
+    fn each_sweep_of_a_command_is_counted_from_its_begin() {
+        let comm = Session::start(&[]).unwrap();
+        let progress = Progress::new(&comm, 0, false);
+        progress.begin(2);
+        progress.skip(true);
+        progress.advance("first sweep");
+        assert!(progress.state("now").starts_with("2/2 now"));
+        progress.begin(3);
+        progress.advance("second sweep");
+        assert!(progress.state("now").starts_with("1/3 now"), "{}", progress.state("now"));
+        progress.skip(false);
+        assert!(progress.state("now").starts_with("2/4 now"));
     }
 }

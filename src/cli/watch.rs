@@ -50,7 +50,7 @@ impl Watch {
 impl Observer for Watch {
     fn event(&mut self, event: Event) {
         match event {
-            Event::Planned(n) => self.progress.set_length(n),
+            Event::Planned(n) => self.progress.begin(n),
             Event::Inserted => self.progress.lengthen(),
             Event::Stage(what) => self.progress.show(what),
             Event::Resumed { place, n_values } => self.progress.print(&format!(
