@@ -18,12 +18,17 @@ pub fn parse(text: &str) -> Result<Values, String> {
     Ok(Values(values))
 }
 
+/// How numbers are given.
+const FORMS: &str = "expected one value, a list 0.2,0.5 or a range FROM:TO:STEP";
+
 /// As [`parse`], of any numbers.
 pub fn values(text: &str) -> Result<Values, String> {
     let values = match text.split(':').collect::<Vec<_>>()[..] {
-        [list] => list.split(',').map(number).collect::<Result<Vec<_>, _>>()?,
+        [list] => {
+            list.split(',').map(number).collect::<Result<Vec<_>, _>>().map_err(|what| format!("{what}; {FORMS}"))?
+        }
         [from, to, step] => range(text, number(from)?, number(to)?, number(step)?)?,
-        _ => return Err("expected one value, a list 0.2,0.5 or a range FROM:TO:STEP".into()),
+        _ => return Err(FORMS.into()),
     };
     match values.iter().enumerate().find(|(i, value)| values[..*i].contains(value)) {
         Some((_, value)) => Err(format!("{value} is given twice")),
@@ -70,10 +75,7 @@ pub fn frequency(text: &str) -> Result<f64, String> {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text
-        .trim()
-        .parse()
-        .map_err(|_| format!("{text:?} is not a number: numbers are 0.4, lists 0.2,0.5, ranges FROM:TO:STEP"))?;
+    let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not finite")) }
 }
 
