@@ -1,4 +1,6 @@
-//! Three-vectors and 3x3 matrices as plain arrays, small enough to be inlined everywhere. Any room may use it.
+//! Three-vectors and 3x3 matrices as plain arrays, small enough to be inlined everywhere. Any module may use it.
+
+pub(crate) mod complex;
 
 /// `a . b`
 pub(crate) const fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -164,6 +164,8 @@ pub fn reduce_galerkin(
     let start = Instant::now();
     let place = SuperElementPlace { file: &options.file, force: options.force };
     place.begin(comm, model, observer)?;
+    // What the file has as its own friction value: refused before the long work, not after it.
+    model.own_friction()?;
     observer.event(Event::Stage("assembling"));
     let mut system = model.assemble(comm, &model.families()?)?;
     let end = widened(model.model.band)[1];

@@ -81,6 +81,11 @@ pub trait Observer {
     }
 }
 
+/// The signal that asks any rank to stop. Collective.
+pub(super) fn stop_signal(comm: &Comm, observer: &mut dyn Observer) -> Option<i32> {
+    Some(comm.max(observer.stop_signal().unwrap_or(0))).filter(|&signal| signal != 0)
+}
+
 /// Reports what a model has that can hardly be meant, and what the program proposes. Collective.
 pub(super) fn warn(comm: &Comm, model: &FullModel, observer: &mut dyn Observer) {
     plausibility::warnings(model, comm).iter().for_each(|warning| observer.event(Event::Warning(warning)));

@@ -10,7 +10,7 @@ use crate::model::InstabilityCriterion;
 use crate::native::Comm;
 use crate::output::fields::FieldWriter;
 use crate::output::folder::Folder;
-use crate::output::results_folder;
+use crate::output::{results_folder, text};
 use crate::results::{About, Failure, ModeData, Results, Value};
 use crate::stability::Count;
 use crate::structure::{Structure, SurfaceMotion};
@@ -18,7 +18,7 @@ use crate::{Error, ErrorKind, Result};
 
 use super::checkpoint::{Checkpoint, EarlierValue};
 use super::family::{Snapshot, Vectors};
-use super::observer::{Event, Observer};
+use super::observer::{Event, Observer, stop_signal};
 use super::start::{Output, about, announce, identity, numbers};
 use super::sweep::Sweep;
 
@@ -191,7 +191,10 @@ impl Run<'_> {
         };
         let checks = self.structure.check_equilibrium(self.system, &equilibrium)?;
         if !self.results.about.has_contact(&checks.pairs) {
-            let what = format!("no sliding contact carries a force at friction {friction:.3}: the loads close none");
+            let what = format!(
+                "no sliding contact carries a force at friction {}: the loads close none",
+                text::friction(friction)
+            );
             self.observer.event(Event::Warning(&what));
         }
         if asked {
@@ -235,10 +238,7 @@ impl Run<'_> {
 
     /// Ends the work where a signal has asked any rank for it. Collective.
     fn stop_if_asked(&mut self, friction: f64) -> Result<()> {
-        let signal = self.system.k.comm().max(self.observer.stop_signal().unwrap_or(0));
-        if signal == 0 {
-            return Ok(());
-        }
+        let Some(signal) = stop_signal(self.system.k.comm(), self.observer) else { return Ok(()) };
         let n = self.results.values.len();
         let advice = self
             .place

@@ -65,12 +65,13 @@ fn pressed_by(force: f64) -> Structure {
     Structure::Reduced(Box::new(ReducedModel::new("blocks.se.h5".as_ref(), element, surface)))
 }
 
-/// Counts values, and asks to stop after some of them.
+/// Counts values, keeps warnings, and asks to stop after some of the values.
 #[derive(Default)]
 struct Counter {
     n_finished: usize,
     n_replayed: usize,
     n_inserted: usize,
+    warnings: Vec<String>,
     stop_after: Option<usize>,
 }
 
@@ -80,6 +81,7 @@ impl Observer for Counter {
             Event::Finished(_) => self.n_finished += 1,
             Event::Replayed(_) => self.n_replayed += 1,
             Event::Inserted => self.n_inserted += 1,
+            Event::Warning(text) => self.warnings.push(text.to_owned()),
             _ => (),
         }
     }
@@ -209,6 +211,20 @@ fn an_equilibrium_that_is_not_reached_leaves_its_steps_and_its_last_state() {
     let failure = results.failure.expect("a load that is no number has no equilibrium");
     assert!(results.values.is_empty() && failure.friction == Some(VALUES[0]) && !failure.steps.is_empty());
     assert!(failure.reason.contains("The last state is in"), "{}", failure.reason);
+}
+
+#[test]
+fn a_warning_says_at_which_values_no_sliding_contact_is_closed() {
+    let comm = Session::start(&[]).unwrap();
+    let warnings = |force| {
+        let options = StaticOptions { friction_values: Some(vec![0.1, 0.25]), output: None };
+        let mut counter = Counter::default();
+        statics(&comm, &pressed_by(force), &options, &mut counter).unwrap();
+        counter.warnings
+    };
+    assert!(warnings(10.0).is_empty());
+    let text = |friction| format!("no sliding contact carries a force at friction {friction}: the loads close none");
+    assert_eq!(warnings(-10.0), ["0.100", "0.250"].map(text));
 }
 
 #[test]

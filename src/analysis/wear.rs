@@ -18,7 +18,7 @@ use crate::results::{PairWear, Wear, WearEnd, WearStep, WornPoint};
 use crate::structure::FullModel;
 use crate::{Error, Result};
 
-use super::observer::{Event, Observer, warn};
+use super::observer::{Event, Observer, stop_signal, warn};
 use super::sweep::Sweep;
 
 /// What [`wear`] is asked for.
@@ -333,13 +333,9 @@ impl<'a> State<'a> {
 
     /// Ends the work where a signal has asked any rank for it. Collective.
     fn stop_if_asked(&self, observer: &mut dyn Observer) -> Result<()> {
-        match self.system.k.comm().max(observer.stop_signal().unwrap_or(0)) {
-            0 => Ok(()),
-            signal => {
-                let text = format!("stopped after {:.3e} m of sliding. Nothing is kept", self.distance);
-                Err(Error::Interrupted { signal, text })
-            }
-        }
+        let Some(signal) = stop_signal(self.system.k.comm(), observer) else { return Ok(()) };
+        let text = format!("stopped after {:.3e} m of sliding. Nothing is kept", self.distance);
+        Err(Error::Interrupted { signal, text })
     }
 }
 

@@ -63,7 +63,7 @@ pub fn run(shell: &Shell, arguments: &Check) -> Result<()> {
         summary.matrix = Some(matrix);
         shell.print(&text, &summary)
     });
-    // Last, so that nobody overlooks them.
+    // Last, where they are not overlooked.
     shell.warn(&summary.warnings);
     outcome
 }

@@ -3,6 +3,8 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use crate::algebra::complex::{orthonormal, product};
+
 /// Modes are one group where their eigenvalues are closer than this, relative.
 const ONE_EIGENVALUE: f64 = 1e-3;
 /// A direction of which so little is left beyond the others of its group adds nothing.
@@ -32,14 +34,14 @@ impl MacTable {
         assert_eq!((lambdas_a.len(), lambdas_b.len()), (a.len(), b.len()));
         let mut table = DMatrix::zeros(a.len(), b.len());
         for group in groups_of_near(lambdas_a, ONE_EIGENVALUE) {
-            let basis = orthonormal(group.iter().map(|&i| &a[i]));
+            let basis = orthonormal(group.iter().map(|&i| &a[i]), NEGLIGIBLE);
             for (j, y) in b.iter().enumerate() {
                 let share = share(&basis, y);
                 group.iter().for_each(|&i| table[(i, j)] = share);
             }
         }
         for group in groups_of_near(lambdas_b, ONE_EIGENVALUE) {
-            let basis = orthonormal(group.iter().map(|&j| &b[j]));
+            let basis = orthonormal(group.iter().map(|&j| &b[j]), NEGLIGIBLE);
             for (i, x) in a.iter().enumerate() {
                 let share = share(&basis, x);
                 group.iter().for_each(|&j| table[(i, j)] = share.max(table[(i, j)]));
@@ -71,39 +73,10 @@ pub fn groups_of_near(lambdas: &[Complex64], tolerance: f64) -> Vec<Vec<usize>> 
     groups
 }
 
-/// `x^H y`
-fn product(x: &[Complex64], y: &[Complex64]) -> Complex64 {
-    assert_eq!(x.len(), y.len());
-    x.iter().zip(y).map(|(x, y)| x.conj() * y).sum()
-}
-
-fn norm(x: &[Complex64]) -> f64 {
-    product(x, x).re.sqrt()
-}
-
-/// An orthonormal basis of the span of some vectors, by Gram-Schmidt, twice for rounding.
-fn orthonormal<'a>(vectors: impl Iterator<Item = &'a Vec<Complex64>>) -> Vec<Vec<Complex64>> {
-    let mut basis: Vec<Vec<Complex64>> = Vec::new();
-    for vector in vectors {
-        let (mut q, whole) = (vector.clone(), norm(vector));
-        for _ in 0..2 {
-            for e in &basis {
-                let overlap = product(e, &q);
-                q.iter_mut().zip(e).for_each(|(q, e)| *q -= overlap * e);
-            }
-        }
-        let rest = norm(&q);
-        if rest > NEGLIGIBLE * whole {
-            basis.push(q.into_iter().map(|z| z / rest).collect());
-        }
-    }
-    basis
-}
-
 /// The modal assurance criterion of a shape with the span of others, `|P y|^2 / |y|^2`, P the orthogonal projection on
 /// it.
 pub fn mac_with_span<'a>(y: &[Complex64], span: impl Iterator<Item = &'a Vec<Complex64>>) -> f64 {
-    share(&orthonormal(span), y)
+    share(&orthonormal(span, NEGLIGIBLE), y)
 }
 
 /// `|P y|^2 / |y|^2` with P the projection on an orthonormal basis.
@@ -115,6 +88,7 @@ fn share(basis: &[Vec<Complex64>], y: &[Complex64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::complex::norm;
     use proptest::prelude::*;
 
     fn c(re: f64, im: f64) -> Complex64 {

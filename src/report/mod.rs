@@ -11,6 +11,7 @@ pub mod comparison_plot;
 pub mod data;
 pub mod drawing;
 pub mod findings;
+mod frame;
 pub mod model_section;
 pub mod page;
 pub mod paraview;

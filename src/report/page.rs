@@ -2,14 +2,12 @@
 //! from the network, and the browser enforces that: a content security policy admits this page's own style and script,
 //! by their digests, and nothing else.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-use sha2::{Digest, Sha256};
+use maud::{Markup, PreEscaped, html};
 
 use super::certificate;
 use super::data::Data;
 use super::findings::{Findings, Instability};
+use super::frame::frame;
 use super::model_section;
 use super::plots::{self, Figure};
 use super::svg::PALETTE;
@@ -18,7 +16,6 @@ use crate::output::overwrite::{FileKind, head_contains};
 use crate::results::{Results, Status, Value};
 use crate::{Error, Result};
 
-pub(super) const STYLE: &str = include_str!("assets/page.css");
 /// Names are declared before they are used.
 const SCRIPT: [&str; 10] = [
     include_str!("assets/numbers.js"),
@@ -55,46 +52,26 @@ pub fn page(results: &Results) -> Result<String> {
     let json = serde_json::to_string(&Data::new(&findings));
     let json = json.map_err(Error::library("the report's data cannot be written as JSON"))?;
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPT.join("\n"));
-    let policy =
-        format!("default-src 'none'; style-src '{}'; script-src '{}'; img-src data:", digest(STYLE), digest(&script));
     let about = &results.about;
     let title = if about.title.is_empty() { &about.model } else { &about.title };
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="generator" content="squeal";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(PreEscaped(policy));
-                title { (title) ": squeal report" }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                (top(title, &findings))
-                main {
-                    (answer_section(&findings))
-                    (charts_section(&figures))
-                    (instabilities_section(&findings, &figures))
-                    (pressure_section())
-                    (modes_section())
-                    (checks_section(&findings, &figures))
-                    (model_section::section(results))
-                }
-                footer { p { "Written by " (about.program) ". This page is one file and needs no network." } }
-                div #tip role="tooltip" hidden {}
-                // Inside a script element a `<` could begin its end.
-                script #data type="application/json" { (PreEscaped(json.replace('<', "\\u003c"))) }
-                script { (PreEscaped(script)) }
-            }
+    let body = html! {
+        (top(title, &findings))
+        main {
+            (answer_section(&findings))
+            (charts_section(&figures))
+            (instabilities_section(&findings, &figures))
+            (pressure_section())
+            (modes_section())
+            (checks_section(&findings, &figures))
+            (model_section::section(results))
         }
+        footer { p { "Written by " (about.program) ". This page is one file and needs no network." } }
+        div #tip role="tooltip" hidden {}
+        // Inside a script element a `<` could begin its end.
+        script #data type="application/json" { (PreEscaped(json.replace('<', "\\u003c"))) }
+        script { (PreEscaped(&script)) }
     };
-    Ok(page.into_string())
-}
-
-/// A digest as a content security policy has it.
-pub(super) fn digest(text: &str) -> String {
-    format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
+    Ok(frame(&format!("{title}: squeal report"), Some(&script), &body))
 }
 
 fn top(title: &str, findings: &Findings) -> Markup {

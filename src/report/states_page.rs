@@ -1,8 +1,8 @@
 //! The page of named states: verdicts, unstable modes by state, growth over friction, pressure maps side by side.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
-use super::page::{STYLE, digest};
+use super::frame::frame;
 use super::pressure_map;
 use super::states::{InstabilityRow, StateDocument, StatesDocument, middle};
 use super::svg::{Anchor, PALE, Panel, Scale, Sheet, colour};
@@ -11,44 +11,30 @@ use crate::results::{ModeData, Results};
 
 /// The page; it is one file and loads nothing.
 pub fn page(document: &StatesDocument, states: &[StateResults]) -> String {
-    let policy = format!("default-src 'none'; style-src '{}'; img-src data:", digest(STYLE));
     let [from, to] = document.band_hz;
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="generator" content="squeal";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(PreEscaped(policy));
-                title { (document.title) ": squeal states" }
-                style { (PreEscaped(STYLE)) }
+    let body = html! {
+        header.top {
+            h1 { (document.title) ": " (document.states.len()) " states" }
+            p { "Complex modes " (from) "\u{2013}" (to) " Hz. A mode is unstable with a " (document.criterion) "." }
+        }
+        main {
+            section aria-label="States" { h2 { "States" } (verdicts(document)) }
+            section aria-label="Unstable modes" { h2 { "Unstable modes by state" } (instabilities(document)) }
+            section aria-label="Growth" {
+                h2 { "Largest growth rate" }
+                figure.card.plot { (PreEscaped(growth(states))) }
             }
-            body {
-                header.top {
-                    h1 { (document.title) ": " (document.states.len()) " states" }
-                    p { "Complex modes " (from) "\u{2013}" (to) " Hz. A mode is unstable with a " (document.criterion) "." }
+            section aria-label="Contact pressure" {
+                h2 { "Contact pressure of the sliding pairs" }
+                @if let Some(value) = states.first().and_then(|state| middle(&state.results)) {
+                    p.hint { "At \u{3bc} = " (value.friction) "; one scale of colours for all states of a pair." }
                 }
-                main {
-                    section aria-label="States" { h2 { "States" } (verdicts(document)) }
-                    section aria-label="Unstable modes" { h2 { "Unstable modes by state" } (instabilities(document)) }
-                    section aria-label="Growth" {
-                        h2 { "Largest growth rate" }
-                        figure.card.plot { (PreEscaped(growth(states))) }
-                    }
-                    section aria-label="Contact pressure" {
-                        h2 { "Contact pressure of the sliding pairs" }
-                        @if let Some(value) = states.first().and_then(|state| middle(&state.results)) {
-                            p.hint { "At \u{3bc} = " (value.friction) "; one scale of colours for all states of a pair." }
-                        }
-                        @for map in maps(states) { figure.card.plot { (PreEscaped(map)) } }
-                    }
-                }
-                footer { p { "Written by squeal. This page is one file and needs no network." } }
+                @for map in maps(states) { figure.card.plot { (PreEscaped(map)) } }
             }
         }
+        footer { p { "Written by squeal. This page is one file and needs no network." } }
     };
-    page.into_string()
+    frame(&format!("{}: squeal states", document.title), None, &body)
 }
 
 fn verdicts(document: &StatesDocument) -> Markup {

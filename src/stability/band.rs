@@ -17,6 +17,7 @@ use super::eigensolver::{Eigensolver, OnProgress, Search, SearchRequest, SearchR
 use super::left;
 use super::memory::MemoryBudget;
 use super::modal::Modal;
+use super::mode::by_frequency;
 use super::space::FactoredProblem;
 use super::toar::Toar;
 use super::{EigenOptions, Mode, QuadraticProblem};
@@ -278,18 +279,9 @@ fn modes_of(search: SearchResult, band: [f64; 2]) -> Result<Vec<Mode>> {
         mode.normalise()?;
         modes.push(mode);
     }
-    sort(&mut modes);
-    Ok(modes)
-}
-
-/// Sorts by frequency; modes of one frequency, such as the growing and the decaying one of a pair, by growth. What
-/// counts as one frequency stands above rounding, so that modes have the same numbers on any number of ranks.
-fn sort(modes: &mut [Mode]) {
-    const FREQUENCY_ROUNDING: f64 = 1e-9;
-    modes.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im));
-    for same in modes.chunk_by_mut(|a, b| b.lambda.im - a.lambda.im <= FREQUENCY_ROUNDING * b.lambda.im) {
-        same.sort_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re));
-    }
+    let order = by_frequency(&modes.iter().map(|mode| mode.lambda).collect::<Vec<_>>());
+    let mut modes: Vec<Option<Mode>> = modes.into_iter().map(Some).collect();
+    Ok(order.into_iter().filter_map(|i| modes[i].take()).collect())
 }
 
 /// Refuses a band with so many modes that they mean nothing: the upper modes of a mesh are those of its elements. Small

@@ -114,7 +114,8 @@ impl ModeCounter {
         let count = Count { below, expected: n, found: search.n_below(below), by: CountedBy::SturmCount };
         match evidence {
             Evidence::Repetition { estimated } => {
-                let alone = if estimated { count } else { Count { expected: usize::MAX, ..count } };
+                let unknown = Count { expected: usize::MAX, by: CountedBy::AnotherSearch, ..count };
+                let alone = if estimated { count } else { unknown };
                 Ok(Some(repeated(count, search, before).unwrap_or(alone)))
             }
             Evidence::SturmCount if count.agrees() => Ok(Some(count)),

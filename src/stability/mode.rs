@@ -117,3 +117,19 @@ pub(super) fn backward_errors(problem: &QuadraticProblem, lambdas: &[Complex64],
 fn entry(x: &Block, i: usize, row: usize) -> Complex64 {
     Complex64::new(x.column(2 * i)[row], x.column(2 * i + 1)[row])
 }
+
+/// Imaginary parts closer than this, relative, are one frequency.
+const FREQUENCY_ROUNDING: f64 = 1e-9;
+
+/// Places of eigenvalues by frequency; those of one frequency, such as a growing and a decaying mode of a pair, by
+/// growth. What counts as one frequency stands above rounding, so that modes have the same numbers on any number of
+/// ranks.
+pub(super) fn by_frequency(lambdas: &[Complex64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..lambdas.len()).collect();
+    order.sort_by(|&a, &b| lambdas[a].im.total_cmp(&lambdas[b].im));
+    let is_one = |&a: &usize, &b: &usize| lambdas[b].im - lambdas[a].im <= FREQUENCY_ROUNDING * lambdas[b].im.abs();
+    for same in order.chunk_by_mut(is_one) {
+        same.sort_by(|&a, &b| lambdas[a].re.total_cmp(&lambdas[b].re));
+    }
+    order
+}

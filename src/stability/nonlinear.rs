@@ -22,20 +22,22 @@
 #[cfg(test)]
 mod tests;
 
+use std::ops::Mul;
+
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::QuadraticProblem;
+use super::mode::by_frequency;
 use super::space::Ritz;
 use crate::Result;
+use crate::algebra::complex::{norm, orthonormal, product};
 use crate::native::lapack;
 
 /// Eigenvalues closer than this, relative to one of them, go together.
 const CLUSTER_WIDTH: f64 = 1e-3;
 /// So many of them at most.
 const MAX_CLUSTER: usize = 8;
-/// Imaginary parts closer than this, relative, are one frequency.
-const FREQUENCY_ROUNDING: f64 = 1e-9;
 /// Iterations for an eigenvalue.
 const MAX_ITERATIONS: usize = 40;
 /// Relative change at which an eigenvalue is found, and the one that is accepted where rounding leaves no better.
@@ -116,7 +118,7 @@ fn continued(projection: &Projection, start: &[Pair], n_steps: usize) -> Result<
 fn are_distinct(pairs: &[Pair]) -> bool {
     let is_same = |a: &Pair, b: &Pair| {
         (a.lambda - b.lambda).norm() <= DUPLICATES[0] * a.lambda.norm()
-            && dot(&a.y, &b.y).norm_sqr() > 1.0 - DUPLICATES[1]
+            && product(&a.y, &b.y).norm_sqr() > 1.0 - DUPLICATES[1]
     };
     let differs = |(i, a): (usize, &Pair)| a.lambda.im == 0.0 || !pairs[..i].iter().any(|b| is_same(a, b));
     pairs.iter().enumerate().all(differs)
@@ -153,7 +155,7 @@ impl At<'_> {
     /// The zero of Rayleigh's functional of a pair's vector next to its eigenvalue; the pair where Newton's method
     /// leaves the upper half plane.
     fn by_rayleigh(&self, pair: &Pair) -> Pair {
-        let quadratic = |a: &DMatrix<f64>| dot(&pair.y, &times(a, &pair.y));
+        let quadratic = |a: &DMatrix<f64>| product(&pair.y, &times(a, &pair.y));
         let forms: Vec<Complex64> = self.projection.matrices.iter().map(quadratic).collect();
         let sum = |factors: Vec<Complex64>| factors.iter().zip(&forms).map(|(a, b)| a * b).sum::<Complex64>();
         let mut lambda = pair.lambda;
@@ -176,14 +178,17 @@ impl At<'_> {
         let lambdas: Vec<Complex64> = cluster.iter().map(|&j| pairs[j].lambda).collect();
         let order = by_frequency(&lambdas);
         let rank = order.iter().position(|&j| cluster[j] == i).expect("a pair is in its own cluster");
-        let start = orthonormal(cluster.iter().map(|&j| pairs[j].y.clone()));
+        let start = orthonormal(cluster.iter().map(|&j| &pairs[j].y), 0.0);
+        if start.len() < cluster.len() {
+            return Ok(None);
+        }
         let (mut block, mut lambda, mut last) = (start.clone(), pairs[i].lambda, f64::INFINITY);
         for _ in 0..MAX_ITERATIONS {
             let Some((next, y)) = self.inverse_iteration(lambda, &mut block, rank)? else { return Ok(None) };
             let change = (next - lambda).norm() / next.norm();
             lambda = next;
             if change <= CHANGES[0] || (change <= CHANGES[1] && change >= last) {
-                let overlap: f64 = start.iter().map(|q| dot(q, &y).norm_sqr()).sum();
+                let overlap: f64 = start.iter().map(|q| product(q, &y).norm_sqr()).sum();
                 return Ok((overlap > MIN_OVERLAP * MIN_OVERLAP).then_some(Pair { lambda, y }));
             }
             last = change;
@@ -201,7 +206,7 @@ impl At<'_> {
     ) -> Result<Option<(Complex64, Vec<Complex64>)>> {
         let (n, q) = (block[0].len(), block.len());
         let derivative = self.sum(&self.slopes(mu));
-        let right: Vec<Complex64> = block.iter().flat_map(|y| times_complex(&derivative, y)).collect();
+        let right: Vec<Complex64> = block.iter().flat_map(|y| times(&derivative, y)).collect();
         let solve = |mu: Complex64| {
             let (mut matrix, mut x) = (self.sum(&self.coefficients(mu)), right.clone());
             let is_solved = lapack::solve_complex(n, matrix.as_mut_slice(), &mut x);
@@ -210,7 +215,7 @@ impl At<'_> {
         // Where mu is an eigenvalue to the last digit, a number beside it serves.
         let Some(image) = solve(mu).or_else(|| solve(mu * (1.0 + LAMBDA_STEP))) else { return Ok(None) };
         let column = |j: usize| &image[j * n..(j + 1) * n];
-        let small = DMatrix::from_fn(q, q, |i, j| dot(&block[i], column(j)));
+        let small = DMatrix::from_fn(q, q, |i, j| product(&block[i], column(j)));
         let lapack::Eigen { values, vectors } = lapack::eigen(small)?;
         let lambdas: Vec<Complex64> = values.iter().map(|nu| mu - 1.0 / nu).collect();
         if !lambdas.iter().all(|z| z.is_finite()) {
@@ -220,9 +225,11 @@ impl At<'_> {
             (0..n).map(|row| (0..q).map(|j| column(j)[row] * vectors[(j, k)]).sum()).collect()
         };
         let own = by_frequency(&lambdas)[rank];
-        let y = orthonormal(std::iter::once(combined(own))).remove(0);
-        *block = orthonormal((0..q).map(combined));
-        Ok(Some((lambdas[own], y)))
+        let images: Vec<Vec<Complex64>> = (0..q).map(combined).collect();
+        *block = orthonormal(images.iter(), 0.0);
+        let length = norm(&images[own]);
+        let y = images[own].iter().map(|z| z / length).collect();
+        Ok((block.len() == q).then_some((lambdas[own], y)))
     }
 
     /// A sum of the matrices.
@@ -247,53 +254,14 @@ fn cluster(pairs: &[Pair], i: usize) -> Vec<usize> {
     near
 }
 
-/// Places of eigenvalues by frequency, then by growth.
-fn by_frequency(lambdas: &[Complex64]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..lambdas.len()).collect();
-    order.sort_by(|&a, &b| lambdas[a].im.total_cmp(&lambdas[b].im));
-    let is_one = |&a: &usize, &b: &usize| lambdas[b].im - lambdas[a].im <= FREQUENCY_ROUNDING * lambdas[b].im.abs();
-    for same in order.chunk_by_mut(is_one) {
-        same.sort_by(|&a, &b| lambdas[a].re.total_cmp(&lambdas[b].re));
-    }
-    order
-}
-
-/// `a^H b`
-fn dot(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
-}
-
 /// `A y`
-fn times(a: &DMatrix<f64>, y: &[Complex64]) -> Vec<Complex64> {
+fn times<T: Copy>(a: &DMatrix<T>, y: &[Complex64]) -> Vec<Complex64>
+where
+    Complex64: Mul<T, Output = Complex64>,
+{
     let mut image = vec![Complex64::ZERO; a.nrows()];
-    for (column, y) in a.as_slice().chunks_exact(a.nrows()).zip(y) {
-        image.iter_mut().zip(column).for_each(|(z, x)| *z += y * x);
+    for (column, &y) in a.as_slice().chunks_exact(a.nrows()).zip(y) {
+        image.iter_mut().zip(column).for_each(|(z, &x)| *z += y * x);
     }
     image
-}
-
-/// `A y`
-fn times_complex(a: &DMatrix<Complex64>, y: &[Complex64]) -> Vec<Complex64> {
-    let mut image = vec![Complex64::ZERO; a.nrows()];
-    for (column, y) in a.as_slice().chunks_exact(a.nrows()).zip(y) {
-        image.iter_mut().zip(column).for_each(|(z, x)| *z += y * x);
-    }
-    image
-}
-
-/// Vectors made orthogonal to those before them, twice, and of length 1.
-fn orthonormal(vectors: impl Iterator<Item = Vec<Complex64>>) -> Vec<Vec<Complex64>> {
-    let mut all: Vec<Vec<Complex64>> = Vec::new();
-    for mut y in vectors {
-        for _ in 0..2 {
-            for q in &all {
-                let part = dot(q, &y);
-                y.iter_mut().zip(q).for_each(|(y, q)| *y -= part * q);
-            }
-            let length = dot(&y, &y).re.sqrt();
-            y.iter_mut().for_each(|y| *y /= length);
-        }
-        all.push(y);
-    }
-    all
 }

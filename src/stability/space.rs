@@ -208,7 +208,7 @@ impl<'a> Space<'a> {
         let product = |i: usize| DMatrix::from_column_slice(n, p, &products[i * n * p..(i + 1) * n * p]);
         let n_matrices = self.projected.len();
         let direct: Vec<DMatrix<f64>> = (0..n_matrices).map(product).collect();
-        // K and its transpose differ where contact points slide: a few rows tell the difference. Viscoelastic
+        // K and its transpose differ where contact points slide: a few rows hold the difference. Viscoelastic
         // stiffnesses are symmetric.
         let mut transposed = direct.clone();
         let skew = self.v.gram_of_few_rows(&self.problem().skew_times(&w)?);

@@ -53,8 +53,7 @@ impl FullModel {
         samples: &[Sample],
         limit: f64,
     ) -> Result<(SuperElement, OuterSurface)> {
-        let friction = self.own_friction().unwrap_or(samples[0].friction);
-        let origin = comm.agree(self.origin(comm, system, friction, limit))?;
+        let origin = comm.agree(self.origin(comm, system, self.own_friction()?, limit))?;
         let origin = Origin { samples: samples.to_vec(), ..origin };
         let matrices = self.matrices_by_part(basis)?;
         let element = galerkin::super_element(system, &self.interface, basis, matrices, origin)?;

@@ -4,6 +4,7 @@
 mod balance;
 mod branches;
 mod calculix;
+mod damped_pad;
 mod deck;
 mod eigensolvers;
 mod explain;

@@ -7,17 +7,16 @@
 
 use std::f64::consts::PI;
 
+use crate::damped_pad::{BAND, DampedPad, assembled, dense, solved};
 use crate::support::block::add_block;
-use crate::support::{assert_close, brake, pressed_pad};
+use crate::support::{assert_close, brake};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use squeal::analysis::{Snapshot, Sweep, explain_full};
-use squeal::assembly::System;
-use squeal::equilibrium::{Equilibrium, LabelledFactor};
+use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Matrix, Mck, Precision, Session, lapack};
-use squeal::stability::{Band, BandSolver, Complex, EigenOptions, QuadraticProblem};
-use squeal::structure::FullModel;
+use squeal::stability::{BandSolver, Complex, EigenOptions, QuadraticProblem};
 
 const ROD: &str = r#"
 [material.steel]
@@ -75,7 +74,7 @@ fn one_material_turns_every_eigenvalue_by_its_loss_factor() {
     assert!((found[0] / rods - 1.0).norm() < 1e-4, "{} {rods}", found[0]);
 }
 
-const BRAKE: &str = r#"
+const MATERIALS: &str = r#"
 [material.iron]
 young = 110e9
 poisson = 0.27
@@ -91,64 +90,10 @@ young = 200e9
 poisson = 0.3
 density = 7800
 loss_factor = 0.01
-[part.disc]
-material = "iron"
-rayleigh = { alpha = 5.0, beta = 1e-7 }
-[part.pad]
-material = "lining"
-[part.piston]
-material = "steel"
-[[connector]]
-name = "pin"
-between = ["piston_z1", "ground"]
-stiffness = [2e8, 1e8, 1e5]
-rotational_stiffness = [1e3, 1e3, 1e3]
-damping = [10, 20, 0]
-loss_factor = 0.3
-[[tie]]
-slave = "piston_z0"
-master = "pad_z1"
-[stability]
-band = [0, 42000]
 "#;
 
-const FRICTION: f64 = 0.4;
-const BAND: [f64; 2] = [0.0, 42000.0];
-
-/// The brake at its equilibrium, in which loss factors have no part.
-struct Model {
-    brake: FullModel,
-    system: System,
-    equilibrium: Equilibrium,
-}
-
-impl Model {
-    fn new(comm: &Comm) -> Model {
-        let brake = brake(&format!("{}{BRAKE}", pressed_pad::SLIDING), pressed_pad::mesh([2, 2, 1]));
-        let system = assembled(comm, &brake);
-        let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(FRICTION, &mut ()).unwrap();
-        Model { brake, system, equilibrium }
-    }
-}
-
-fn assembled(comm: &Comm, brake: &FullModel) -> System {
-    brake.assemble(comm, &brake.families().unwrap()).unwrap()
-}
-
-fn solved(sweep: &mut Sweep, equilibrium: &Equilibrium) -> Band {
-    let band = sweep.modes(equilibrium, BAND, &mut ()).unwrap();
-    assert!(band.count.agrees() && band.modes.len() > 4, "{:?}", band.count);
-    band
-}
-
-/// The entries of a matrix on one rank.
-fn dense(a: &Matrix) -> DMatrix<f64> {
-    let mut values = DMatrix::zeros(a.n_local(), a.n_local());
-    a.visit_rows(|row, columns, entries| {
-        columns.iter().zip(entries).for_each(|(&column, &value)| values[(row, column as usize)] = value);
-    })
-    .unwrap();
-    values
+fn damped_pad(comm: &Comm) -> DampedPad {
+    DampedPad::new(comm, MATERIALS, "loss_factor = 0.3\n")
 }
 
 /// Eigenvalues of `[0 I; -M^-1 (K + i G), -M^-1 C]` with a positive imaginary part, in units of 1e4/s for a balanced
@@ -173,7 +118,7 @@ fn dense_eigenvalues(problem: &QuadraticProblem) -> Vec<Complex64> {
 #[test]
 fn four_loss_factors_give_what_a_dense_complex_solver_gives() {
     let comm = Session::start(&[]).unwrap();
-    let Model { brake, system, equilibrium } = Model::new(&comm);
+    let DampedPad { brake, system, equilibrium } = damped_pad(&comm);
     let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let band = solved(&mut sweep, &equilibrium);
     let exact = sweep.linearise(&equilibrium, |problem| Ok(dense_eigenvalues(problem))).unwrap();
@@ -209,7 +154,7 @@ fn four_loss_factors_give_what_a_dense_complex_solver_gives() {
 #[test]
 fn energies_balance_and_sensitivities_are_derivatives() {
     let comm = Session::start(&[]).unwrap();
-    let Model { mut brake, system, equilibrium } = Model::new(&comm);
+    let DampedPad { mut brake, system, equilibrium } = damped_pad(&comm);
     let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let band = solved(&mut sweep, &equilibrium);
     let snapshot = Snapshot::new(&mut sweep, &band, BAND[1]).unwrap();

@@ -8,21 +8,18 @@
 
 use std::f64::consts::TAU;
 
+use crate::damped_pad::{BAND, DampedPad, assembled, dense, solved};
 use crate::support::pad_on_disc::PadOnDisc;
 use crate::support::program::{Place, assert_refused, swap};
-use crate::support::{brake, pressed_pad};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use squeal::analysis::{FrictionFamily, Snapshot, Sweep, explain_full};
-use squeal::assembly::System;
-use squeal::equilibrium::Equilibrium;
 use squeal::model::viscoelastic::ViscoelasticLaw;
-use squeal::native::{Comm, Matrix, Session, lapack};
-use squeal::stability::{Band, Complex, QuadraticProblem};
-use squeal::structure::FullModel;
+use squeal::native::{Comm, Session, lapack};
+use squeal::stability::{Complex, QuadraticProblem};
 use squeal::tracking::Family;
 
-const BRAKE: &str = r#"
+const MATERIALS: &str = r#"
 [material.iron]
 young = 110e9
 poisson = 0.27
@@ -37,64 +34,10 @@ young = 200e9
 poisson = 0.3
 density = 7800
 loss_factor = 0.01
-[part.disc]
-material = "iron"
-rayleigh = { alpha = 5.0, beta = 1e-7 }
-[part.pad]
-material = "lining"
-[part.piston]
-material = "steel"
-[[connector]]
-name = "pin"
-between = ["piston_z1", "ground"]
-stiffness = [2e8, 1e8, 1e5]
-rotational_stiffness = [1e3, 1e3, 1e3]
-damping = [10, 20, 0]
-[[tie]]
-slave = "piston_z0"
-master = "pad_z1"
-[stability]
-band = [0, 42000]
 "#;
 
-const FRICTION: f64 = 0.4;
-const BAND: [f64; 2] = [0.0, 42000.0];
-
-/// The brake at its equilibrium, which has the lining's modulus at rest.
-struct Model {
-    brake: FullModel,
-    system: System,
-    equilibrium: Equilibrium,
-}
-
-impl Model {
-    fn new(comm: &Comm) -> Model {
-        let brake = brake(&format!("{}{BRAKE}", pressed_pad::SLIDING), pressed_pad::mesh([2, 2, 1]));
-        let system = assembled(comm, &brake);
-        let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(FRICTION, &mut ()).unwrap();
-        Model { brake, system, equilibrium }
-    }
-}
-
-fn assembled(comm: &Comm, brake: &FullModel) -> System {
-    brake.assemble(comm, &brake.families().unwrap()).unwrap()
-}
-
-fn solved(sweep: &mut Sweep, equilibrium: &Equilibrium) -> Band {
-    let band = sweep.modes(equilibrium, BAND, &mut ()).unwrap();
-    assert!(band.count.agrees() && band.modes.len() > 4, "{:?}", band.count);
-    assert!(band.modes.iter().all(|mode| mode.backward_error < 1e-10));
-    band
-}
-
-/// The entries of a matrix on one rank.
-fn dense(a: &Matrix) -> DMatrix<f64> {
-    let mut values = DMatrix::zeros(a.n_local(), a.n_local());
-    a.visit_rows(|row, columns, entries| {
-        columns.iter().zip(entries).for_each(|(&column, &value)| values[(row, column as usize)] = value);
-    })
-    .unwrap();
-    values
+fn damped_pad(comm: &Comm) -> DampedPad {
+    DampedPad::new(comm, MATERIALS, "")
 }
 
 /// Eigenvalues with a positive imaginary part of the model with internal variables z_k at the dofs of the lining, in
@@ -143,7 +86,7 @@ fn with_internal_variables(problem: &QuadraticProblem) -> Vec<Complex64> {
 #[test]
 fn a_maxwell_lining_is_that_of_internal_variables() {
     let comm = Session::start(&[]).unwrap();
-    let Model { brake, system, equilibrium } = Model::new(&comm);
+    let DampedPad { brake, system, equilibrium } = damped_pad(&comm);
     let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let band = solved(&mut sweep, &equilibrium);
     let snapshot = Snapshot::new(&mut sweep, &band, BAND[1]).unwrap();
@@ -172,7 +115,7 @@ fn a_maxwell_lining_is_that_of_internal_variables() {
 #[test]
 fn energies_balance_and_sensitivities_are_derivatives() {
     let comm = Session::start(&[]).unwrap();
-    let Model { mut brake, system, equilibrium } = Model::new(&comm);
+    let DampedPad { mut brake, system, equilibrium } = damped_pad(&comm);
     let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap();
     let band = solved(&mut sweep, &equilibrium);
     let left = sweep.left_vectors(&band.modes, |_| 1e-9).unwrap();

@@ -20,7 +20,7 @@ use crate::output::folder::Folder;
 use crate::results::About;
 use crate::{Error, Result};
 
-use super::observer::{Event, Observer};
+use super::observer::{Event, Observer, stop_signal};
 use super::start::{Output, about, announce, identity};
 
 use checkpoint::Points;
@@ -236,10 +236,9 @@ impl<'s> Run<'s> {
 
     /// Ends the work where a signal has asked any rank for it. Collective.
     fn stop_if_asked(&self, number: usize, place: Option<&Path>, observer: &mut dyn Observer) -> Result<()> {
-        let signal = self.world.max(observer.stop_signal().unwrap_or(0));
-        if signal == 0 || number + 1 == self.values.len() {
+        let Some(signal) = stop_signal(&self.world, observer).filter(|_| number + 1 < self.values.len()) else {
             return Ok(());
-        }
+        };
         let to = place.map_or_else(String::new, |place| format!(" to {}", place.display()));
         let text = format!("stopped after point {number} of {}. The same command continues{to}", self.values.len() - 1);
         Err(Error::Interrupted { signal, text })

@@ -27,14 +27,11 @@ impl DeckWriter<'_> {
         self.model.rotations.iter().for_each(|rotation| out += &self.rotation(rotation));
         let [low, high] = self.model.band.map(|hertz| number(hertz * self.units.time));
         let turns = self.model.rotations.iter().any(|rotation| rotation.inertia != Inertia::None);
-        let procedure = match (self.model.friction_damping, turns) {
-            (true, true) => "*COMPLEX FREQUENCY,FRICTION DAMPING=YES,CORIOLIS",
-            (true, false) => "*COMPLEX FREQUENCY,FRICTION DAMPING=YES",
-            (false, true) => "*COMPLEX FREQUENCY,CORIOLIS",
-            (false, false) => "*FREQUENCY",
-        };
+        let options = [(self.model.friction_damping, ",FRICTION DAMPING=YES"), (turns, ",CORIOLIS")];
+        let options: String = options.into_iter().filter(|(is_set, _)| *is_set).map(|(_, option)| option).collect();
+        let procedure = if options.is_empty() { "*FREQUENCY" } else { "*COMPLEX FREQUENCY" };
         let perturbation = if self.model.has_prestress() { ",PERTURBATION" } else { "" };
-        out + &format!("*END STEP\n*STEP{perturbation}\n{procedure}\n{N_MODES},{low},{high}\n*END STEP\n")
+        out + &format!("*END STEP\n*STEP{perturbation}\n{procedure}{options}\n{N_MODES},{low},{high}\n*END STEP\n")
     }
 
     fn displacement(&self, fix: &Fix) -> String {

@@ -46,7 +46,7 @@ fn refined(comm: &Comm, elastic: &[f64], at_rest: &[f64], coupling: f64) -> Vec<
         let terms = problem.coefficients(ritz.lambda).into_iter().zip(&matrices);
         let mut sum = vec![Complex64::ZERO; n];
         terms.for_each(|(f, a)| sum.iter_mut().zip(times(a, &pair.y)).for_each(|(z, x)| *z += f * x));
-        dot(&sum, &sum).re.sqrt()
+        norm(&sum)
     };
     found.into_iter().map(|ritz| (ritz.clone(), residual(&ritz))).collect()
 }
