@@ -53,8 +53,8 @@
 //! | [`model`] | what is analysed, from the user's file, checked, in SI units | [`model::read`] |
 //! | [`tracking`] | branches of modes along a parameter, Hopf points: pure | [`tracking::track`] |
 //! | [`explore`] | studies of many parameters: points, probabilities, Sobol indices: pure | [`explore::read`] |
-//! | [`deck`] | input files of Abaqus and CalculiX, read and written | [`deck::read`] |
 //! | [`contact`] | search, gap operator `g = B u`, contact and friction laws | [`contact::Interface::build`] |
+//! | [`deck`] | input files of Abaqus and CalculiX, read and written | [`deck::read`] |
 //! | [`matrices`] | external M, C, K from files and into files | [`matrices::ExternalMatrices::read`] |
 //! | [`assembly`] | dofs, pattern, M, C, K on many ranks | [`assembly::System::assemble`] |
 //! | [`equilibrium`] | Newton's method, the path from rest, balances | [`equilibrium::Path::advance`] |

@@ -167,7 +167,10 @@ impl Bodies {
 }
 
 /// Refuses inverted elements.
-fn check_inverted(assembly: &Assembly, mesh: &Mesh) -> Result<()> {
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input) that names the first one.
+pub fn check_inverted(assembly: &Assembly, mesh: &Mesh) -> Result<()> {
     let is_bad = |e: &usize| is_inverted(mesh.elements.get(*e).shape(), &mesh.element_nodes(*e));
     let inverted: Vec<usize> = (0..mesh.elements.len()).filter(is_bad).collect();
     let Some(&first) = inverted.first() else { return Ok(()) };

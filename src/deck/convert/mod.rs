@@ -4,12 +4,14 @@
 //! Deck --Assembly--> one numbering --bodies--> parts, materials, tetrahedra
 //!                                  --regions--> surfaces, node sets   (each name once)
 //!                                  --history--> what acts at the end of the last step: supports, loads, rotations
+//!                                  --adjust--> nodes of slaves moved onto masters
 //!                                  --pairs, ties--> contacts, ties
 //!                                  --references--> joints, discrete: rigid sets, connectors, masses, point forces
 //! ```
 
 use std::collections::HashMap;
 
+mod adjust;
 mod analysis;
 mod bodies;
 mod bodies_apart;
@@ -100,6 +102,7 @@ pub fn convert(deck: &Deck, known: KnownUnits) -> Result<Converted> {
 impl Conversion<'_> {
     fn model(&mut self) -> Result<Model> {
         self.named_surfaces()?;
+        self.adjust_nodes()?;
         self.axes = self.transforms()?;
         let contacts = self.contacts()?;
         let state = history::State::of(self.deck);

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use super::Conversion;
 use super::history::State;
 use crate::Result;
-use crate::deck::types::{Behaviour, Clearance, ContactPair, Dependence, Friction, Interaction};
+use crate::deck::types::{Adjust, Behaviour, Clearance, ContactPair, Dependence, Friction, Interaction};
 use crate::mesh::Mesh;
 use crate::model::friction::{FrictionCurve, FrictionTable, SpeedDecay};
 use crate::model::{Contact, LARGEST_FRICTION, Model, NormalLaw, Place, ROUGH, is_pressure_table, names};
@@ -42,12 +42,18 @@ impl<'d> Conversion<'d> {
                 stick: None,
                 separation: !interaction.no_separation,
                 search_distance: None,
-                adjust: pair.adjust.filter(|_| clearance.is_none()).map_or(0.0, |gap| gap * self.units.length),
+                adjust: self.closed_gap(pair).filter(|_| clearance.is_none()).unwrap_or(0.0),
                 clearance: clearance.map(|own| own.value * self.units.length),
                 place: pair.place,
             });
         }
         Ok(contacts)
+    }
+
+    /// The gap up to which a pair is closed, m.
+    fn closed_gap(&self, pair: &ContactPair) -> Option<f64> {
+        let Some(Adjust::Within(gap)) = pair.adjust else { return None };
+        Some(gap * self.units.length)
     }
 
     /// Refuses a clearance of surfaces that are no contact pair.

@@ -3,7 +3,7 @@
 use super::Conversion;
 use super::regions::unlike;
 use crate::Result;
-use crate::deck::types::{Behaviour, ContactPair};
+use crate::deck::types::{Adjust, Behaviour, ContactPair};
 use crate::model::Tie;
 
 impl Conversion<'_> {
@@ -26,6 +26,9 @@ impl Conversion<'_> {
                 [self.surface_name(&pair.slave, pair.place)?, self.surface_name(&pair.master, pair.place)?];
             let name = format!("{slave} / {master}");
             let name = unlike(&name, |name| ties.iter().any(|own| own.name == name), "tie");
+            if matches!(pair.adjust, Some(Adjust::Within(_))) {
+                self.notes.push(format!("ADJUST of the tied pair {name} is not applied: nodes stay where they are"));
+            }
             let stiffness = stiffness.map(|stiffness| stiffness * self.units.foundation());
             ties.push(Tie { name, slave, master, search_distance: None, stiffness, place: pair.place });
         }

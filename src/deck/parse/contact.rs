@@ -7,7 +7,7 @@ use crate::deck::card::Card;
 use crate::deck::catalogue::treatment;
 use crate::deck::row::Row;
 use crate::deck::types::{
-    Action, ActionKind, Behaviour, ContactPair, Coupling, Dependence, Entry, Friction, Interaction,
+    Action, ActionKind, Adjust, Behaviour, ContactPair, Coupling, Dependence, Entry, Friction, Interaction,
 };
 
 impl Parser {
@@ -121,23 +121,19 @@ impl Parser {
             let [slave, master] = [row.name(0, "the slave surface")?, row.name(1, "the master surface")?];
             let (slave, master) = (slave.to_uppercase(), master.to_uppercase());
             n += 1;
-            let interaction = interaction.clone();
-            let place = row.place;
+            let (interaction, adjust, place) = (interaction.clone(), adjust.clone(), row.place);
             self.deck.contact_pairs.push(ContactPair { slave, master, interaction, adjust, tied, place });
         }
         if n == 0 { Err(card.error("the two surfaces are missing")) } else { Ok(()) }
     }
 
-    /// The gap up to which a pair is closed; a set of nodes is noted.
-    fn adjust(&mut self, card: &Card) -> Result<Option<f64>> {
+    /// A distance, or a set of nodes.
+    fn adjust(&mut self, card: &Card) -> Result<Option<Adjust>> {
         let Some(text) = card.value("ADJUST") else { return Ok(None) };
         match crate::deck::row::real(text) {
-            Some(gap) if gap >= 0.0 => Ok(Some(gap)),
+            Some(gap) if gap >= 0.0 => Ok(Some(Adjust::Within(gap))),
             Some(gap) => Err(card.error(format_args!("ADJUST must be 0 or above, not {gap} (*CONTACT PAIR)"))),
-            None => {
-                self.note("ADJUST with a set of nodes is not applied: the gaps are those of the mesh");
-                Ok(None)
-            }
+            None => Ok(Some(Adjust::Nodes(self.name_of(card, "ADJUST")?))),
         }
     }
 

@@ -21,7 +21,8 @@ pub use mesh::{
     SurfaceDefinition, SurfaceItem, Turn,
 };
 pub use physics::{
-    Behaviour, Clearance, ContactPair, Coupling, Dependence, Elastic, ElasticKind, Friction, Interaction, Material,
+    Adjust, Behaviour, Clearance, ContactPair, Coupling, Dependence, Elastic, ElasticKind, Friction, Interaction,
+    Material,
 };
 
 /// A deck.

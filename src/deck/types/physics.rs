@@ -124,12 +124,21 @@ pub struct ContactPair {
     pub master: String,
     /// Name of the interaction.
     pub interaction: String,
-    /// Whether nodes of the slave are moved onto the master, and from which distance.
-    pub adjust: Option<f64>,
+    /// Which part of the slave starts in contact, if any.
+    pub adjust: Option<Adjust>,
     /// Whether the surfaces move as one.
     pub tied: bool,
     /// Where it stands.
     pub place: Place,
+}
+
+/// Which part of a slave starts in contact.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Adjust {
+    /// Where the gap is this or less.
+    Within(f64),
+    /// The nodes of the set of this name.
+    Nodes(String),
 }
 
 /// The initial gap of a contact pair, in place of the mesh's.

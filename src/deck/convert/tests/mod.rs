@@ -6,6 +6,7 @@
 //!   disc  element 1, nodes 1 to 10, below; turns about z
 //! ```
 
+mod adjust;
 mod broken;
 mod broken_joints;
 mod joints;
@@ -361,14 +362,4 @@ fn a_deck_of_statics_needs_no_density_and_one_of_modes_does() {
     let Converted { model, summary, .. } = read(statics).unwrap();
     assert_eq!(model.parts[0].material.density, 0.0);
     assert!(summary.notes.iter().any(|note| note.starts_with("the material Steel has no *DENSITY")));
-}
-
-#[test]
-fn gaps_up_to_a_distance_are_closed() {
-    let adjusted = |value: &str| with("INTERACTION=I\n", &format!("INTERACTION=I, ADJUST={value}\n"));
-    assert!(close(adjusted("0.02").unwrap().model.contacts[0].adjust, 2e-5));
-    let Converted { model, summary, .. } = adjusted("HUB").unwrap();
-    assert_eq!(model.contacts[0].adjust, 0.0);
-    assert!(summary.notes.iter().any(|note| note.starts_with("ADJUST with a set of nodes")), "{:?}", summary.notes);
-    assert!(adjusted("-1.").unwrap_err().starts_with("a.inp:51: ADJUST must be 0 or above, not -1"));
 }
