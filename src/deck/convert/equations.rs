@@ -197,7 +197,7 @@ impl Conversion<'_> {
             return Ok(held);
         }
         for i in (0..3).filter(|&i| held[i]) {
-            match (0..3).find(|&j| axes[i][j].abs() > 1.0 - NOTHING) {
+            match global_axis(&axes[i]) {
                 Some(j) => global[j] = true,
                 None => {
                     let sum = (0..3).map(|j| ((node, j), axes[i][j])).collect();
@@ -207,6 +207,11 @@ impl Conversion<'_> {
         }
         Ok(global)
     }
+}
+
+/// The global axis that a local one is parallel to.
+pub(super) fn global_axis(axis: &[f64; 3]) -> Option<usize> {
+    (0..3).find(|&j| axis[j].abs() > 1.0 - NOTHING)
 }
 
 /// A global axis.

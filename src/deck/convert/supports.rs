@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Conversion;
-use super::equations::Axes;
+use super::equations::{Axes, global_axis};
 use super::history::State;
 use crate::Result;
 use crate::deck::sets::Kind;
@@ -16,11 +16,14 @@ type Forces = BTreeMap<u32, [(usize, f64); 3]>;
 type Pressure = (usize, f64, Place);
 
 /// Why a displacement is refused of a node that is no node of a solid, or has axes of its own.
-pub(super) const OTHER_THAN_ZERO: &str = "a displacement other than 0 is supported of nodes of solids along x, y and z, and of reference nodes of \
-     which all six displacements are held. Press the parts together by a load";
+pub(super) const OTHER_THAN_ZERO: &str = "a displacement other than 0 is supported of nodes of solids along x, y and z or along all three of their \
+     local axes, and of reference nodes of which all six displacements are held. Press the parts together by a load";
 
 /// Which displacements of a node are prescribed, what they are, and where that stands.
 type Prescribed = BTreeMap<u32, ([Option<f64>; 3], Place)>;
+
+/// Which local axes of a node are held, and where that stands.
+type LocalSupports = BTreeMap<u32, ([bool; 3], Place)>;
 
 /// Adds to a value of the same step, replaces one of an earlier step.
 pub(super) fn add(known: &mut (usize, f64), step: usize, value: f64) {
@@ -31,8 +34,8 @@ impl Conversion<'_> {
     /// Prescribed displacements; those of reference nodes are left to the couplings. Oblique ones are equations.
     pub(super) fn supports(&mut self, state: &State, equations: &mut Vec<Equation>) -> Result<Vec<Fix>> {
         let mut fixes: Vec<Fix> = Vec::new();
-        let mut local: BTreeMap<u32, ([bool; 3], Place)> = BTreeMap::new();
-        let moved = self.moved(state)?;
+        let (mut moved, mut local) = (self.moved(state)?, LocalSupports::new());
+        self.turn(&mut moved, &mut local)?;
         for (_, action) in state.actions() {
             let ActionKind::Boundary(of, [first, last], _) = &action.what else { continue };
             let nodes = self.bodies.used(&self.assembly.set(Kind::Node, 0, of, action.place)?);
@@ -68,9 +71,6 @@ impl Conversion<'_> {
         for (_, action) in state.actions() {
             let ActionKind::Boundary(of, [first, last], value) = &action.what else { continue };
             for node in self.bodies.used(&self.assembly.set(Kind::Node, 0, of, action.place)?) {
-                if *value != 0.0 && self.axes.contains_key(&node) {
-                    return Err(self.assembly.error(action.place, OTHER_THAN_ZERO));
-                }
                 let (values, place) = all.entry(node).or_insert(([None; 3], action.place));
                 (*first..=*last)
                     .filter(|axis| *axis <= 3)
@@ -80,6 +80,28 @@ impl Conversion<'_> {
         }
         all.retain(|_, (values, _)| values.iter().flatten().any(|value| *value != 0.0));
         Ok(all)
+    }
+
+    /// Turns displacements along local axes into those along x, y and z. Oblique axes that are only held go to the
+    /// local supports.
+    fn turn(&self, moved: &mut Prescribed, local: &mut LocalSupports) -> Result<()> {
+        for (node, (values, place)) in moved {
+            let Some(axes) = self.axes.get(node) else { continue };
+            let own = std::mem::take(values);
+            if let [Some(a), Some(b), Some(c)] = own {
+                // u = a e_1 + b e_2 + c e_3
+                *values = [0, 1, 2].map(|j| Some(a * axes[0][j] + b * axes[1][j] + c * axes[2][j]));
+                continue;
+            }
+            for (i, value) in own.into_iter().enumerate().filter_map(|(i, value)| Some((i, value?))) {
+                match global_axis(&axes[i]) {
+                    Some(j) => values[j] = Some(axes[i][j].signum() * value),
+                    None if value == 0.0 => local.entry(*node).or_insert(([false; 3], *place)).0[i] = true,
+                    None => return Err(self.assembly.error(*place, OTHER_THAN_ZERO)),
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Nodes with the same prescribed displacement are one support.
@@ -98,7 +120,7 @@ impl Conversion<'_> {
     /// Supports along local axes; nodes with the same global ones are one set.
     fn local_supports(
         &mut self,
-        local: &BTreeMap<u32, ([bool; 3], Place)>,
+        local: &LocalSupports,
         equations: &mut Vec<Equation>,
         fixes: &mut Vec<Fix>,
     ) -> Result<()> {

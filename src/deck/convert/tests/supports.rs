@@ -46,3 +46,24 @@ fn a_reference_node_that_is_held_moves_what_follows_it() {
         assert!(message.contains("a displacement other than 0 is supported of nodes of solids"), "{message}");
     }
 }
+
+#[test]
+fn displacements_along_local_axes_are_turned_or_refused() {
+    // The first local axis is y, the second is -x.
+    let along = |axes: &str, rows: &str| {
+        let text = format!("*TRANSFORM, NSET=BACK\n{axes}\n*BOUNDARY\n{rows}\n*STEP\n*STATIC\n*CLOAD");
+        let Converted { model, mesh, .. } = with("*STEP\n*STATIC\n*CLOAD", &text)?;
+        let moved = model.fixes.iter().find(|fix| fix.displacement != [0.0; 3]).unwrap();
+        assert_eq!(mesh.node_set(&moved.nodes).unwrap(), [13]);
+        Ok::<_, String>((moved.axes, moved.displacement.map(|u| (1e12 * u).round() / 1e9 + 0.0), model.equations.len()))
+    };
+    let turned = "0., 1., 0., -1., 0., 0.";
+    assert_eq!(along(turned, "14, 2, 2, 0.5").unwrap(), ([true, false, false], [-0.5, 0.0, 0.0], 0));
+    let oblique = "3., 4., 0., -4., 3., 0.";
+    let all = along(oblique, "14, 1, 1, 0.5\n14, 2, 2, 1.\n14, 3, 3, 2.").unwrap();
+    assert_eq!(all, ([true; 3], [0.6 * 0.5 - 0.8, 0.8 * 0.5 + 0.6, 2.0], 0));
+    // The radius is held by an equation.
+    assert_eq!(along(oblique, "14, 3, 3, 2.\n14, 1, 1").unwrap(), ([false, false, true], [0.0, 0.0, 2.0], 1));
+    let message = along(oblique, "14, 1, 1, 0.5").unwrap_err();
+    assert!(message.contains("along x, y and z or along all three of their local axes"), "{message}");
+}
