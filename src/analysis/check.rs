@@ -22,6 +22,9 @@ use crate::output::model_summary::{
 };
 use crate::structure::{FullModel, Ranked, plausibility};
 
+/// What gravity without a name acts on.
+const ALL: &str = "all parts and masses";
+
 /// Masses, contact pairs, mesh quality, constraints and loads of a model; with reference contacts their cells, too. The
 /// matrix is left open. Collective.
 pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> ModelSummary {
@@ -30,7 +33,14 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
     let warnings = plausibility::warnings(full, comm).into_iter().chain(flat).collect();
     let masses = &full.model.masses;
     let mass_kg = parts.iter().map(|row| row.mass_kg).chain(masses.iter().map(|own| own.mass)).sum();
-    let load = |load: &Load| LoadRow { load: load.name.clone(), on: load.on.clone(), what: amount(full, load) };
+    let load = |load: &Load| LoadRow {
+        load: load.name.clone(),
+        on: if load.on.is_empty() { ALL.to_owned() } else { load.on.clone() },
+        what: amount(full, &parts, load),
+    };
+    let loads: Vec<LoadRow> = full.model.loads.iter().map(load).collect();
+    let mut weight = full.weights.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i]));
+    comm.sum_all(&mut weight);
     let proposed = full.model.proposed(&full.mesh);
     let sliding = || full.interface.pairs.iter().filter(|pair| pair.is_sliding());
     ModelSummary {
@@ -53,8 +63,8 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
         masses: masses.iter().map(mass).collect(),
         equations: full.joints.count(JointKind::Equation),
         mass_kg,
-        loads: full.model.loads.iter().map(load).collect(),
-        sum_of_loads_n: full.loads.iter().fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i])),
+        loads,
+        sum_of_loads_n: full.loads.iter().fold(weight, |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i])),
         warnings,
         matrix: None,
     }
@@ -189,8 +199,9 @@ fn layout(full: &FullModel, pair: &ContactPair) -> LayoutRow {
     }
 }
 
-fn amount(full: &FullModel, load: &Load) -> String {
+fn amount(full: &FullModel, parts: &[PartRow], load: &Load) -> String {
     let force = |f: &[f64; 3]| f.map(|f| f.to_string()).join(" ");
+    let newtons = |f: [f64; 3]| f.map(|f| format!("{:.3}", (1e3 * f).round() / 1e3 + 0.0)).join(" ");
     match &load.kind {
         LoadKind::ForceByNode(f) => format!("{} N, the same on each node", force(f)),
         LoadKind::ForceByArea(f) => format!("{} N, spread over the area", force(f)),
@@ -199,8 +210,14 @@ fn amount(full: &FullModel, load: &Load) -> String {
             let facets = full.mesh.surfaces.get(&load.on).into_iter().flat_map(|surface| &surface.facets);
             let nodal = facets.flat_map(|own| facet::pressure_load(&own.positions(&full.mesh.nodes), *p));
             let total = nodal.fold([0.0; 3], |sum, f| [0, 1, 2].map(|i| sum[i] + f[i]));
-            let rounded = total.map(|f| format!("{:.3}", (1e3 * f).round() / 1e3 + 0.0));
-            format!("a pressure of {p} Pa, in total {} N", rounded.join(" "))
+            format!("a pressure of {p} Pa, in total {} N", newtons(total))
+        }
+        LoadKind::Gravity(g) => {
+            let of_parts = parts.iter().map(|row| (&row.part, row.mass_kg));
+            let of_masses = full.model.masses.iter().map(|own| (&own.name, own.mass));
+            let own = of_parts.chain(of_masses).filter(|(name, _)| load.is_gravity_on(name));
+            let mass: f64 = own.map(|(_, mass)| mass).sum();
+            format!("gravity of {} m/s2, in total {} N", force(g), newtons(g.map(|g| mass * g)))
         }
     }
 }

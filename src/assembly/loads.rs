@@ -75,7 +75,7 @@ pub fn forces_of_prescribed(families: &[&dyn Elements], prescribed: &BTreeMap<u3
     forces
 }
 
-/// The nodal forces (N) of the model's loads.
+/// The nodal forces (N) of the model's loads, without gravity.
 ///
 /// # Errors
 /// [`Error::Input`](crate::Error::Input) where a set is missing, a traction acts on something that is not a surface, or
@@ -104,6 +104,8 @@ pub fn loads(model: &Model, mesh: &Mesh, sets: &Sets) -> Result<Vec<(u32, [f64; 
                 let refuse = |message| model.error(load.place, format_args!("load {:?}: {message}", load.name));
                 forces.extend(spread.map_err(refuse)?);
             }
+            // Each rank has its own elements: `weights`.
+            LoadKind::Gravity(_) => {}
             LoadKind::Pressure(pressure) => {
                 let surface = surface_of(model, mesh, load)?;
                 forces.extend(surface_load(mesh, surface, |x| facet::pressure_load(x, pressure)));

@@ -15,6 +15,7 @@
 mod axes;
 mod boundary;
 mod dofs;
+mod gravity;
 pub mod joints;
 mod loads;
 mod pattern;
@@ -25,6 +26,7 @@ mod system;
 
 pub use boundary::{Boundary, Displacements};
 pub use dofs::DofMap;
+pub use gravity::weights;
 pub use joints::{JointElement, JointKind, Joints};
 pub use loads::{add_prescribed, constraints, forces_of_prescribed, loads, prescribed};
 pub use pattern::Pattern;

@@ -299,12 +299,13 @@ tables! {
 
     pub struct LoadTable {
         pub name: Option<String>,
-        pub on: String,
+        pub on: Option<String>,
         pub force: Option<Vector>,
         pub moment: Option<Vector>,
         pub at: Option<Vector>,
         pub spread: Option<Text>,
         pub pressure: Option<Number>,
+        pub gravity: Option<Vector>,
     }
 
     pub struct StabilityTable {

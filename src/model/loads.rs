@@ -8,17 +8,39 @@ use crate::Result;
 use toml::Spanned;
 
 /// What a load has.
-const ACTING: &str = "Give one of force = [x, y, z] in N, or pressure in Pa";
+const ACTING: &str = "Give one of force = [x, y, z] in N, pressure in Pa, or gravity = [x, y, z] in m/s2";
+/// Name of gravity that acts on everything.
+const GRAVITY: &str = "gravity";
+
+impl Load {
+    /// Whether this is gravity that acts on a part or point mass.
+    pub fn is_gravity_on(&self, name: &str) -> bool {
+        matches!(self.kind, LoadKind::Gravity(_)) && (self.on.is_empty() || self.on == name)
+    }
+}
 
 /// The loads; `unit` is metres per unit of the mesh.
 pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>], unit: f64) -> Result<Vec<Load>> {
-    let called = |raw: &keys::LoadTable| raw.name.clone().unwrap_or_else(|| raw.on.clone());
+    let called = |raw: &keys::LoadTable| {
+        let unnamed = if raw.gravity.is_some() { GRAVITY } else { "unnamed" };
+        raw.name.as_ref().or(raw.on.as_ref()).map_or(unnamed, String::as_str).to_owned()
+    };
     named(source, "load", raw, called, |item, name, raw| {
-        Ok(Load { name, on: raw.on.clone(), kind: kind(item, raw, unit)?, place: item.place() })
+        let on = match (&raw.on, &raw.gravity) {
+            (None, Some(_)) => String::new(),
+            (on, _) => item.required(on, "on", "Name a physical surface, curve or point")?.clone(),
+        };
+        Ok(Load { name, on, kind: kind(item, raw, unit)?, place: item.place() })
     })
 }
 
 fn kind(item: &Item, raw: &keys::LoadTable, unit: f64) -> Result<LoadKind> {
+    if let Some(gravity) = &raw.gravity {
+        let is_alone = raw.force.is_none() && raw.moment.is_none() && raw.at.is_none() && raw.pressure.is_none();
+        let what = "gravity acts on all of a part, and there is something else";
+        item.require_at(&gravity.span(), is_alone && raw.spread.is_none(), what, "Write two [[load]] tables")?;
+        return Ok(LoadKind::Gravity(item.finite(gravity, "gravity")?));
+    }
     let at_point = raw.moment.as_ref().or(raw.at.as_ref()).map(Spanned::span);
     let of_force = raw.spread.as_ref().map(Spanned::span).or(at_point.clone());
     match (&raw.pressure, &raw.force, of_force) {

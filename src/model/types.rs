@@ -356,7 +356,7 @@ impl NormalLaw {
 pub struct Load {
     /// Name in tables.
     pub name: String,
-    /// Physical surface or node set.
+    /// Physical surface or node set; of gravity a part or point mass, empty for all of them.
     pub on: String,
     /// What acts.
     pub kind: LoadKind,
@@ -383,6 +383,8 @@ pub enum LoadKind {
     },
     /// Pressure (Pa), positive into the body.
     Pressure(f64),
+    /// The weight of parts and point masses in this acceleration (m/s2).
+    Gravity([f64; 3]),
 }
 
 /// How the structure is reduced to a super-element.

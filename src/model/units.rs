@@ -64,6 +64,11 @@ impl UnitSystem {
         self.mass / self.length.powi(3)
     }
 
+    /// m/s2
+    pub fn acceleration(&self) -> f64 {
+        self.length / self.time.powi(2)
+    }
+
     /// N
     pub fn force(&self) -> f64 {
         self.mass * self.length / self.time.powi(2)

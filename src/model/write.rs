@@ -281,7 +281,7 @@ mod tests {
         let back = parse(&text, Path::new("brake.toml")).unwrap();
         // All but the places is the same, to rounding of lengths and of isotropic elasticities.
         assert_eq!(write(&back, "brake.msh"), text);
-        assert_eq!((back.fixes.len(), back.contacts.len(), back.loads.len()), (1, 3, 3));
+        assert_eq!((back.fixes.len(), back.contacts.len(), back.loads.len()), (1, 3, 4));
         assert_eq!((back.connectors.len(), back.ties.len(), back.rigid_sets.len()), (2, 1, 1));
         assert_eq!(
             (&back.masses[0].inertia, &back.equations[0].terms),

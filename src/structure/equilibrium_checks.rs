@@ -33,6 +33,7 @@ impl EquilibriumChecks {
         );
         let inertia = families.inertia_forces(|node| system.dofs.owns(node), &u);
         balance.add_body_forces(system, &full.mesh.nodes, &inertia);
+        balance.add_body_forces(system, &full.mesh.nodes, &full.weights);
         // Joints to the ground, and equations, are supports; of all others the forces cancel.
         for (node, force) in full.joints.elements.iter().flat_map(|element| element.forces(&u)) {
             balance.support.add(full.mesh.nodes[node as usize], force.map(|f| -f));

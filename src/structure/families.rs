@@ -64,6 +64,7 @@ impl FullModel {
         let contacts: [&dyn Connectivity; 1] = [&self.interface.gap_operator];
         let mut system = System::assemble(comm, &self.nodes, &self.held, families, &contacts)?;
         system.add_load(&self.loads)?;
+        system.add_load(&self.weights)?;
         system.add_load(&assembly::forces_of_prescribed(families, &self.prescribed))?;
         Ok(system)
     }

@@ -33,8 +33,10 @@ pub struct FullModel {
     pub nodes: Numbering,
     /// Contact points of all pairs.
     pub interface: Interface,
-    /// Forces (N) at nodes.
+    /// Forces (N) at nodes, without gravity.
     pub loads: Vec<(u32, [f64; 3])>,
+    /// Forces of gravity (N) at the nodes that this rank owns.
+    pub weights: Vec<(u32, [f64; 3])>,
     /// Which displacements of each node are prescribed.
     pub held: Vec<[bool; 3]>,
     /// Those of them that are not zero in the equilibrium, m.
@@ -125,8 +127,9 @@ impl FullModel {
         refuse_moved_contacts(&model, &interface, &prescribed)?;
         let sets = Sets::new(&model, &mesh, &nodes)?;
         let loads = assembly::loads(&model, &mesh, &sets)?;
+        let weights = assembly::weights(&model, &mesh, &nodes, &sets)?;
         let joints = Joints::new(&model, &mesh, &nodes, &sets, team)?;
-        Ok(FullModel { model, mesh, nodes, interface, loads, held, prescribed, joints, deck: None })
+        Ok(FullModel { model, mesh, nodes, interface, loads, weights, held, prescribed, joints, deck: None })
     }
 
     /// Refuses a brake of which a part is unconstrained, or constrained by contacts that nothing presses. Collective.
@@ -193,6 +196,7 @@ impl FullModel {
             LoadKind::ForceByNode(force) | LoadKind::ForceByArea(force) => force == [0.0; 3],
             LoadKind::ForceAt { force, moment, .. } => [force, moment] == [[0.0; 3]; 2],
             LoadKind::Pressure(pressure) => pressure == 0.0,
+            LoadKind::Gravity(acceleration) => acceleration == [0.0; 3],
         };
         let overlaps = |pair: &ContactPair| pair.separation && pair.statistics.gap[0] < -SMALLEST_OVERLAP;
         let is_moved = self.model.fixes.iter().any(Fix::moves);

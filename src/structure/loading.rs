@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use super::FullModel;
 use super::free_motions::Bodies;
 use crate::contact::ContactPair;
+use crate::model::LoadKind;
 use crate::native::Comm;
 
 /// Fraction of a load on fixed dofs above which it is said.
@@ -15,7 +16,8 @@ const PULLING: f64 = 0.5;
 /// Warnings about loads. Collective.
 pub(super) fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
     let bodies = Bodies::new(comm, &full.mesh, &full.nodes);
-    let held = full.model.loads.iter().filter_map(|load| {
+    let on_nodes = full.model.loads.iter().filter(|load| !matches!(load.kind, LoadKind::Gravity(_)));
+    let held = on_nodes.filter_map(|load| {
         let nodes: HashSet<u32> = full.mesh.node_set(&load.on)?.into_iter().collect();
         on_held(&load.name, full.loads.iter().filter(|(node, _)| nodes.contains(node)), &full.held)
     });

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use crate::Result;
 use crate::assembly::{Elements, Solids, System};
 use crate::equilibrium::Equilibrium;
+use crate::model::LoadKind;
 use crate::native::{Block, Comm, Mck};
 use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::galerkin;
@@ -95,9 +96,10 @@ impl FullModel {
         self.model.reduction.as_ref().map_or(2.0 * self.model.band[1], |reduction| reduction.band[1])
     }
 
-    /// The loaded sets, those that carry several loads once.
+    /// The loaded sets, those that carry several loads once; gravity loads none.
     pub fn loaded_names(&self) -> BTreeSet<&str> {
-        self.model.loads.iter().map(|load| load.on.as_str()).collect()
+        let on_sets = self.model.loads.iter().filter(|load| !matches!(load.kind, LoadKind::Gravity(_)));
+        on_sets.map(|load| load.on.as_str()).collect()
     }
 
     fn centre(&self, nodes: &[u32]) -> [f64; 3] {

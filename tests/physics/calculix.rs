@@ -22,6 +22,7 @@
 
 mod decks;
 mod elements;
+mod gravity;
 mod references;
 
 use std::fmt::Write;

@@ -11,6 +11,7 @@ mod explain;
 mod factors;
 mod friction_law;
 mod galerkin;
+mod gravity;
 mod joints;
 mod manufactured_solution;
 mod prestress;

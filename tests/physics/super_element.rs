@@ -9,7 +9,7 @@ use squeal::assembly::System;
 use squeal::contact::law::{FrictionFactor, FrictionFunction};
 use squeal::contact::{FrictionLaw, Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
-use squeal::equilibrium::LabelledFactor;
+use squeal::equilibrium::{LabelledFactor, PairForces};
 use squeal::model::NormalLaw;
 use squeal::native::{Block as Columns, Comm, Precision, Session};
 use squeal::reduction::craig_bampton::{self, Structure};
@@ -203,6 +203,26 @@ fn inertia_forces_of_the_disc_are_in_the_super_element() {
         let error = largest_error(&analyse(&comm, &element, None, FRICTION).2, &full.eigenvalues);
         println!("{limit} Hz: largest error {error:.1e}");
         assert!(error < allowed, "{error} up to {limit} Hz");
+    }
+}
+
+/// Gravity presses the pad of the layout and of its super-element as their piston does: the force between pad and disc
+/// is the load and the weight above it, to 1e-9.
+#[test]
+fn gravity_is_in_the_layout_and_in_the_super_element() {
+    let comm = Session::start(&[]).unwrap();
+    let heavy = model() + "[[load]]\ngravity = [0, 0, -1e5]\n";
+    let full = Full::new(&comm, &heavy, FRICTION);
+    let weight = 1e5 * (2600.0 * 20.0 * 21.0 * 5.0 + 7100.0 * 12.0 * 13.0 * 8.0) * 1e-9;
+    let pressed = |interface: &Interface, equilibrium: &Equilibrium| {
+        let pairs = PairForces::all(interface, &equilibrium.responses);
+        pairs.iter().zip(&interface.pairs).find(|(_, pair)| pair.is_sliding()).unwrap().0.normal
+    };
+    assert_close("layout", pressed(&full.brake.interface, &full.equilibrium), 1000.0 + weight, 1e-9);
+    for limit in [f64::INFINITY, 100e3] {
+        let (_, element) = full.reduce(limit);
+        let (interface, equilibrium, _) = analyse(&comm, &element, None, FRICTION);
+        assert_close("super-element", pressed(&interface, &equilibrium), 1000.0 + weight, 1e-9);
     }
 }
 

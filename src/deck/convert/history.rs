@@ -28,6 +28,7 @@ impl From<&ActionKind> for Ended {
             ActionKind::Force(..) | ActionKind::Nothing(NothingKind::Force) => Ended::Force,
             ActionKind::FacePressure(..)
             | ActionKind::Centrifugal(..)
+            | ActionKind::Gravity(..)
             | ActionKind::Nothing(NothingKind::Distributed) => Ended::Distributed,
             ActionKind::SurfacePressure(..) | ActionKind::Nothing(NothingKind::SurfacePressure) => {
                 Ended::SurfacePressure

@@ -42,7 +42,10 @@ impl Conversion<'_> {
                 .iter()
                 .zip(property.values)
                 .for_each(|(&own, value)| model.masses[i].inertia[own] += value * unit),
-            false => model.masses[i].mass += property.values[0] * unit,
+            false => {
+                model.masses[i].mass += property.values[0] * unit;
+                self.mass_elements.entry(model.masses[i].name.clone()).or_default().push(element);
+            }
         }
         Ok(())
     }

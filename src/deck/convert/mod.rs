@@ -9,7 +9,7 @@
 //!                                  --references--> joints, discrete: rigid sets, connectors, masses, point forces
 //! ```
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 mod adjust;
 mod analysis;
@@ -17,6 +17,7 @@ mod bodies;
 mod bodies_apart;
 mod discrete;
 mod equations;
+mod gravity;
 mod history;
 mod joints;
 mod masses;
@@ -74,6 +75,8 @@ struct Conversion<'d> {
     numbers: Vec<u32>,
     /// Local axes of the mesh's nodes that have them.
     axes: HashMap<u32, Axes>,
+    /// Elements of each point mass, by its name.
+    mass_elements: BTreeMap<String, Vec<u32>>,
     notes: Vec<String>,
 }
 
@@ -92,7 +95,8 @@ pub fn convert(deck: &Deck, known: KnownUnits) -> Result<Converted> {
     let regions = Regions::new(mesh);
     let used = (0..assembly.numbers.len()).filter(|&node| bodies.node_of[node] != bodies::UNUSED);
     let numbers = used.map(|node| assembly.numbers[node]).collect();
-    let mut conversion = Conversion { deck, assembly, units, bodies, regions, numbers, axes: HashMap::new(), notes };
+    let (axes, mass_elements) = Default::default();
+    let mut conversion = Conversion { deck, assembly, units, bodies, regions, numbers, axes, mass_elements, notes };
     let model = conversion.model()?;
     let Conversion { assembly, regions, notes, .. } = conversion;
     let summary = DeckSummary::new(&assembly, &units, notes);
@@ -142,6 +146,7 @@ impl Conversion<'_> {
         };
         self.joints(&references, &mut model)?;
         self.discrete(&references, &mut model)?;
+        model.loads.extend(self.gravity(&state, &model)?);
         self.node_sets()?;
         Ok(model)
     }

@@ -4,6 +4,7 @@ use super::Parser;
 use super::contact::{dof_range, target};
 use super::sets::face;
 use crate::Result;
+use crate::algebra::{norm, scale};
 use crate::deck::card::Card;
 use crate::deck::row::Row;
 use crate::deck::types::{Action, ActionKind, Entry, NothingKind, Procedure, Spin, Step};
@@ -227,19 +228,40 @@ fn force(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {
 }
 
 fn distributed(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {
-    let of: Entry = target(row, 0)?;
     let label = row.field(1).to_uppercase();
-    if label == "CENTRIF" {
-        found.push(ActionKind::Centrifugal(of, centrifugal(row)?));
+    if label == "GRAV" && row.field(0).is_empty() {
+        found.push(ActionKind::Gravity(None, gravity(row)?));
         return Ok(());
     }
+    let of: Entry = target(row, 0)?;
+    match label.as_str() {
+        "CENTRIF" => {
+            found.push(ActionKind::Centrifugal(of, centrifugal(row)?));
+            return Ok(());
+        }
+        "GRAV" => {
+            found.push(ActionKind::Gravity(Some(of), gravity(row)?));
+            return Ok(());
+        }
+        _ => {}
+    }
     if !label.starts_with('P') {
-        let known = "On solids: P1 to P6, a pressure on a face, and CENTRIF, the centrifugal force";
+        let known = "On solids: P1 to P6, a pressure on a face, GRAV, gravity, and CENTRIF, the centrifugal force";
         return Err(row.error(format_args!("the load {:?} is not supported. {known}", row.field(1))));
     }
     let face = face(row, &label, 'P')?;
     found.push(ActionKind::FacePressure(of, face, row.real(2, "the pressure")?));
     Ok(())
+}
+
+/// An acceleration: its size, and a direction of any length.
+fn gravity(row: &Row) -> Result<[f64; 3]> {
+    let size = row.real(2, "the acceleration")?;
+    let direction: [f64; 3] = row.reals(3, "a component")?;
+    if direction == [0.0; 3] {
+        return Err(row.error("the direction of gravity is missing (GRAV)"));
+    }
+    Ok(scale(size / norm(direction), direction))
 }
 
 /// The square of a speed, a point of the axis and its direction.

@@ -69,6 +69,8 @@ pub enum ActionKind {
     SurfacePressure(String, f64),
     /// Steady rotation of nodes.
     Rotation(Entry, Spin),
+    /// Gravity of elements, of all where none are named: an acceleration.
+    Gravity(Option<Entry>, [f64; 3]),
     /// Centrifugal force of elements.
     Centrifugal(Entry, Spin),
     /// Another friction of an interaction.

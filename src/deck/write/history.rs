@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::joints::PointForce;
 use super::{DeckWriter, number};
-use crate::algebra::scale;
+use crate::algebra::{norm, scale};
 use crate::model::{Fix, Inertia, Load, LoadKind, Rotation};
 
 /// Modes that a step asks for, at most.
@@ -50,9 +50,24 @@ impl DeckWriter<'_> {
                 self.force(on, force, n as f64)
             }
             LoadKind::Pressure(pressure) => format!("*DSLOAD\n{on},P,{}\n", number(pressure / self.units.stress())),
+            LoadKind::Gravity(acceleration) => self.gravity(load, acceleration),
             // By a coupling.
             LoadKind::ForceByArea(_) | LoadKind::ForceAt { .. } => String::new(),
         }
+    }
+
+    /// Gravity of the element sets of parts and masses.
+    fn gravity(&self, load: &Load, acceleration: [f64; 3]) -> String {
+        let size = norm(acceleration);
+        if size == 0.0 {
+            return String::new();
+        }
+        let parts = self.model.parts.iter().map(|part| (part.name.as_str(), self.names.part(&part.name)));
+        let masses = self.mass_sets.iter().map(|(name, set)| (name.as_str(), set.as_str()));
+        let sets = parts.chain(masses).filter(|(name, _)| load.is_gravity_on(name)).map(|(_, set)| set);
+        let direction = acceleration.map(|g| number(g / size)).join(",");
+        let size = number(size / self.units.acceleration());
+        "*DLOAD\n".to_owned() + &sets.map(|set| format!("{set},GRAV,{size},{direction}\n")).collect::<String>()
     }
 
     fn force(&self, on: &str, force: [f64; 3], n: f64) -> String {

@@ -49,7 +49,7 @@ impl DeckWriter<'_> {
             let (force, moment, at) = match load.kind {
                 LoadKind::ForceByArea(force) => (force, [0.0; 3], None),
                 LoadKind::ForceAt { force, moment, at } => (force, moment, at),
-                LoadKind::ForceByNode(_) | LoadKind::Pressure(_) => continue,
+                LoadKind::ForceByNode(_) | LoadKind::Pressure(_) | LoadKind::Gravity(_) => continue,
             };
             let node = self.reference(&load.on, at.unwrap_or_else(|| self.mean_point(&load.on)), text);
             forces.push(PointForce { node, force, moment });
@@ -160,6 +160,7 @@ impl DeckWriter<'_> {
         if mass.mass > 0.0 {
             let set = self.element("MASS", "MASS", &nodes, &mut out);
             writeln!(out, "*MASS,ELSET={set}\n{}", number(mass.mass / self.units.mass)).expect("a string takes all");
+            self.mass_sets.push((mass.name.clone(), set));
         }
         if mass.inertia != [0.0; 6] {
             let set = self.element("ROTARYI", "INERTIA", &nodes, &mut out);

@@ -43,6 +43,7 @@ pub fn write(
         n_extra_nodes: 0,
         n_discrete: 0,
         n_orientations: 0,
+        mass_sets: Vec::new(),
     };
     writeln!(out, "*HEADING\n{}\n** {mark}; units: {}", model.title.replace(['\n', '*'], " "), units.name)?;
     writer.nodes(out)?;
@@ -68,6 +69,8 @@ struct DeckWriter<'a> {
     n_discrete: usize,
     /// Axes of connectors so far.
     n_orientations: usize,
+    /// Point masses with their element sets, so far.
+    mass_sets: Vec<(String, String)>,
 }
 
 /// A number with a decimal point and at most 20 characters: the shortest text that is read as the same number, or 13

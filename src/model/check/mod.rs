@@ -3,7 +3,7 @@
 mod joints;
 mod rotations;
 
-use super::{Contact, LoadKind, Model, Place, ROUGH, Rotation, names};
+use super::{Contact, Load, LoadKind, Model, Place, ROUGH, Rotation, names};
 use crate::algebra::{cross, sub};
 use crate::mesh::Mesh;
 use crate::{Error, Result};
@@ -102,8 +102,30 @@ impl ModelCheck<'_> {
             match load.kind {
                 LoadKind::ForceByNode(_) | LoadKind::ForceAt { .. } => self.node_set(&load.on, load.place, &item),
                 LoadKind::ForceByArea(_) | LoadKind::Pressure(_) => self.surface(&load.on, load.place, &item),
+                LoadKind::Gravity(_) => self.gravity(load, &item),
             };
         }
+    }
+
+    /// Gravity acts on parts with a density, or on a point mass.
+    fn gravity(&mut self, load: &Load, item: &str) -> bool {
+        let model = self.model;
+        if let Some(part) =
+            model.parts.iter().find(|part| load.is_gravity_on(&part.name) && part.material.density == 0.0)
+        {
+            let what = format!("the material of the part {:?} has no density, so that it has no weight", part.name);
+            self.complain(load.place, format!("{what} ({item}). Give its density"));
+        }
+        let names = || {
+            let masses = model.masses.iter().map(|mass| mass.name.as_str());
+            model.parts.iter().map(|part| part.name.as_str()).chain(masses)
+        };
+        let is_there = names().any(|name| load.is_gravity_on(name));
+        if !is_there {
+            let what = format!("there is no part or [[mass]] {:?} ({item})", load.on);
+            self.complain(load.place, format!("{what}. {}", names::advice(&load.on, names())));
+        }
+        is_there
     }
 
     /// Both surfaces lie on one part each, not the same; then what the pair's motion asks for.

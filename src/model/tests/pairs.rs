@@ -182,9 +182,14 @@ fn loads_are_one_force_or_one_pressure() {
     let kind = |text: &str| load(text).unwrap().loads[0].kind;
     assert_eq!(kind("force = [1, 0, 0]\nspread = \"area\""), LoadKind::ForceByArea([1.0, 0.0, 0.0]));
     assert_eq!(kind("pressure = 5"), LoadKind::Pressure(5.0));
+    assert_eq!(kind("gravity = [0, 0, -9.81]"), LoadKind::Gravity([0.0, 0.0, -9.81]));
     assert!(load("").unwrap_err().contains(":42: nothing acts (load \"back\")"));
     let both = load("force = [1, 0, 0]\npressure = 5").unwrap_err();
     assert!(both.contains(":45: there are a force and a pressure (load \"back\")"), "{both}");
+    let both = load("gravity = [0, 0, -9.81]\npressure = 5").unwrap_err();
+    assert!(both.contains(":44: gravity acts on all of a part, and there is something else (load \"back\")"), "{both}");
+    let nowhere = parsed(&GOOD.replace("on = \"back\"\n", "")).unwrap_err();
+    assert!(nowhere.contains("on is missing (load \"unnamed\"). Name a physical surface"), "{nowhere}");
     let spread = load("pressure = 5\nspread = \"area\"").unwrap_err();
     assert!(spread.contains(":45: spread, moment and at say how a force acts, but this is a pressure"), "{spread}");
     let unknown = load("force = [1, 0, 0]\nspread = \"areas\"").unwrap_err();

@@ -8,9 +8,12 @@ pub fn loads(out: &mut Text, model: &Model) {
     for load in &model.loads {
         out.table("[[load]]");
         out.line("name", quoted(&load.name));
-        out.line("on", quoted(&load.on));
+        if !load.on.is_empty() {
+            out.line("on", quoted(&load.on));
+        }
         match load.kind {
             LoadKind::Pressure(pressure) => out.line("pressure", number(pressure)),
+            LoadKind::Gravity(acceleration) => out.line("gravity", list(&acceleration)),
             LoadKind::ForceByNode(force) => out.line("force", list(&force)),
             LoadKind::ForceByArea(force) => {
                 out.line("force", list(&force));

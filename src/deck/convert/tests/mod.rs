@@ -9,6 +9,7 @@
 mod adjust;
 mod broken;
 mod broken_joints;
+mod gravity;
 mod joints;
 mod rotations;
 mod supports;
