@@ -17,6 +17,7 @@ use crate::{ErrorKind, Result};
 
 /// A structure under analysis at one friction coefficient after the other.
 pub struct Sweep<'a> {
+    /// The system.
     pub(super) system: &'a System,
     pub(super) path: Path<'a>,
     solver: BandSolver,

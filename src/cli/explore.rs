@@ -8,6 +8,9 @@ use crate::Result;
 use crate::analysis::{self, Output};
 use crate::explore::{self, Study};
 use crate::output::explore::Document;
+use crate::output::files::write_whole;
+use crate::output::folder::add_to_listed;
+use crate::report::explore_page;
 
 use super::watch::Watch;
 use super::{Shell, command_line};
@@ -48,6 +51,10 @@ pub fn run(shell: &Shell, arguments: &Explore) -> Result<()> {
     let found = analysis::explore(shell.comm, &study, Some(&output), &mut watch);
     watch.finish();
     let Some(found) = found? else { return Ok(()) };
-    let document = Document::new(&study, &found.about, &found.points, &found.answers, &output.folder);
+    let html = explore_page::page(&study, &found)?;
+    let path = output.folder.join(explore_page::NAME);
+    write_whole(&path, |out| out.write_all(html.as_bytes()))?;
+    add_to_listed(&output.folder, &[path])?;
+    let document = Document::new(&study, &found, &output.folder);
     shell.print(&document.text(), &document)
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::design::DesignKind;
+use super::gradient::{Gradient, Tornado, tornados};
 use super::result::{PointMode, PointResult};
 use super::sensitivity::{Bar, Indices, sobol_indices, tornado};
 use super::statistics::{Probability, quantile};
@@ -32,6 +33,8 @@ pub struct Answers {
     pub indices: Option<Vec<Indices>>,
     /// Swings of the largest growth rate, where one parameter varies at a time.
     pub tornado: Option<Vec<Bar>>,
+    /// First-order changes of the nominal modes that may squeal over the range of each parameter, by left vectors.
+    pub gradients: Vec<Tornado>,
     /// The point with the largest growth rate.
     pub worst: Option<usize>,
 }
@@ -84,11 +87,12 @@ pub fn quantity(point: &PointResult) -> Option<f64> {
 }
 
 impl Answers {
-    /// The answers of finished points, the nominal one first, then those of the design in its order. `band` in Hz.
+    /// The answers of finished points, the nominal one first, then those of the design in its order. `gradients` are
+    /// derivatives by each parameter; `band` in Hz.
     ///
     /// # Panics
     /// Without a nominal point.
-    pub fn new(study: &Study, points: &[PointResult], band: [f64; 2]) -> Answers {
+    pub fn new(study: &Study, points: &[PointResult], gradients: &[Gradient], band: [f64; 2]) -> Answers {
         let (nominal, own) = points.split_first().expect("the nominal point");
         let solved: Vec<(usize, &PointResult)> = (1..).zip(own).filter(|(_, point)| point.modes().is_some()).collect();
         let sample: Vec<(usize, &PointResult)> =
@@ -114,6 +118,7 @@ impl Answers {
             bins: bins(&sample, band, study.bin),
             indices: indices(study, own),
             tornado: bars(study, nominal, &solved),
+            gradients: may_squeal(study, gradients, points),
             worst: worst.map(|(number, _)| number),
         }
     }
@@ -122,10 +127,18 @@ impl Answers {
 impl Study {
     /// Whether a point is independent of the others, so that it counts for probabilities: of a design for Sobol indices
     /// only A and B.
-    fn is_independent(&self, index: usize) -> bool {
+    pub fn is_independent(&self, index: usize) -> bool {
         match self.design.kind {
             DesignKind::Saltelli { .. } => index % (self.parameters.len() + 2) < 2,
             _ => true,
+        }
+    }
+
+    /// The levels of the two parameters of a grid; none of another design.
+    pub fn plane(&self) -> Option<[Vec<f64>; 2]> {
+        match (&self.design.kind, &self.parameters[..]) {
+            (DesignKind::Grid { n_levels }, [a, b]) => Some([a, b].map(|own| own.distribution.levels(*n_levels))),
+            _ => None,
         }
     }
 
@@ -209,6 +222,12 @@ fn bars(study: &Study, nominal: &PointResult, solved: &[(usize, &PointResult)]) 
     Some(tornado(&study.names(), &nominal.values, &points))
 }
 
+/// The tornados of the nominal modes that may squeal.
+fn may_squeal(study: &Study, gradients: &[Gradient], points: &[PointResult]) -> Vec<Tornado> {
+    let all = tornados(&study.parameters, gradients, points);
+    all.into_iter().filter(|own| own.may_squeal(&study.names(), &points[0].values, points)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
@@ -235,6 +254,7 @@ mod tests {
             criterion: None,
             bin: 100.0,
             follow: true,
+            gradients: true,
         }
     }
 
@@ -261,7 +281,7 @@ mod tests {
             point(vec![mode(150.0, -1.0, Some(1)), mode(250.0, -2.0, Some(2))]),
             failed,
         ];
-        let answers = Answers::new(&study(DesignKind::Sobol { n_points: 4 }, 1), &points, [100.0, 300.0]);
+        let answers = Answers::new(&study(DesignKind::Sobol { n_points: 4 }, 1), &points, &[], [100.0, 300.0]);
         assert_eq!((answers.n_points, answers.n_failed, answers.n_doubtful, answers.worst), (4, 1, 2, Some(2)));
         assert_eq!((answers.unstable.n_true, answers.unstable.n_points), (2, 3));
         let [first, other] = &answers.instabilities[..] else { panic!("{:?}", answers.instabilities) };
@@ -295,7 +315,7 @@ mod tests {
         let points: Vec<PointResult> = all
             .map(|values| PointResult { outcome: Outcome::Modes(vec![hoffmann(values[0], values[1])]), values })
             .collect();
-        Answers::new(&study, &points, [0.0, 1.0])
+        Answers::new(&study, &points, &[], [0.0, 1.0])
     }
 
     /// Mean of a function over mu in (0.4, 0.9) and k in (1.8, 2.2), by the midpoint rule.

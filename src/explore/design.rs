@@ -95,6 +95,18 @@ impl Design {
         })
     }
 
+    /// What it is called.
+    pub fn name(&self) -> &'static str {
+        match self.kind {
+            DesignKind::Grid { .. } => "grid",
+            DesignKind::OneAtATime { .. } => "one parameter at a time",
+            DesignKind::List(_) => "list of points",
+            DesignKind::LatinHypercube { .. } => "Latin hypercube",
+            DesignKind::Sobol { .. } => "Sobol sequence",
+            DesignKind::Saltelli { .. } => "points for Sobol indices",
+        }
+    }
+
     /// Whether the points represent the distributions of the parameters, so that their fractions are probabilities.
     pub fn is_sample(&self) -> bool {
         !matches!(self.kind, DesignKind::Grid { .. } | DesignKind::OneAtATime { .. })

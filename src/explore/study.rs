@@ -35,6 +35,8 @@ pub struct Study {
     pub bin: f64,
     /// Whether modes are followed to the nominal point, which needs their left vectors.
     pub follow: bool,
+    /// Whether the derivatives of the nominal modes are found, which needs their left vectors.
+    pub gradients: bool,
 }
 
 /// A parameter: numbers of the model, and the values that they take.
@@ -69,6 +71,8 @@ struct Keys {
     bin: Option<f64>,
     #[serde(default = "yes")]
     follow: bool,
+    #[serde(default = "yes")]
+    gradients: bool,
     contacts: Option<usize>,
     design: DesignTable,
     #[serde(default)]
@@ -168,6 +172,7 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
         criterion: keys.unstable,
         bin,
         follow: keys.follow,
+        gradients: keys.gradients && keys.follow,
     })
 }
 

@@ -8,8 +8,11 @@ use serde::Serialize;
 use super::folder::Folder;
 use super::text::{aligned, files, or_dash, plural};
 use crate::Result;
-use crate::explore::{Answers, Bar, Bin, Estimate, Indices, Instability, Outcome, PointMode, PointResult, Study};
-use crate::results::About;
+use crate::explore::{
+    Answers, Bar, Bin, Estimate, Gradient, Indices, Influence, Instability, Outcome, Parameter, PointMode, PointResult,
+    Study, Tornado, tornados,
+};
+use crate::results::{About, Exploration};
 
 /// Name of the model file of the worst point.
 pub const WORST: &str = "worst.toml";
@@ -60,14 +63,9 @@ impl<'a> Document<'a> {
     ///
     /// # Panics
     /// Where the answers are of other points.
-    pub fn new(
-        study: &'a Study,
-        about: &'a About,
-        points: &'a [PointResult],
-        answers: &'a Answers,
-        folder: &Path,
-    ) -> Document<'a> {
-        let parameter = |(own, nominal): (&'a crate::explore::Parameter, &f64)| ParameterDocument {
+    pub fn new(study: &'a Study, found: &'a Exploration, folder: &Path) -> Document<'a> {
+        let Exploration { about, points, answers, .. } = found;
+        let parameter = |(own, nominal): (&'a Parameter, &f64)| ParameterDocument {
             name: &own.name,
             keys: own.keys.iter().map(|key| key.text()).collect(),
             factor: own.is_factor,
@@ -121,6 +119,9 @@ impl<'a> Document<'a> {
         let indices = answers.indices.as_deref().map_or_else(String::new, indices);
         text += &section("Sobol indices of the largest growth rate, with intervals of 95 %", &indices);
         text += &section("largest growth rate, one parameter at a time", &tornado(answers.tornado.as_deref()));
+        let gradients: String = answers.gradients.iter().map(influences).collect();
+        text +=
+            &section("first-order changes of the growth rate, 1/s, by left vectors at the nominal point", &gradients);
         text += &self.worst();
         let failures: String = self.failures.iter().map(|f| format!("point {}: {}\n", f.point, f.reason)).collect();
         text + &section("points that have failed", &failures) + &self.files()
@@ -169,9 +170,11 @@ impl<'a> Document<'a> {
         let mut list = vec![
             ("points.csv", "parameters, and the largest growth rate at each point"),
             ("modes.csv", "modes at each point, with those of the nominal point that they are"),
+            ("gradients.csv", "derivatives of the nominal modes by each parameter"),
             ("summary.json", "the answers, for programs"),
             ("summary.txt", "this text"),
         ];
+        list.insert(0, ("explore.html", "the page to look at"));
         if self.worst_point.as_ref().is_some_and(|worst| worst.command.contains(WORST)) {
             list.push((WORST, "the model file of the worst point"));
         }
@@ -186,7 +189,7 @@ fn command(study: &Study, about: &About, values: &[f64], folder: &Path) -> Strin
         let contacts = study.contacts.map_or_else(String::new, |n| format!(" --contacts {n}"));
         return format!("squeal stability {}{contacts}", folder.join(WORST).display());
     }
-    let option = |(own, value): (&crate::explore::Parameter, &f64)| {
+    let option = |(own, value): (&Parameter, &f64)| {
         let key = own.shared_key().unwrap_or_default().replace('_', "-");
         format!(" --{key} {value}")
     };
@@ -198,10 +201,12 @@ fn command(study: &Study, about: &About, values: &[f64], folder: &Path) -> Strin
 ///
 /// # Errors
 /// The system's, with the file's path.
-pub fn write(folder: &Folder, document: &Document, points: &[PointResult]) -> Result<()> {
+pub fn write(folder: &Folder, study: &Study, document: &Document, found: &Exploration) -> Result<()> {
+    let points = &found.points;
     let names: Vec<&str> = document.parameters.iter().map(|own| own.name).collect();
     folder.write("points.csv", |out| write_points(out, &names, points))?;
     folder.write("modes.csv", |out| write_modes(out, points))?;
+    folder.write("gradients.csv", |out| write_gradients(out, &study.parameters, &found.gradients, points))?;
     folder.write("summary.json", |out| out.write_all(super::json::text(document).as_bytes()))?;
     folder.write("summary.txt", |out| out.write_all(document.text().as_bytes()))
 }
@@ -269,6 +274,47 @@ fn write_modes(out: &mut dyn Write, points: &[PointResult]) -> IoResult<()> {
     table.flush()
 }
 
+/// A row for each nominal mode and parameter.
+fn write_gradients(
+    out: &mut dyn Write,
+    parameters: &[Parameter],
+    gradients: &[Gradient],
+    points: &[PointResult],
+) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record([
+        "nominal_mode",
+        "parameter",
+        "growth_rate_slope",
+        "frequency_slope",
+        "from",
+        "to",
+        "growth_rate_change_per_s",
+        "frequency_change_hz",
+        "difference",
+    ])?;
+    let difference = |name: &str| {
+        let place = parameters.iter().position(|own| own.name == name);
+        place.map_or("", |i| gradients[i].difference.text())
+    };
+    for Tornado { nominal, bars, .. } in &tornados(parameters, gradients, points) {
+        for bar in bars {
+            let numbers = [
+                bar.growth_rate_slope,
+                bar.frequency_slope,
+                bar.from,
+                bar.to,
+                bar.growth_rate_change_per_s,
+                bar.frequency_change_hz,
+            ];
+            let head = [nominal.to_string(), bar.parameter.clone()];
+            let row = head.into_iter().chain(numbers.map(shown)).chain([difference(&bar.parameter).to_owned()]);
+            table.write_record(row)?;
+        }
+    }
+    table.flush()
+}
+
 /// A number to its last digit.
 fn shown(number: f64) -> String {
     serde_json::Value::from(number).to_string()
@@ -328,4 +374,19 @@ fn tornado(bars: Option<&[Bar]>) -> String {
     };
     bars.filter(|bars| !bars.is_empty())
         .map_or_else(String::new, |bars| aligned("parameter\tsmallest\tat\tlargest\tat", bars.iter().map(row)))
+}
+
+/// The tornado of a mode.
+fn influences(own: &Tornado) -> String {
+    let share = own.linear_share.map_or_else(String::new, |share| {
+        format!("; to first order {:.0} % of its variance over the points", 100.0 * share.max(0.0))
+    });
+    let head = format!("mode {}: {:.1} Hz, {:+.2} 1/s{share}\n", own.nominal, own.frequency_hz, own.growth_rate_per_s);
+    let row = |bar: &Influence| {
+        format!(
+            "{}\t{:+.2}\t{:+.2}\t{:.4e}\t{:.4e}",
+            bar.parameter, bar.growth_rate_change_per_s, bar.frequency_change_hz, bar.from, bar.to
+        )
+    };
+    head + &aligned("parameter\tgrowth, 1/s\tfrequency, Hz\tfrom\tto", own.bars.iter().map(row))
 }

@@ -10,6 +10,8 @@ mod certificate;
 pub mod comparison_plot;
 pub mod data;
 pub mod drawing;
+pub mod explore_page;
+mod explore_plots;
 pub mod findings;
 mod frame;
 pub mod model_section;

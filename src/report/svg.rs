@@ -180,6 +180,21 @@ impl Panel {
     /// Draws grid, numbers and names of the axes; without a name of x no numbers along it.
     pub fn draw(&self, sheet: &mut Sheet, x_name: Option<&str>, y_name: &str) {
         let [left, top, width, height] = self.area;
+        self.draw_x(sheet, x_name);
+        let grid = format!(r#"class="grid" stroke="{GRID}""#);
+        let ticks = self.y.ticks((height / 36.0).max(3.0));
+        for &tick in &ticks {
+            let [_, y] = self.at(self.x.from, tick);
+            sheet.line([left, y], [left + width, y], &grid);
+            sheet.text([left - 8.0, y + 4.5], Anchor::End, &self.y.label(tick, &ticks), "");
+        }
+        sheet.line([left, top], [left, top + height], &format!(r#"class="axis" stroke="{INK}""#));
+        sheet.upward([left - 50.0, top + 0.5 * height], y_name);
+    }
+
+    /// Draws what belongs to the abscissa alone.
+    pub fn draw_x(&self, sheet: &mut Sheet, x_name: Option<&str>) {
+        let [left, top, width, height] = self.area;
         let (bottom, right) = (top + height, left + width);
         let grid = format!(r#"class="grid" stroke="{GRID}""#);
         let ticks = self.x.ticks((width / 75.0).max(2.0));
@@ -190,19 +205,10 @@ impl Panel {
                 sheet.text([x, bottom + 18.0], Anchor::Middle, &self.x.label(tick, &ticks), "");
             }
         }
-        let ticks = self.y.ticks((height / 36.0).max(3.0));
-        for &tick in &ticks {
-            let [_, y] = self.at(self.x.from, tick);
-            sheet.line([left, y], [right, y], &grid);
-            sheet.text([left - 8.0, y + 4.5], Anchor::End, &self.y.label(tick, &ticks), "");
-        }
-        let axis = format!(r#"class="axis" stroke="{INK}""#);
-        sheet.line([left, bottom], [right, bottom], &axis);
-        sheet.line([left, top], [left, bottom], &axis);
+        sheet.line([left, bottom], [right, bottom], &format!(r#"class="axis" stroke="{INK}""#));
         if let Some(name) = x_name {
             sheet.text([left + 0.5 * width, bottom + 38.0], Anchor::Middle, name, "");
         }
-        sheet.upward([left - 50.0, top + 0.5 * height], y_name);
     }
 }
 

@@ -3,6 +3,7 @@
 //! alone.
 
 mod certificate;
+mod exploration;
 mod external;
 pub mod file;
 mod free_modes;
@@ -15,6 +16,7 @@ mod verdict;
 mod wear;
 
 pub use certificate::{Certificate, CertifiedMode};
+pub use exploration::Exploration;
 pub use external::{ExternalMode, ExternalResults, ExternalValue};
 pub use free_modes::{FreeMode, FreeModes, MeasuredComparison};
 pub use samples::spread;

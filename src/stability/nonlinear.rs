@@ -146,10 +146,10 @@ impl At<'_> {
     /// The same of `P_t'(lambda)`.
     fn slopes(&self, lambda: Complex64) -> Vec<Complex64> {
         let Projection { problem, matrices } = self.projection;
-        let n_viscoelastic = problem.viscoelastic.stiffnesses.len();
-        let constant = std::iter::repeat_n(Complex64::ZERO, matrices.len() - n_viscoelastic - 2);
-        let viscoelastic = problem.viscoelastic.slopes(lambda).map(|slope| self.t * slope);
-        [2.0 * lambda, Complex64::ONE].into_iter().chain(constant).chain(viscoelastic).collect()
+        let mut all = problem.slopes(lambda);
+        let first = matrices.len() - problem.viscoelastic.stiffnesses.len();
+        all[first..].iter_mut().for_each(|slope| *slope *= self.t);
+        all
     }
 
     /// The zero of Rayleigh's functional of a pair's vector next to its eigenvalue; the pair where Newton's method

@@ -68,6 +68,13 @@ impl<'a> QuadraticProblem<'a> {
         terms.chain(self.viscoelastic.coefficients(lambda)).collect()
     }
 
+    /// What each of them is multiplied by in `P'(lambda)`.
+    pub fn slopes(&self, lambda: Complex64) -> Vec<Complex64> {
+        let constant = [Complex64::ZERO, Complex64::ZERO].into_iter().take(1 + usize::from(self.matrices.g.is_some()));
+        let quadratic = [2.0 * lambda, Complex64::ONE].into_iter().chain(constant);
+        quadratic.chain(self.viscoelastic.slopes(lambda)).collect()
+    }
+
     /// The communicator.
     pub fn comm(&self) -> &'a Comm {
         self.matrices.k.comm()

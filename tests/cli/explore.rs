@@ -106,7 +106,10 @@ fn every_point_is_what_stability_finds_on_the_model_file_with_its_numbers() {
 fn the_worst_point_is_a_model_file() {
     let place = place_with(STUDY);
     let out = done(place.run(&EXPLORE)).out;
-    assert_eq!(place.list("run"), [".squeal", "modes.csv", "points.csv", "summary.json", "summary.txt", "worst.toml"]);
+    assert_eq!(
+        place.list("run"),
+        [".squeal", "gradients.csv", "modes.csv", "points.csv", "summary.json", "summary.txt", "worst.toml"]
+    );
     let points = table(&place, "run/points.csv");
     let growth = |row: &BTreeMap<String, String>| number(row, "growth_rate_per_s");
     let worst = points[1..].iter().max_by(|a, b| growth(a).total_cmp(&growth(b))).unwrap();
@@ -120,6 +123,56 @@ fn the_worst_point_is_a_model_file() {
     assert_eq!(json["worst_point"]["point"].to_string(), worst["point"]);
     assert_eq!((&json["n_points"], &json["unstable"]["n_points"]), (&6.into(), &6.into()));
     assert_eq!(json["parameters"][2]["nominal"], 7100.0);
+}
+
+/// Derivatives by left vectors and differences of eigenvalues over the same distance, which have an error of second
+/// order: in friction, loads, a modulus, a density and the contact stiffness, with prestress.
+#[test]
+fn derivatives_are_differences_of_the_whole_computation() {
+    let steps = [("mu", 0.3, 0.5), ("load", 0.8, 1.2), ("young", 100e9, 120e9), ("density", 7000.0, 7200.0)];
+    let steps = steps.into_iter().chain([("contact", 1.9e13, 2.1e13)]);
+    let steps: Vec<(&str, f64, f64)> = steps.collect();
+    let keys = ["friction", "load.*.force", "material.iron.young", "material.iron.density", "contact.*.law.cubic.1"];
+    let nominal = [0.4, 1.0, 110e9, 7100.0, 2e13];
+    // A hundredth of the range between the quantiles.
+    let step = |(_, from, to): &(&str, f64, f64)| 0.009 * (to - from);
+    let names: Vec<&str> = steps.iter().map(|own| own.0).collect();
+    let mut list = names.join(",") + "\n";
+    for (i, sign) in (0..nominal.len()).flat_map(|i| [(i, -1.0), (i, 1.0)]) {
+        let value = |j: usize| nominal[j] + if i == j { sign * step(&steps[i]) } else { 0.0 };
+        list += &((0..nominal.len()).map(|j| format!("{:e}", value(j))).collect::<Vec<_>>().join(",") + "\n");
+    }
+    let mut study =
+        "model = \"brake.toml\"\nband = [0, 60000]\n[design]\nkind = \"list\"\nfile = \"points.csv\"\n".to_owned();
+    for ((name, from, to), key) in steps.iter().zip(keys) {
+        let factor = if *name == "load" { "factor = true\n" } else { "" };
+        study += &format!("[parameter.{name}]\nkey = \"{key}\"\n{factor}uniform = [{from:e}, {to:e}]\n");
+    }
+    let curved = |text: String| {
+        swap(&text, "{ linear = 2e13 }", "{ cubic = [2e13, 1e24] }") + "[part.pad.rayleigh]\nalpha = 5\nbeta = 1e-7\n"
+    };
+    let place = Place::with_blocks(curved, &PadOnDisc::default());
+    place.write("explore.toml", study);
+    place.write("points.csv", list);
+    done(place.run(&EXPLORE));
+    let (modes, gradients) = (table(&place, "run/modes.csv"), table(&place, "run/gradients.csv"));
+    let of = |point: usize, nominal_mode: &str| {
+        let own =
+            |row: &&BTreeMap<String, String>| row["point"] == point.to_string() && row["nominal_mode"] == nominal_mode;
+        lambda(modes.iter().find(own).unwrap())
+    };
+    assert!(gradients.len() >= 5 * 5, "{}", gradients.len());
+    for row in &gradients {
+        let i = names.iter().position(|name| *name == row["parameter"]).unwrap();
+        let [below, above] = [2 * i + 1, 2 * i + 2].map(|point| of(point, &row["nominal_mode"]));
+        let expected = (above - below) / (2.0 * step(&steps[i]));
+        let slope = [number(row, "growth_rate_slope"), std::f64::consts::TAU * number(row, "frequency_slope")];
+        let found = Complex64::new(slope[0], slope[1]);
+        assert!((found - expected).norm() < 3e-5 * expected.norm(), "{row:?}: {expected}");
+        let growth = (found.re - expected.re).abs();
+        assert!(growth < 1e-3 * expected.re.abs() + 1e-7 * expected.norm(), "{row:?}: {expected}");
+        assert_eq!(row["difference"], "central");
+    }
 }
 
 /// Friction 3 is above what the model file may have.
@@ -152,7 +205,7 @@ fn n_done(place: &Place) -> usize {
 fn a_study_that_is_killed_ends_with_the_same_files() {
     let place = place_with(STUDY);
     done(place.run(&EXPLORE));
-    let files = ["points.csv", "modes.csv", "summary.json", "worst.toml"];
+    let files = ["points.csv", "modes.csv", "gradients.csv", "summary.json", "worst.toml"];
     let expected = files.map(|file| place.read(&format!("run/{file}")));
     std::fs::remove_dir_all(place.path("run")).unwrap();
     for n in [2, 4] {

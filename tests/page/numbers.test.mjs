@@ -6,9 +6,10 @@ import { test } from "node:test";
 import vm from "node:vm";
 
 vm.runInThisContext(readFileSync(new URL("../../src/report/assets/numbers.js", import.meta.url), "utf8"));
-const { unpacked, fixed, signed, percent, viridis, parsedFilter, blend, corner, fillTriangle } = vm.runInThisContext(
-  "({ unpacked, fixed, signed, percent, viridis, parsedFilter, blend, corner, fillTriangle })",
-);
+const { unpacked, fixed, signed, percent, viridis, parsedFilter, blend, corner, fillTriangle, roundNumbers, zeroLines } =
+  vm.runInThisContext(
+    "({ unpacked, fixed, signed, percent, viridis, parsedFilter, blend, corner, fillTriangle, roundNumbers, zeroLines })",
+  );
 
 test("packed numbers are little-endian", () => {
   const packed = Buffer.from([1, 0, 0, 1, 255, 255]).toString("base64");
@@ -54,4 +55,26 @@ test("a triangle is filled inside, by its corners' values", () => {
   assert.deepEqual([smooth[0], smooth[2], smooth[5]], [0.5, 2.5, 0.5]);
   assert.ok(Number.isNaN(smooth[24]) && Number.isNaN(smooth[4]));
   assert.deepEqual([fill(corner)[0], fill(corner)[3]], [0, 4]);
+});
+
+test("numbers on an axis are round and differ", () => {
+  const texts = (from, to) => roundNumbers(from, to, 5).map((tick) => tick.text);
+  assert.deepEqual(texts(0.05, 0.8), ["0.2", "0.4", "0.6", "0.8"]);
+  assert.deepEqual(texts(-12, 34), ["\u221210", "0", "10", "20", "30"]);
+  assert.deepEqual(texts(1.9e13, 2.1e13), ["19000000000000", "19500000000000", "20000000000000", "20500000000000", "21000000000000"]);
+});
+
+test("zero lines lie between values of other signs and leave holes out", () => {
+  const grid = [
+    [0, 1],
+    [0, 2, 4],
+  ];
+  assert.deepEqual(zeroLines(grid, [-1, -1, -1, 3, 3, 3]).flat(), [
+    [0.25, 0],
+    [0.25, 2],
+    [0.25, 2],
+    [0.25, 4],
+  ]);
+  assert.equal(zeroLines(grid, [-1, -1, null, 3, 3, 3]).length, 1);
+  assert.equal(zeroLines(grid, [1, 1, 1, 3, 3, 3]).length, 0);
 });

@@ -6,6 +6,7 @@
 //!   point-000003.bin      a finished point
 //!   state-000003.RANK.h5  its displacements, from which points nearby start
 //!   nominal.RANK.h5       vectors of the nominal modes
+//!   gradients.bin         their derivatives by the parameters
 //! ```
 //!
 //! Numbers are kept bit by bit, so that a study that was interrupted ends with the same files.
@@ -17,7 +18,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::unfinished::Unfinished;
-use crate::explore::PointResult;
+use crate::explore::{Gradient, PointResult};
 use crate::hdf::{self, Format, array, list, values};
 use crate::native::{Block, Comm};
 use crate::output::files::write_whole;
@@ -41,6 +42,8 @@ pub struct Points {
     place: Option<PathBuf>,
     /// The finished points, the nominal one first.
     pub done: Vec<PointResult>,
+    /// Derivatives of the nominal modes by each parameter; none where they are not asked for.
+    pub gradients: Vec<Gradient>,
     /// This rank's displacements of points, by their numbers.
     states: BTreeMap<usize, Vec<f64>>,
 }
@@ -57,7 +60,8 @@ impl Points {
         identity: &[(&str, String)],
         force: bool,
     ) -> Result<Points> {
-        let mut points = Points { comm: comm.clone(), place: None, done: Vec::new(), states: BTreeMap::new() };
+        let (done, gradients, states) = (Vec::new(), Vec::new(), BTreeMap::new());
+        let mut points = Points { comm: comm.clone(), place: None, done, gradients, states };
         let Some(target) = target else { return Ok(points) };
         let place = folder::unfinished(target)?.join(RESUME);
         let study = Unfinished { target, identity, name: point_name, unit: "points" };
@@ -72,6 +76,8 @@ impl Points {
             }
             points.done.push(kept.point);
         }
+        let path = place.join(GRADIENTS);
+        points.gradients = comm.agree(if n > 0 && path.exists() { read_binary(&path) } else { Ok(Vec::new()) })?;
         points.place = Some(place);
         Ok(points)
     }
@@ -79,6 +85,7 @@ impl Points {
     /// Gives all ranks the points of the first one, where each rank has whole displacements. Collective.
     pub fn share(&mut self, world: &Comm) {
         self.done = world.broadcast_value(0, std::mem::take(&mut self.done));
+        self.gradients = world.broadcast_value(0, std::mem::take(&mut self.gradients));
         self.states = world.broadcast_value(0, std::mem::take(&mut self.states));
     }
 
@@ -93,15 +100,30 @@ impl Points {
                 let path = place.join(own_name("state", number, &self.comm));
                 self.comm.agree(hdf::create_passing(&path, &FORMAT, |file| list(file, "u", state)))?;
             }
-            let path = place.join(point_name(number));
             let kept = KeptPoint { has_state: state.is_some(), point: point.clone() };
-            let bytes = postcard::to_stdvec(&kept).map_err(Error::library("postcard"))?;
-            let write = || write_whole(&path, |out| out.write_all(&bytes));
-            self.comm.agree(if self.comm.is_root() { write() } else { Ok(()) })?;
+            self.keep_binary(&place.join(point_name(number)), &kept)?;
         }
         self.done.push(point);
         self.states.extend(state.map(|state| (number, state)));
         Ok(())
+    }
+
+    /// Keeps the derivatives, before the nominal point is committed. Collective.
+    ///
+    /// # Errors
+    /// The system's, with the path.
+    pub fn keep_gradients(&mut self, gradients: Vec<Gradient>) -> Result<()> {
+        self.gradients = gradients;
+        self.place.as_ref().map_or(Ok(()), |place| self.keep_binary(&place.join(GRADIENTS), &self.gradients))
+    }
+
+    /// The first rank writes it.
+    fn keep_binary<T: Serialize>(&self, path: &Path, what: &T) -> Result<()> {
+        let write = || {
+            let bytes = postcard::to_stdvec(what).map_err(Error::library("postcard"))?;
+            write_whole(path, |out| out.write_all(&bytes))
+        };
+        self.comm.agree(if self.comm.is_root() { write() } else { Ok(()) })
     }
 
     /// Number of points of which there are displacements.
@@ -152,6 +174,9 @@ impl Points {
     }
 }
 
+/// File of the derivatives.
+const GRADIENTS: &str = "gradients.bin";
+
 fn point_name(number: usize) -> String {
     format!("point-{number:06}.bin")
 }
@@ -165,6 +190,10 @@ fn nominal_name(comm: &Comm) -> String {
 }
 
 fn read_point(path: &Path) -> Result<KeptPoint> {
+    read_binary(path)
+}
+
+fn read_binary<T: for<'d> Deserialize<'d>>(path: &Path) -> Result<T> {
     let bytes = std::fs::read(path).map_err(Error::io(path))?;
     postcard::from_bytes(&bytes).map_err(|reason| hdf::damaged(path, &FORMAT, reason))
 }
@@ -192,7 +221,7 @@ fn read_nominal(comm: &Comm, path: &Path) -> Result<NominalModes> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::explore::{Link, Outcome, PointMode};
+    use crate::explore::{Difference, Link, Outcome, PointMode};
     use crate::native::Session;
 
     fn point(values: &[f64]) -> PointResult {
@@ -218,10 +247,13 @@ mod tests {
             own: vec![Complex64::new(0.1, 0.2)],
         };
         points.keep_nominal(&nominal).unwrap();
+        let slopes = vec![Complex64::new(1.0 / 3.0, -7.0)];
+        points.keep_gradients(vec![Gradient { slopes, difference: Difference::Forward }]).unwrap();
         points.commit(point(&[0.1, 5.0]), Some(vec![1.0 / 7.0])).unwrap();
         points.commit(point(&[0.3, 5.0]), None).unwrap();
         let again = open("1", false).unwrap();
         assert_eq!((&again.done, &again.states), (&points.done, &points.states));
+        assert!(again.gradients == points.gradients && again.gradients.len() == 1);
         let kept = again.nominal().unwrap().unwrap();
         assert!(kept.left.values() == nominal.left.values() && kept.own == nominal.own);
         let state = folder.draft().join(".resume/state-000000.0.h5");

@@ -5,6 +5,7 @@
 //! study that was interrupted ends with the same numbers.
 
 mod checkpoint;
+mod gradients;
 mod point;
 mod subject;
 
@@ -17,7 +18,7 @@ use crate::hdf::is_hdf5;
 use crate::native::Comm;
 use crate::output::explore::{Document, WORST, write};
 use crate::output::folder::Folder;
-use crate::results::About;
+use crate::results::{About, Exploration};
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer, stop_signal};
@@ -26,19 +27,6 @@ use super::start::{Output, about, announce, identity};
 use checkpoint::Points;
 use point::{NominalModes, Request, is_of_point, solve};
 use subject::Subject;
-
-/// What a study of many parameters has found.
-#[derive(Debug, Clone)]
-pub struct Exploration {
-    /// What was analysed.
-    pub about: About,
-    /// The nominal point, then those of the design.
-    pub points: Vec<PointResult>,
-    /// Probabilities and indices over all points.
-    pub answers: Answers,
-    /// The model file of the point with the largest growth rate; none of a super-element.
-    pub worst: Option<String>,
-}
 
 /// Finds the modes at the points of a study, follows them to the nominal point, and computes the probability of squeal
 /// and the influence of each parameter. A point that fails is recorded with its reason. With `output` the study is
@@ -110,7 +98,7 @@ impl<'s> Run<'s> {
         let design = study.design.points(&distributions, &nominal)?;
         let about = About { n_ranks: world.size(), band, criterion, ..about(&comm, &structure, output)? };
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
-        let request = Request { band, criterion, follow: study.follow };
+        let request = Request { band, criterion, follow: study.follow, gradients: study.gradients };
         let scales = scales(&values);
         Ok(Run { world: world.clone(), comm, study, subject, about, request, values, scales, folder })
     }
@@ -121,7 +109,7 @@ impl<'s> Run<'s> {
         let (mut points, mut nominal) = self.open(output)?;
         self.announce(&points, place, observer);
         while points.done.len() < self.values.len() {
-            for (point, state) in self.next(&points, &mut nominal, observer)? {
+            for (point, state) in self.next(&mut points, &mut nominal, observer)? {
                 let n_dofs = self.comm.sum(state.as_ref().map_or(0, Vec::len));
                 let room = (STATES_BYTES / 8 / n_dofs.max(1)).clamp(1, MAX_STATES);
                 let number = points.done.len();
@@ -132,9 +120,10 @@ impl<'s> Run<'s> {
             self.stop_if_asked(points.done.len() - 1, place, observer)?;
         }
         self.about.n_dofs = self.comm.sum(points.n_own_dofs());
-        let answers = Answers::new(self.study, &points.done, self.request.band);
+        let answers = Answers::new(self.study, &points.done, &points.gradients, self.request.band);
         let worst = answers.worst.map_or(Ok(None), |number| self.subject.text(&points.done[number].values))?;
-        let found = Exploration { about: self.about, points: points.done, answers, worst };
+        let Points { done, gradients, .. } = points;
+        let found = Exploration { about: self.about, points: done, gradients, answers, worst };
         self.world.agree(match (self.folder.take(), output) {
             (Some(folder), Some(output)) => finish(folder, self.study, &found, &output.folder),
             _ => Ok(()),
@@ -166,7 +155,7 @@ impl<'s> Run<'s> {
     /// nominal point, and each solves it. Collective.
     fn next(
         &self,
-        points: &Points,
+        points: &mut Points,
         nominal: &mut Option<NominalModes>,
         observer: &mut dyn Observer,
     ) -> Result<Vec<Solved>> {
@@ -185,7 +174,7 @@ impl<'s> Run<'s> {
     fn point(
         &self,
         number: usize,
-        points: &Points,
+        points: &mut Points,
         nominal: &mut Option<NominalModes>,
         observer: &mut dyn Observer,
     ) -> Result<Solved> {
@@ -198,6 +187,10 @@ impl<'s> Run<'s> {
         match found {
             Ok(found) => {
                 if number == 0 {
+                    let vectors = found.vectors.as_ref();
+                    let gradients =
+                        vectors.map(|own| self.gradients(own, &found.displacements, observer)).transpose()?;
+                    gradients.map_or(Ok(()), |gradients| points.keep_gradients(gradients))?;
                     found.nominal.iter().try_for_each(|modes| points.keep_nominal(modes))?;
                     *nominal = found.nominal;
                 }
@@ -215,8 +208,7 @@ impl<'s> Run<'s> {
 
     /// All that the numbers depend on, by name.
     fn identity(&self, output: Option<&Output>) -> Vec<(&'static str, String)> {
-        let study =
-            format!("{:?}", (&self.study.parameters, &self.study.design, self.study.follow, self.study.contacts));
+        let study = format!("{:?}", (&self.study.parameters, &self.study.design, self.request, self.study.contacts));
         let digest: String = Sha256::digest(study).iter().map(|byte| format!("{byte:02x}")).collect();
         let own = [
             ("SHA-256 of parameters and design", digest),
@@ -247,8 +239,8 @@ impl<'s> Run<'s> {
 
 /// Writes the files of the folder, and gives it its name. Not collective.
 fn finish(folder: Folder, study: &Study, found: &Exploration, place: &Path) -> Result<()> {
-    let document = Document::new(study, &found.about, &found.points, &found.answers, place);
-    write(&folder, &document, &found.points)?;
+    let document = Document::new(study, found, place);
+    write(&folder, study, &document, found)?;
     if let Some(worst) = &found.worst {
         let text = document.worst_head()
             + &standing_alone(worst, &study.model, &mesh_from(place, &found.about.mesh), found.about.band)?;

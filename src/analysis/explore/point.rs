@@ -9,9 +9,11 @@ use crate::equilibrium::Equilibrium;
 use crate::explore::{Link, ModeProducts, PointMode, link};
 use crate::model::InstabilityCriterion;
 use crate::native::{Block, Comm, Vector};
-use crate::stability::complex_product;
+use crate::stability::{Mode, QuadraticProblem, complex_product};
 use crate::structure::Structure;
 use crate::{Error, ErrorKind, Result};
+
+use super::gradients::NominalVectors;
 
 /// What is computed at every point.
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +24,8 @@ pub struct Request {
     pub criterion: InstabilityCriterion,
     /// Whether modes are followed to the nominal point.
     pub follow: bool,
+    /// Whether the vectors of the nominal modes serve derivatives.
+    pub gradients: bool,
 }
 
 /// The modes of the nominal point with M, so that those of other points are recognised.
@@ -52,6 +56,8 @@ pub struct PointSolution {
     pub displacements: Vec<f64>,
     /// For the points that follow, where modes are followed and this is the nominal one.
     pub nominal: Option<NominalModes>,
+    /// For the derivatives, where this is the nominal point and they are asked for.
+    pub vectors: Option<NominalVectors>,
 }
 
 /// The modes of a structure about its equilibrium at a friction coefficient, which is sought from the displacements
@@ -69,43 +75,78 @@ pub fn solve(
     observer: &mut dyn Observer,
 ) -> Result<PointSolution> {
     structure.require_mass()?;
-    let (system, prestress) = (structure.assemble(comm)?, structure.prestress()?);
-    let mut sweep = Sweep::of(structure, &system, prestress.as_ref())?;
-    let start = start.filter(|start| comm.min(usize::from(start.len() == system.load.n_local())) == 1);
-    let equilibrium = equilibrium_from(&mut sweep, friction, start, &system.load, observer)?;
-    let found = sweep.modes(&equilibrium, request.band, observer)?;
-    let mut modes: Vec<PointMode> = found
-        .modes
-        .iter()
-        .map(|mode| PointMode {
+    at_equilibrium(comm, (structure, friction), start, observer, |sweep, equilibrium, observer| {
+        let found = sweep.modes(equilibrium, request.band, observer)?.modes;
+        let mode = |mode: &Mode| PointMode {
             lambda: mode.lambda,
             unstable: mode.is_unstable(request.criterion),
             backward_error: mode.backward_error,
             link: None,
-        })
-        .collect();
-    let mut own = None;
-    if request.follow && !modes.is_empty() {
-        let vectors = Vectors {
-            left: sweep.left_vectors(&found.modes, |_| ACCURACY)?,
-            right: sweep.right_vectors(&found.modes)?,
         };
-        let weighted = vectors.weighted(&system.m)?;
-        match nominal {
-            Some(nominal) => vectors.follow(nominal, &weighted, &mut modes),
-            None => {
-                for (nominal, mode) in (1..).zip(&mut modes) {
-                    mode.link = Some(Link { nominal, share: 1.0, doubtful: false });
-                }
-                own = Some(weighted);
-            }
+        let modes = found.iter().map(mode).collect();
+        let displacements = equilibrium.u.to_vec()?;
+        let mut solution = PointSolution { modes, displacements, nominal: None, vectors: None };
+        if request.follow && !found.is_empty() {
+            solution.follow(sweep, equilibrium, &found, request, nominal)?;
         }
-    }
-    Ok(PointSolution { modes, displacements: equilibrium.u.to_vec()?, nominal: own })
+        Ok(solution)
+    })
+}
+
+/// Lends the sweep of a structure to `look`, with the equilibrium at a friction coefficient, which is sought as
+/// [`solve`] does. Collective.
+///
+/// # Errors
+/// Those of the equilibrium, and of `look`.
+pub fn at_equilibrium<T>(
+    comm: &Comm,
+    (structure, friction): (&Structure, f64),
+    start: Option<&[f64]>,
+    observer: &mut dyn Observer,
+    look: impl FnOnce(&mut Sweep, &Equilibrium, &mut dyn Observer) -> Result<T>,
+) -> Result<T> {
+    let (system, prestress) = (structure.assemble(comm)?, structure.prestress()?);
+    let mut sweep = Sweep::of(structure, &system, prestress.as_ref())?;
+    let start = start.filter(|start| comm.min(usize::from(start.len() == system.load.n_local())) == 1);
+    let equilibrium = equilibrium_from(&mut sweep, friction, start, &system.load, observer)?;
+    look(&mut sweep, &equilibrium, observer)
 }
 
 /// Accuracy of the left vectors that recognise modes.
-const ACCURACY: f64 = 1e-4;
+const RECOGNISES: f64 = 1e-4;
+/// The same of those that make derivatives: a growth rate changes by a thousandth of what the frequency does.
+const DIFFERENTIATES: f64 = 1e-7;
+
+impl PointSolution {
+    /// Recognises the modes, or keeps what recognises those of other points where this is the nominal one. Collective.
+    fn follow(
+        &mut self,
+        sweep: &mut Sweep,
+        equilibrium: &Equilibrium,
+        found: &[Mode],
+        request: &Request,
+        nominal: Option<&NominalModes>,
+    ) -> Result<()> {
+        let differentiates = request.gradients && nominal.is_none();
+        let accuracy = if differentiates { DIFFERENTIATES } else { RECOGNISES };
+        let vectors = Vectors { left: sweep.left_vectors(found, |_| accuracy)?, right: sweep.right_vectors(found)? };
+        let weighted = vectors.weighted(&sweep.system.m)?;
+        if let Some(nominal) = nominal {
+            vectors.follow(nominal, &weighted, &mut self.modes);
+            return Ok(());
+        }
+        for (nominal, mode) in (1..).zip(&mut self.modes) {
+            mode.link = Some(Link { nominal, share: 1.0, doubtful: false });
+        }
+        self.nominal = Some(weighted);
+        if differentiates {
+            let lambdas = found.iter().map(|mode| mode.lambda).collect();
+            let own = |problem: &QuadraticProblem| NominalVectors::new(problem, lambdas, [vectors.left, vectors.right]);
+            self.vectors = Some(sweep.linearise(equilibrium, own)?);
+        }
+        Ok(())
+    }
+}
 
 /// The equilibrium from a state nearby, else from rest.
 fn equilibrium_from(

@@ -74,3 +74,40 @@ function fillTriangle(field, width, nodes, places, values, draw) {
     }
   }
 }
+
+/** About n round numbers between two, with their texts. */
+function roundNumbers(from, to, n) {
+  const rough = (to - from) / n;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((s) => s * power).find((s) => s >= 0.999 * rough);
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const isLarge = Math.max(Math.abs(from), Math.abs(to)) >= 1e5 || decimals > 5;
+  const text = (value) => (isLarge ? String(Number(value.toPrecision(6))).replace("-", "\u2212") : fixed(value, decimals));
+  const all = [];
+  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k++) all.push({ value: k * step, text: text(k * step) });
+  return all;
+}
+
+/**
+ * Where the values on a grid of two parameters are zero: pairs of ends, by linear interpolation along the sides of its
+ * cells. The second parameter varies first; null is no value.
+ */
+function zeroLines([first, second], values) {
+  const lines = [];
+  const at = (i, j) => values[i * second.length + j];
+  const crossing = ([i, j], [k, l]) => {
+    const [a, b] = [at(i, j), at(k, l)];
+    if (a > 0 === b > 0) return null;
+    const t = a / (a - b);
+    return [first[i] + t * (first[k] - first[i]), second[j] + t * (second[l] - second[j])];
+  };
+  for (let i = 0; i + 1 < first.length; i++) {
+    for (let j = 0; j + 1 < second.length; j++) {
+      const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
+      if (corners.some(([k, l]) => at(k, l) === null)) continue;
+      const ends = corners.map((corner, k) => crossing(corner, corners[(k + 1) % 4])).filter(Boolean);
+      for (let k = 0; k + 1 < ends.length; k += 2) lines.push([ends[k], ends[k + 1]]);
+    }
+  }
+  return lines;
+}

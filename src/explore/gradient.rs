@@ -1,0 +1,257 @@
+//! First-order derivatives of the nominal modes by the parameters, and the tornado that they make.
+
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+use super::result::{PointMode, PointResult};
+use super::study::Parameter;
+use crate::model::InstabilityCriterion;
+
+/// Derivatives of the nominal modes by one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Gradient {
+    /// `d lambda / dp` of each nominal mode, 1/s per unit of the parameter; empty where there is none.
+    pub slopes: Vec<Complex64>,
+    /// Where the matrices are known, or why they are not.
+    pub difference: Difference,
+}
+
+/// Where the matrices are evaluated, whose difference left and right vectors turn into derivatives.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Difference {
+    /// Below and above the nominal value.
+    Central,
+    /// At the nominal value and above: below there is no equilibrium, or no model.
+    Forward,
+    /// At the nominal value and below.
+    Backward,
+    /// On neither side, for this reason.
+    None(String),
+}
+
+impl Difference {
+    /// For tables.
+    pub fn text(&self) -> &str {
+        match self {
+            Difference::Central => "central",
+            Difference::Forward => "forward",
+            Difference::Backward => "backward",
+            Difference::None(reason) => reason,
+        }
+    }
+}
+
+/// What each parameter changes in a nominal mode over its range, to first order.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tornado {
+    /// Number of the nominal mode, from 1.
+    pub nominal: usize,
+    /// Its frequency, Hz.
+    pub frequency_hz: f64,
+    /// Its growth rate, 1/s.
+    pub growth_rate_per_s: f64,
+    /// Share of the variance of its growth rate over the points that the derivatives explain, at most 1; none with
+    /// fewer than three points.
+    pub linear_share: Option<f64>,
+    /// The parameters, that with the largest change of growth first.
+    pub bars: Vec<Influence>,
+}
+
+/// What one parameter changes in a mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Influence {
+    /// The parameter.
+    pub parameter: String,
+    /// Its quantile 5 %.
+    pub from: f64,
+    /// Its quantile 95 %.
+    pub to: f64,
+    /// Derivative of the growth rate, 1/s per unit of the parameter.
+    pub growth_rate_slope: f64,
+    /// Derivative of the frequency, Hz per unit of the parameter.
+    pub frequency_slope: f64,
+    /// What the growth rate changes from the one to the other quantile, 1/s.
+    pub growth_rate_change_per_s: f64,
+    /// The same of the frequency, Hz.
+    pub frequency_change_hz: f64,
+}
+
+/// Distance of the evaluated points from the nominal one, relative to the range of a parameter.
+const STEP: f64 = 0.01;
+/// The same relative to the nominal value, of a parameter that has one value only.
+const STEP_OF_CONSTANT: f64 = 1e-3;
+
+impl Parameter {
+    /// The quantiles 5 % and 95 %.
+    pub fn range(&self) -> [f64; 2] {
+        [0.05, 0.95].map(|u| self.distribution.quantile(u))
+    }
+
+    /// How far from its nominal value the matrices are evaluated: far enough that some contact points change their
+    /// status, as they do over the range.
+    pub fn step(&self, nominal: f64) -> f64 {
+        let [from, to] = self.range();
+        if to > from { STEP * (to - from) } else { STEP_OF_CONSTANT * nominal.abs().max(f64::MIN_POSITIVE) }
+    }
+}
+
+impl Influence {
+    /// Of a parameter on the mode with the number `mode`, from 0.
+    fn new(parameter: &Parameter, gradient: &Gradient, mode: usize) -> Option<Influence> {
+        let [from, to] = parameter.range();
+        let slope = gradient.slopes.get(mode)?;
+        let (growth_rate_slope, frequency_slope) = (slope.re, slope.im / TAU);
+        Some(Influence {
+            parameter: parameter.name.clone(),
+            from,
+            to,
+            growth_rate_slope,
+            frequency_slope,
+            growth_rate_change_per_s: growth_rate_slope * (to - from),
+            frequency_change_hz: frequency_slope * (to - from),
+        })
+    }
+}
+
+/// The tornado of each nominal mode, `points[0]` being the nominal point.
+pub fn tornados(parameters: &[Parameter], gradients: &[Gradient], points: &[PointResult]) -> Vec<Tornado> {
+    let Some((nominal, own)) = points.split_first() else { return Vec::new() };
+    let tornado = |(i, mode): (usize, &PointMode)| {
+        let influence = |(parameter, gradient)| Influence::new(parameter, gradient, i);
+        let mut bars: Vec<Influence> = parameters.iter().zip(gradients).filter_map(influence).collect();
+        let size = |bar: &Influence| bar.growth_rate_change_per_s.abs();
+        bars.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        Tornado {
+            nominal: i + 1,
+            frequency_hz: mode.frequency(),
+            growth_rate_per_s: mode.growth_rate(),
+            linear_share: linear_share(i, mode, gradients, &nominal.values, own),
+            bars,
+        }
+    };
+    let all = nominal.modes().unwrap_or_default().iter().enumerate().map(tornado);
+    all.filter(|tornado| !tornado.bars.is_empty()).collect()
+}
+
+impl Tornado {
+    /// Whether the mode is unstable at a point, or one parameter alone makes it so to first order: its bar reaches
+    /// above a growth rate of 0, by more than rounding. `nominal` are the values of the parameters `names` at the nominal point.
+    pub fn may_squeal(&self, names: &[&str], nominal: &[f64], points: &[PointResult]) -> bool {
+        let is_own = |mode: &PointMode| mode.unstable && mode.link.is_some_and(|link| link.nominal == self.nominal);
+        let lambda = Complex64::new(0.0, TAU * self.frequency_hz);
+        let rounding = InstabilityCriterion::default().limit(lambda, 0.0);
+        let reaches = |bar: &Influence| {
+            let at = names.iter().position(|name| *name == bar.parameter).map_or(f64::NAN, |i| nominal[i]);
+            [bar.from, bar.to]
+                .into_iter()
+                .any(|end| self.growth_rate_per_s + bar.growth_rate_slope * (end - at) > rounding)
+        };
+        points.iter().flat_map(PointResult::modes).flatten().any(is_own) || self.bars.iter().any(reaches)
+    }
+}
+
+/// `1 - sum (a - a_1)^2 / sum (a - mean)^2` over the points at which a mode is recognised without doubt, with the growth
+/// rate `a_1 = a_0 + sum_i a'_i (p_i - p_i0)` of first order.
+fn linear_share(
+    i: usize,
+    mode: &PointMode,
+    gradients: &[Gradient],
+    nominal: &[f64],
+    points: &[PointResult],
+) -> Option<f64> {
+    let linear = |values: &[f64]| {
+        let terms = gradients.iter().zip(values.iter().zip(nominal));
+        let change = |(gradient, (p, p0)): (&Gradient, (&f64, &f64))| Some(gradient.slopes.get(i)?.re * (p - p0));
+        terms.map(change).sum::<Option<f64>>().map(|change| mode.growth_rate() + change)
+    };
+    let growth = |point: &PointResult| {
+        let is_own = |mode: &&PointMode| mode.link.is_some_and(|link| link.nominal == i + 1 && !link.doubtful);
+        Some([point.modes()?.iter().find(is_own)?.growth_rate(), linear(&point.values)?])
+    };
+    let pairs: Vec<[f64; 2]> = points.iter().filter_map(growth).collect();
+    let mean = pairs.iter().map(|pair| pair[0]).sum::<f64>() / pairs.len() as f64;
+    let sum = |of: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(|pair| of(pair).powi(2)).sum::<f64>();
+    let (off, all) = (sum(&|pair| pair[0] - pair[1]), sum(&|pair| pair[0] - mean));
+    (pairs.len() > 2 && all > 0.0).then(|| 1.0 - off / all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Distribution, KeyPath, Link, Outcome};
+    use super::*;
+
+    fn parameter(name: &str, from: f64, to: f64) -> Parameter {
+        let keys = vec![KeyPath::parse("friction").unwrap()];
+        Parameter { name: name.into(), keys, is_factor: false, distribution: Distribution::Uniform { from, to } }
+    }
+
+    fn gradient(slopes: &[[f64; 2]]) -> Gradient {
+        let slopes = slopes.iter().map(|&[growth, hertz]| Complex64::new(growth, TAU * hertz)).collect();
+        Gradient { slopes, difference: Difference::Central }
+    }
+
+    fn point(values: [f64; 2], growths: [f64; 2]) -> PointResult {
+        let mode = |(nominal, growth): (usize, f64)| PointMode {
+            lambda: Complex64::new(growth, TAU * 1000.0),
+            unstable: growth > 0.0,
+            backward_error: 0.0,
+            link: Some(Link { nominal, share: 1.0, doubtful: false }),
+        };
+        let modes = (1..).zip(growths).map(mode).collect();
+        PointResult { values: values.to_vec(), outcome: Outcome::Modes(modes) }
+    }
+
+    /// Growth rates `-3 + 10 (p - 1) - (q - 20)` and -100.
+    fn points() -> Vec<PointResult> {
+        let growth = |p: f64, q: f64| -3.0 + 10.0 * (p - 1.0) - (q - 20.0);
+        [[1.0, 20.0], [0.5, 18.0], [1.1, 25.0], [0.7, 30.0]].map(|[p, q]| point([p, q], [growth(p, q), -100.0])).into()
+    }
+
+    #[test]
+    fn bars_are_changes_over_the_range_and_the_longest_comes_first() {
+        let parameters = [parameter("p", 0.5, 1.5), parameter("q", 10.0, 30.0)];
+        let gradients = [gradient(&[[10.0, 2.0], [0.0, 0.0]]), gradient(&[[-1.0, 3.0], [0.1, 0.0]])];
+        let found = tornados(&parameters, &gradients, &points());
+        assert_eq!(found.len(), 2);
+        let bars = &found[0].bars;
+        assert_eq!((bars[0].parameter.as_str(), bars[1].parameter.as_str()), ("q", "p"));
+        assert!(
+            (bars[0].growth_rate_change_per_s + 18.0).abs() < 1e-12
+                && (bars[1].frequency_change_hz - 1.8).abs() < 1e-12
+        );
+        assert!((bars[0].from - 11.0).abs() < 1e-12 && (bars[0].to - 29.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_points_judge_the_derivatives() {
+        let parameters = [parameter("p", 0.5, 1.5), parameter("q", 10.0, 30.0)];
+        let share = |gradients: [Gradient; 2]| tornados(&parameters, &gradients, &points())[0].linear_share;
+        let exact = share([gradient(&[[10.0, 0.0]]), gradient(&[[-1.0, 0.0]])]).unwrap();
+        let wrong = share([gradient(&[[10.0, 0.0]]), gradient(&[[1.0, 0.0]])]).unwrap();
+        assert!((exact - 1.0).abs() < 1e-12 && wrong < 0.0, "{exact} {wrong}");
+        let few = tornados(&parameters, &[gradient(&[[1.0, 0.0]])], &points()[..3]);
+        assert_eq!(few[0].linear_share, None);
+    }
+
+    #[test]
+    fn a_mode_may_squeal_where_it_does_or_one_bar_reaches_there() {
+        let parameters = [parameter("p", 0.5, 1.5), parameter("q", 10.0, 30.0)];
+        let may = |slope: f64, points: &[PointResult]| {
+            let gradients = [gradient(&[[slope, 0.0]]), gradient(&[[0.0, 0.0]])];
+            tornados(&parameters, &gradients, points)[0].may_squeal(&["p", "q"], &[1.0, 20.0], points)
+        };
+        let quiet = &points()[..1];
+        // From 1 to the quantile 1.45: -3 + 0.45 slope.
+        assert!(!may(6.6, quiet) && may(6.7, quiet) && may(-6.7, quiet));
+        assert!(!may(3.003 / 0.45, quiet), "rounding");
+        assert!(may(0.0, &[points()[0].clone(), point([1.0, 20.0], [0.1, -1.0])]));
+    }
+
+    #[test]
+    fn a_step_is_a_part_of_the_range_and_none_is_zero() {
+        assert!((parameter("p", 0.0, 10.0).step(3.0) - 0.09).abs() < 1e-12);
+        let constant = Parameter { distribution: Distribution::Values(vec![4.0]), ..parameter("p", 0.0, 1.0) };
+        assert!((constant.step(4.0) - 0.004).abs() < 1e-12 && constant.step(0.0) > 0.0);
+    }
+}

@@ -1,0 +1,314 @@
+//! The page of a study of many parameters: probabilities, what they depend on, and all points.
+
+use maud::{Markup, PreEscaped, html};
+use serde::Serialize;
+
+use super::explore_plots as plots;
+use super::frame::frame;
+use crate::explore::{Instability, Outcome, PointMode, PointResult, Study};
+use crate::output::text::plural;
+use crate::results::Exploration;
+use crate::{Error, Result};
+
+/// Names are declared before they are used.
+const SCRIPT: [&str; 3] =
+    [include_str!("assets/numbers.js"), include_str!("assets/base.js"), include_str!("assets/explore.js")];
+
+/// Name of the page in the folder of a study.
+pub const NAME: &str = "explore.html";
+
+/// Modes of all points are on the page up to so many; else unstable ones alone.
+const MAX_MODES: usize = 100_000;
+/// Tornados on the page.
+const MAX_TORNADOS: usize = 8;
+
+/// What the scripts draw.
+#[derive(Serialize)]
+struct Data<'a> {
+    parameters: Vec<&'a str>,
+    points: Vec<PointData<'a>>,
+    /// Levels of each of two parameters, where the design is their grid.
+    grid: Option<[Vec<f64>; 2]>,
+}
+
+#[derive(Serialize)]
+struct PointData<'a> {
+    values: &'a [f64],
+    growth: Option<f64>,
+    frequency: Option<f64>,
+    unstable: bool,
+    failure: Option<&'a str>,
+    modes: Vec<ModeDatum>,
+}
+
+/// Frequency, growth rate, whether it is unstable, number of the nominal mode, whether that is doubtful.
+#[derive(Serialize)]
+struct ModeDatum(f64, f64, bool, Option<usize>, bool);
+
+impl<'a> Data<'a> {
+    fn new(study: &'a Study, found: &'a Exploration) -> Data<'a> {
+        let n_modes: usize = found.points.iter().filter_map(PointResult::modes).map(<[PointMode]>::len).sum();
+        let is_shown = |mode: &&PointMode| mode.unstable || n_modes <= MAX_MODES;
+        let datum = |mode: &PointMode| {
+            let link = mode.link;
+            let doubtful = link.is_some_and(|link| link.doubtful);
+            ModeDatum(mode.frequency(), mode.growth_rate(), mode.unstable, link.map(|link| link.nominal), doubtful)
+        };
+        let point = |point: &'a PointResult| PointData {
+            values: &point.values,
+            growth: point.critical().map(PointMode::growth_rate),
+            frequency: point.critical().map(PointMode::frequency),
+            unstable: point.is_unstable(),
+            failure: reason(point),
+            modes: point.modes().unwrap_or_default().iter().filter(is_shown).map(datum).collect(),
+        };
+        Data {
+            parameters: study.parameters.iter().map(|own| own.name.as_str()).collect(),
+            points: found.points.iter().map(point).collect(),
+            grid: study.plane(),
+        }
+    }
+}
+
+fn reason(point: &PointResult) -> Option<&str> {
+    match &point.outcome {
+        Outcome::Failed(reason) => Some(reason),
+        Outcome::Modes(_) => None,
+    }
+}
+
+/// The page; it is one file and loads nothing.
+///
+/// # Errors
+/// Where the data cannot be written as JSON.
+pub fn page(study: &Study, found: &Exploration) -> Result<String> {
+    let json = serde_json::to_string(&Data::new(study, found));
+    let json = json.map_err(Error::library("the data of the study cannot be written as JSON"))?;
+    let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPT.join("\n"));
+    let [from, to] = found.about.band;
+    let title = &found.about.title;
+    let n = study.parameters.len();
+    let body = html! {
+        header.top {
+            h1 { (title) }
+            p {
+                "Complex modes " (from) "\u{2013}" (to) " Hz at " (found.answers.n_points) " points of " (n) " parameter"
+                (plural(n)) ": " (study.design.name()) ". A mode is unstable with a " (found.about.criterion.to_string()) "."
+            }
+        }
+        main {
+            (answer(study, found))
+            (influences(study, found))
+            (points_section(study, found))
+            (failures(study, &found.points))
+        }
+        footer { p { "Written by " (found.about.program) ". This page is one file and needs no network." } }
+        div #tip role="tooltip" hidden {}
+        // Inside a script element a `<` could begin its end.
+        script #data type="application/json" { (PreEscaped(json.replace('<', "\\u003c"))) }
+        script { (PreEscaped(&script)) }
+    };
+    Ok(frame(&format!("{title}: squeal explore"), Some(&script), &body))
+}
+
+fn figure(svg: String) -> Markup {
+    html! { figure.card.plot { (PreEscaped(svg)) } }
+}
+
+fn answer(study: &Study, found: &Exploration) -> Markup {
+    let answers = &found.answers;
+    let style = if answers.unstable.n_true > 0 { "unstable" } else { "quiet" };
+    html! {
+        section aria-label="Answer" {
+            p.verdict.(style) { (headline(found)) }
+            (cautions(found))
+            div.charts {
+                (figure(plots::frequencies(&answers.bins, answers.is_sample)))
+                (figure(plots::distributions(study, found)))
+            }
+        }
+        section aria-label="Instabilities" {
+            h2 { "Instabilities" }
+            @if answers.instabilities.is_empty() { p { "None." } } @else { (instabilities(found)) }
+        }
+    }
+}
+
+fn headline(found: &Exploration) -> String {
+    let answers = &found.answers;
+    let p = answers.unstable;
+    if !answers.is_sample {
+        return format!("Unstable at {} of {} points", p.n_true, p.n_points);
+    }
+    let [value, low, high] = [p.value, p.low, p.high].map(|p| 100.0 * p);
+    format!("Squeals with a probability of {value:.1} % (95 % confidence: {low:.1} to {high:.1} %)")
+}
+
+fn cautions(found: &Exploration) -> Markup {
+    let answers = &found.answers;
+    let n_failed = answers.n_failed;
+    html! {
+        @if !answers.is_sample {
+            p.hint { "The points of this design represent no distribution: their fractions are no probabilities." }
+        }
+        @if n_failed + answers.n_doubtful > 0 {
+            ul.cautions {
+                @if n_failed > 0 { li { (n_failed) " point" (plural(n_failed)) " failed, see below." } }
+                @if answers.n_doubtful > 0 {
+                    li { (answers.n_doubtful) " links of modes to the nominal point are doubtful; a ? marks them." }
+                }
+            }
+        }
+    }
+}
+
+fn instabilities(found: &Exploration) -> Markup {
+    let what = if found.answers.is_sample { "probability, %" } else { "points, %" };
+    html! {
+        div.over {
+            table {
+                thead {
+                    tr {
+                        th { "mode" } th { "nominal, Hz" } th { "nominal growth, 1/s" } th { (what) } th { "95 %" }
+                        th { "unstable at, Hz" } th { "largest growth, 1/s" } th { "at point" } th { "doubtful links" }
+                    }
+                }
+                tbody { @for own in &found.answers.instabilities { (instability(own, found)) } }
+            }
+        }
+        p.hint { "Modes have the numbers of the nominal point. A dash: modes that are none of it." }
+    }
+}
+
+fn instability(own: &Instability, found: &Exploration) -> Markup {
+    let dash = || "\u{2013}".to_owned();
+    let p = own.probability;
+    let [from, to] = own.frequency_range_hz;
+    let modes = found.points.iter().filter_map(PointResult::modes).flatten();
+    let n_doubtful =
+        modes.filter(|mode| mode.link.is_some_and(|link| link.doubtful && Some(link.nominal) == own.nominal));
+    html! {
+        tr {
+            td { (own.nominal.map_or_else(dash, |n| n.to_string())) }
+            td { (own.nominal_frequency_hz.map_or_else(dash, |f| format!("{f:.1}"))) }
+            td { (own.nominal_growth_rate_per_s.map_or_else(dash, |a| format!("{a:+.2}"))) }
+            td { (format!("{:.1}", 100.0 * p.value)) }
+            td { (format!("{:.1}\u{2013}{:.1}", 100.0 * p.low, 100.0 * p.high)) }
+            td { (format!("{from:.1}\u{2013}{to:.1}")) }
+            td { (format!("{:+.1}", own.largest_growth_rate_per_s)) }
+            td { button type="button" data-point=(own.worst) { (own.worst) } }
+            td { @match n_doubtful.count() { 0 => "0", n => { (n) " ?" } } }
+        }
+    }
+}
+
+fn influences(study: &Study, found: &Exploration) -> Markup {
+    let answers = &found.answers;
+    let nominal = &found.points[0].values;
+    let shares = answers.gradients.iter().filter_map(|own| own.linear_share);
+    let is_rough = shares.fold(1.0, f64::min) < 0.8;
+    html! {
+        section aria-label="Influence of the parameters" {
+            h2 { "Influence of the parameters" }
+            div.charts {
+                @if let Some(all) = &answers.indices { (figure(plots::indices(all))) }
+                @if let Some(bars) = &answers.tornado { (figure(plots::swings(bars))) }
+                @for own in answers.gradients.iter().take(MAX_TORNADOS) {
+                    (figure(plots::tornado(own, study, nominal)))
+                }
+            }
+            @if !answers.gradients.is_empty() {
+                p.hint {
+                    "Tornados are of first order: derivatives at the nominal point by left and right vectors, drawn over the range of each "
+                    "parameter. They show the modes that are unstable at a point or that one parameter makes unstable"
+                    @if answers.gradients.len() > MAX_TORNADOS { ", the first " (MAX_TORNADOS) " of " (answers.gradients.len()) } "."
+                }
+            }
+            @if is_rough { (agreement(found)) }
+        }
+    }
+}
+
+/// What part of the variance over the points the derivatives explain.
+fn agreement(found: &Exploration) -> Markup {
+    let share = |own: &crate::explore::Tornado| {
+        own.linear_share.map(|share| format!("mode {}: {:.0} %", own.nominal, 100.0 * share.max(0.0)))
+    };
+    let list: Vec<String> = found.answers.gradients.iter().filter_map(share).take(MAX_TORNADOS).collect();
+    html! { p.hint { "Share of the variance of the growth rate over the points that they explain: " (list.join(", ")) "." } }
+}
+
+fn points_section(study: &Study, found: &Exploration) -> Markup {
+    let select = |id: &str, chosen: usize, label: &str| {
+        html! {
+            label {
+                (label) " "
+                select id=(id) {
+                    @for (i, own) in study.parameters.iter().enumerate() {
+                        option value=(i) selected[i == chosen] { (own.name) }
+                    }
+                }
+            }
+        }
+    };
+    let first = most_influential(study, found);
+    let second = if first == 0 { 1 } else { 0 };
+    html! {
+        section #points aria-label="Points" {
+            h2 { "Points" }
+            p.hint {
+                "Click a point to see its modes; the arrow keys choose the next one. Open circles are stable points, filled ones unstable"
+                @if let Some(worst) = found.answers.worst.and_then(|worst| found.points[worst].critical()) {
+                    ", the darker the faster they grow (up to " (format!("{:.1}", worst.growth_rate())) " 1/s)"
+                }
+                ". The cross is the nominal point."
+                @if study.plane().is_some() { " The line is where the largest growth rate is 0, between the points." }
+            }
+            div.charts {
+                figure.card.plot {
+                    div.controls { (select("scatter-x", first, "Largest growth rate over")) }
+                    div #scatter {}
+                }
+                @if study.parameters.len() > 1 {
+                    figure.card.plot {
+                        div.controls { (select("map-x", first, "Stability over")) (select("map-y", second, "and")) }
+                        div #map {}
+                    }
+                }
+            }
+            div #point.card {}
+        }
+    }
+}
+
+/// The parameter with the largest influence that is known.
+fn most_influential(study: &Study, found: &Exploration) -> usize {
+    let answers = &found.answers;
+    let by_index =
+        answers.indices.as_ref().and_then(|all| all.iter().max_by(|a, b| a.total.value.total_cmp(&b.total.value)));
+    let by_gradient = answers.gradients.first().and_then(|own| own.bars.first()).map(|bar| bar.parameter.as_str());
+    let name = by_index.map(|own| own.parameter.as_str()).or(by_gradient);
+    name.and_then(|name| study.parameters.iter().position(|own| own.name == name)).unwrap_or(0)
+}
+
+fn failures(study: &Study, points: &[PointResult]) -> Markup {
+    let failed: Vec<(usize, &PointResult, &str)> =
+        points.iter().enumerate().filter_map(|(i, point)| Some((i, point, reason(point)?))).collect();
+    html! {
+        @if !failed.is_empty() {
+            section aria-label="Failed points" {
+                h2 { "Failed points" }
+                div.over {
+                    table {
+                        thead { tr { th { "point" } @for own in &study.parameters { th { (own.name) } } th.left { "reason" } } }
+                        tbody {
+                            @for (i, point, reason) in &failed {
+                                tr { td { (i) } @for value in &point.values { td { (format!("{value:.5}")) } } td.left { (reason) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
