@@ -75,6 +75,34 @@ def test_a_super_element_has_its_modes_on_the_diagonal(tmp_path):
     assert element.motion(element.load).shape == element.nodes.shape
 
 
+def test_a_study_is_that_of_its_tables(tmp_path):
+    out = tmp_path / "run"
+    model = Path(os.environ["MODEL"]).resolve()
+    study = f"""model = "{model}"
+band = [0, 1500]
+[design]
+kind = "grid"
+[parameter.mu]
+key = "friction"
+values = [0.3, 2.5]
+[parameter.load]
+key = "load.*.force"
+factor = true
+values = [0.5]
+"""
+    (tmp_path / "explore.toml").write_text(study)
+    run("explore", tmp_path / "explore.toml", "-o", out)
+    found = squeal.read_exploration(out)
+    assert [own["name"] for own in found.parameters] == ["mu", "load"]
+    np.testing.assert_allclose(found.values[1:], [[0.3, 0.5], [2.5, 0.5]])
+    assert list(found.solved) == [True, True, False] and "friction" in found.failures[2]
+    np.testing.assert_allclose(found.modes["growth_rate"], column(out / "modes.csv", "growth_rate_per_s"), rtol=1e-12)
+    np.testing.assert_allclose(found.largest_growth()[0], found.modes["growth_rate"][found.modes["point"] == 0].max())
+    slopes = column(out / "gradients.csv", "growth_rate_slope")
+    np.testing.assert_allclose(np.sort(found.gradients.real.ravel()), np.sort(slopes), rtol=1e-12)
+    assert found.answers["unstable"]["n_points"] == [1]
+
+
 def test_other_files_are_refused(tmp_path, folder):
     foreign = tmp_path / "foreign.h5"
     with h5py.File(foreign, "w") as file:

@@ -15,7 +15,8 @@ use crate::output::results_folder::RESULTS;
 use crate::output::vtu;
 use crate::report::findings::Findings;
 use crate::report::raster::{self, Painter};
-use crate::report::{page, paraview, plots, words};
+use crate::report::{explore_page, page, paraview, plots, words};
+use crate::results::exploration_file;
 use crate::{Error, Result};
 
 /// What `report` takes.
@@ -59,6 +60,10 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     let html = report.output.clone().unwrap_or_else(|| home.join("report.html"));
     may_write_file(&html, &page::KIND, report.force)?;
     [&report.plots, &report.paraview].into_iter().flatten().try_for_each(|folder| may_fill(folder, report.force))?;
+    if exploration_file::is_one(&source) {
+        let what = format!("{} is of squeal explore, which has written its page", source.display());
+        return Err(Error::input(format!("{what}: {}. Open that", home.join(explore_page::NAME).display())));
+    }
     let results = compare::read(&report.results)?;
     let criterion = report.unstable.unwrap_or(results.about.criterion);
     let results = results.by(criterion);

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::adaptive::BoundaryPair;
 use super::design::DesignKind;
 use super::gradient::{Gradient, Tornado, tornados};
 use super::result::{PointMode, PointResult};
@@ -35,6 +36,8 @@ pub struct Answers {
     pub tornado: Option<Vec<Bar>>,
     /// First-order changes of the nominal modes that may squeal over the range of each parameter, by left vectors.
     pub gradients: Vec<Tornado>,
+    /// Neighbours with opposite verdicts of an adaptive design, the widest apart first.
+    pub boundary: Vec<BoundaryPair>,
     /// The point with the largest growth rate.
     pub worst: Option<usize>,
 }
@@ -119,6 +122,7 @@ impl Answers {
             indices: indices(study, own),
             tornado: bars(study, nominal, &solved),
             gradients: may_squeal(study, gradients, points),
+            boundary: study.boundary(own),
             worst: worst.map(|(number, _)| number),
         }
     }
@@ -126,10 +130,11 @@ impl Answers {
 
 impl Study {
     /// Whether a point is independent of the others, so that it counts for probabilities: of a design for Sobol indices
-    /// only A and B.
+    /// only A and B, of an adaptive design only those that it starts with.
     pub fn is_independent(&self, index: usize) -> bool {
         match self.design.kind {
             DesignKind::Saltelli { .. } => index % (self.parameters.len() + 2) < 2,
+            DesignKind::Adaptive(rule) => index < rule.n_start,
             _ => true,
         }
     }

@@ -40,6 +40,19 @@ pub enum DesignKind {
         /// Number n of base points; there are n (k + 2) points for k parameters.
         n_base: usize,
     },
+    /// Points that close in on the boundary between stable and unstable ([`super::Refinement`]).
+    Adaptive(AdaptiveRule),
+}
+
+/// How far an adaptive design goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AdaptiveRule {
+    /// Number of points at most.
+    pub n_points: usize,
+    /// Points of the Sobol sequence that it begins with.
+    pub n_start: usize,
+    /// Distance in the unit cube at which points of opposite verdict are near enough.
+    pub resolution: f64,
 }
 
 /// A choice of points that a seed repeats.
@@ -85,6 +98,7 @@ impl Design {
             DesignKind::LatinHypercube { n_points } => {
                 values(parameters, self.correlated(latin_hypercube(*n_points, parameters.len(), self.seed)))
             }
+            DesignKind::Adaptive(rule) => values(parameters, self.sobol(rule.n_start, parameters.len())?),
             DesignKind::Sobol { n_points } => {
                 values(parameters, self.correlated(self.sobol(*n_points, parameters.len())?))
             }
@@ -104,6 +118,7 @@ impl Design {
             DesignKind::LatinHypercube { .. } => "Latin hypercube",
             DesignKind::Sobol { .. } => "Sobol sequence",
             DesignKind::Saltelli { .. } => "points for Sobol indices",
+            DesignKind::Adaptive(_) => "adaptive",
         }
     }
 
@@ -120,6 +135,7 @@ impl Design {
             DesignKind::List(points) => points.len(),
             DesignKind::LatinHypercube { n_points } | DesignKind::Sobol { n_points } => *n_points,
             DesignKind::Saltelli { n_base } => n_base.saturating_mul(parameters.len() + 2),
+            DesignKind::Adaptive(rule) => rule.n_start,
         }
     }
 
@@ -131,7 +147,7 @@ impl Design {
     }
 
     /// Points of the unit cube.
-    fn sobol(&self, n: usize, n_dimensions: usize) -> Result<Vec<Vec<f64>>> {
+    pub(super) fn sobol(&self, n: usize, n_dimensions: usize) -> Result<Vec<Vec<f64>>> {
         let most = sobol_burley::NUM_DIMENSIONS as usize;
         if n_dimensions > most {
             let what = format!("the Sobol sequence has {most} dimensions, and the study needs {n_dimensions}");

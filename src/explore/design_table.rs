@@ -6,7 +6,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::correlation::Correlation;
-use super::design::{Design, DesignKind};
+use super::design::{AdaptiveRule, Design, DesignKind};
+use super::distribution::Distribution;
 use super::study::Parameter;
 use crate::model::names;
 use crate::{Error, Result};
@@ -17,6 +18,8 @@ pub(super) struct DesignTable {
     pub kind: Spanned<String>,
     points: Option<usize>,
     levels: Option<usize>,
+    start: Option<usize>,
+    resolution: Option<f64>,
     file: Option<String>,
     #[serde(default)]
     seed: u32,
@@ -30,9 +33,15 @@ pub(super) struct CorrelationTable {
 }
 
 /// Kinds of designs by their names.
-const KINDS: [&str; 6] = ["grid", "one-at-a-time", "list", "latin-hypercube", "sobol", "saltelli"];
+const KINDS: [&str; 7] = ["grid", "one-at-a-time", "list", "latin-hypercube", "sobol", "saltelli", "adaptive"];
 /// Levels of a parameter in a grid where none are given.
 const GRID_LEVELS: usize = 5;
+/// An adaptive design starts with this part of its points where no number is given,
+const START_SHARE: usize = 4;
+/// and with no fewer than these.
+const MIN_START: usize = 8;
+/// Its resolution where none is given.
+const RESOLUTION: f64 = 0.01;
 
 /// A path of the file, seen from the current directory.
 pub(super) fn beside(file: &Path, name: &str) -> PathBuf {
@@ -48,28 +57,35 @@ pub(super) fn design(table: &DesignTable, parameters: &[Parameter], path: &Path)
         let missing = || Error::input(format!("kind {:?} needs {key}, a number above 0", table.kind.get_ref()));
         given.filter(|n| *n > 0).ok_or_else(missing)
     };
-    let unused = |wants: [bool; 3]| {
-        let given = [table.points.is_some(), table.levels.is_some(), table.file.is_some()];
-        let keys = ["points", "levels", "file"];
-        let extra = (0..3).find(|&i| given[i] && !wants[i]);
-        extra.map_or(Ok(()), |i| {
-            Err(Error::input(format!("{} does not go with kind {:?}", keys[i], table.kind.get_ref())))
+    let own = |keys: &[&str]| {
+        let given = [
+            ("points", table.points.is_some()),
+            ("levels", table.levels.is_some()),
+            ("start", table.start.is_some()),
+            ("resolution", table.resolution.is_some()),
+            ("file", table.file.is_some()),
+        ];
+        let extra = given.iter().find(|(key, is_given)| *is_given && !keys.contains(key));
+        extra.map_or(Ok(()), |(key, _)| {
+            Err(Error::input(format!("{key} does not go with kind {:?}", table.kind.get_ref())))
         })
     };
     let kind = match table.kind.get_ref().as_str() {
-        "grid" | "one-at-a-time" => unused([false, true, false]).and_then(|()| {
+        "grid" | "one-at-a-time" => own(&["levels"]).and_then(|()| {
             Ok(if table.kind.get_ref() == "grid" {
                 DesignKind::Grid { n_levels: count(table.levels.or(Some(GRID_LEVELS)), "levels")? }
             } else {
                 DesignKind::OneAtATime { n_levels: count(table.levels.or(Some(2)), "levels")? }
             })
         }),
-        "list" => unused([false, false, true]).and_then(|()| {
+        "list" => own(&["file"]).and_then(|()| {
             let missing = || Error::input("kind \"list\" needs file, a CSV file with a column for each parameter");
             let file = table.file.as_ref().ok_or_else(missing)?;
             Ok(DesignKind::List(read_points(&beside(path, file), parameters)?))
         }),
-        kind => unused([true, false, false]).and_then(|()| match kind {
+        "adaptive" => own(&["points", "start", "resolution"])
+            .and_then(|()| adaptive(table, count(table.points, "points")?, parameters)),
+        kind => own(&["points"]).and_then(|()| match kind {
             "latin-hypercube" => Ok(DesignKind::LatinHypercube { n_points: count(table.points, "points")? }),
             "sobol" => Ok(DesignKind::Sobol { n_points: count(table.points, "points")? }),
             "saltelli" => Ok(DesignKind::Saltelli { n_base: count(table.points, "points")? }),
@@ -77,6 +93,23 @@ pub(super) fn design(table: &DesignTable, parameters: &[Parameter], path: &Path)
         }),
     };
     Ok(Design { kind: kind?, seed: table.seed, correlation: None })
+}
+
+/// An adaptive design of at most so many points.
+fn adaptive(table: &DesignTable, n_points: usize, parameters: &[Parameter]) -> Result<DesignKind> {
+    let n_start = table.start.unwrap_or((n_points / START_SHARE).max(MIN_START).min(n_points));
+    let resolution = table.resolution.unwrap_or(RESOLUTION);
+    if !(1..=n_points).contains(&n_start) || !(resolution > 0.0 && resolution < 1.0) {
+        let what = "kind \"adaptive\" has start from 1 to points, and a resolution between 0 and 1";
+        return Err(Error::input(what));
+    }
+    match parameters.iter().find(|own| matches!(own.distribution, Distribution::Values(_))) {
+        Some(own) => Err(Error::input(format!(
+            "kind \"adaptive\" bisects, and parameter {:?} has a list of values. Give it a range or a distribution",
+            own.name
+        ))),
+        None => Ok(DesignKind::Adaptive(AdaptiveRule { n_points, n_start, resolution })),
+    }
 }
 
 /// A design with the correlations of its parameters.

@@ -10,6 +10,7 @@
 //! A study has a file of its own, which names the model or super-element. So a model file contains what is analysed and
 //! nothing else, one model has many studies, and one study is made of a model and of its super-element.
 
+mod adaptive;
 mod answers;
 mod correlation;
 mod design;
@@ -25,9 +26,10 @@ mod statistics;
 mod study;
 mod template;
 
+pub use adaptive::{BoundaryPair, Refinement};
 pub use answers::{Answers, Bin, Instability, quantity};
 pub use correlation::Correlation;
-pub use design::{Design, DesignKind};
+pub use design::{AdaptiveRule, Design, DesignKind};
 pub use distribution::Distribution;
 pub use gradient::{Difference, Gradient, Influence, Tornado, tornados};
 pub use key::KeyPath;

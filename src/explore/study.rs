@@ -248,6 +248,9 @@ mod tests {
         for (old, new, parts) in [
             ("sobol", "sobel", ["explore.toml:4", "Did you mean \"sobol\""]),
             ("points = 8", "levels = 8", ["explore.toml:4", "levels does not go with"]),
+            ("points = 8", "points = 8\nstart = 4", ["explore.toml:4", "start does not go with"]),
+            ("sobol\"\npoints = 8", "adaptive\"\npoints = 8\nstart = 9", ["explore.toml:4", "start from 1 to points"]),
+            ("sobol", "adaptive\"\nresolution = 2 #", ["explore.toml:4", "resolution between 0 and 1"]),
             ("points = 8", "", ["explore.toml:4", "needs points"]),
             ("[0.3, 0.6]", "[0.6, 0.3]", ["explore.toml:7", "from < to"]),
             ("uniform = [0.3, 0.6]", "", ["parameter \"mu\"", "give one of values"]),

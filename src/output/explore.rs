@@ -1,18 +1,18 @@
 //! A study of many parameters: points and modes as CSV, answers as JSON and as text.
 
-use std::io::{Result as IoResult, Write};
 use std::path::Path;
 
 use serde::Serialize;
 
+use super::explore_tables::{write_boundary, write_gradients, write_modes, write_points};
 use super::folder::Folder;
+use super::results_folder::RESULTS;
 use super::text::{aligned, files, or_dash, plural};
 use crate::Result;
 use crate::explore::{
-    Answers, Bar, Bin, Estimate, Gradient, Indices, Influence, Instability, Outcome, Parameter, PointMode, PointResult,
-    Study, Tornado, tornados,
+    Answers, Bar, Bin, Estimate, Indices, Influence, Instability, Outcome, Parameter, PointResult, Study, Tornado,
 };
-use crate::results::{About, Exploration};
+use crate::results::{About, Exploration, exploration_file};
 
 /// Name of the model file of the worst point.
 pub const WORST: &str = "worst.toml";
@@ -113,6 +113,7 @@ impl<'a> Document<'a> {
         let answers = self.answers;
         let what = if answers.is_sample { "probability" } else { "fraction of the points" };
         let mut text = self.head() + &format!("unstable ({}): {what} {}\n", self.criterion, percent(answers.unstable));
+        text += &self.boundary();
         text += &section("largest growth rate, 1/s", &self.growth_rates());
         text += &section(&format!("instabilities, by {what}"), &instabilities(&answers.instabilities));
         text += &section(&format!("{what} of squeal over frequency"), &bins(&answers.bins));
@@ -145,6 +146,18 @@ impl<'a> Document<'a> {
         )
     }
 
+    /// The boundary of an adaptive design, and which of its points the probabilities are of.
+    fn boundary(&self) -> String {
+        let Some(widest) = self.answers.boundary.first() else { return String::new() };
+        let n = self.answers.boundary.len();
+        format!(
+            "probabilities are of the points that the design starts with; the others are nearer to the boundary\n\
+             boundary between stable and unstable: {n} pair{} of neighbours, the widest {:.2e} apart (boundary.csv)\n",
+            plural(n),
+            widest.distance
+        )
+    }
+
     fn growth_rates(&self) -> String {
         let of = &self.answers.growth_rate;
         let heads: String = of.iter().map(|own| format!("\t{:.0} %", 100.0 * own.fraction)).collect();
@@ -171,10 +184,14 @@ impl<'a> Document<'a> {
             ("points.csv", "parameters, and the largest growth rate at each point"),
             ("modes.csv", "modes at each point, with those of the nominal point that they are"),
             ("gradients.csv", "derivatives of the nominal modes by each parameter"),
+            ("results.h5", "all of this, for programs"),
             ("summary.json", "the answers, for programs"),
             ("summary.txt", "this text"),
         ];
         list.insert(0, ("explore.html", "the page to look at"));
+        if !self.answers.boundary.is_empty() {
+            list.push(("boundary.csv", "points between stable and unstable neighbours"));
+        }
         if self.worst_point.as_ref().is_some_and(|worst| worst.command.contains(WORST)) {
             list.push((WORST, "the model file of the worst point"));
         }
@@ -203,121 +220,16 @@ fn command(study: &Study, about: &About, values: &[f64], folder: &Path) -> Strin
 /// The system's, with the file's path.
 pub fn write(folder: &Folder, study: &Study, document: &Document, found: &Exploration) -> Result<()> {
     let points = &found.points;
+    exploration_file::write(&folder.draft().join(RESULTS), study, found)?;
     let names: Vec<&str> = document.parameters.iter().map(|own| own.name).collect();
     folder.write("points.csv", |out| write_points(out, &names, points))?;
     folder.write("modes.csv", |out| write_modes(out, points))?;
     folder.write("gradients.csv", |out| write_gradients(out, &study.parameters, &found.gradients, points))?;
+    if !found.answers.boundary.is_empty() {
+        folder.write("boundary.csv", |out| write_boundary(out, &names, &found.answers.boundary))?;
+    }
     folder.write("summary.json", |out| out.write_all(super::json::text(document).as_bytes()))?;
     folder.write("summary.txt", |out| out.write_all(document.text().as_bytes()))
-}
-
-/// A row for each point: values, largest growth rate, and why it has failed where it has.
-fn write_points(out: &mut dyn Write, names: &[&str], points: &[PointResult]) -> IoResult<()> {
-    let mut table = csv::Writer::from_writer(out);
-    let results = ["modes", "unstable_modes", "growth_rate_per_s", "frequency_hz", "failure"];
-    table.write_record(["point"].iter().chain(names).chain(&results))?;
-    for (number, point) in points.iter().enumerate() {
-        let critical = |of: fn(&PointMode) -> f64| point.critical().map_or_else(String::new, |mode| shown(of(mode)));
-        let count = |of: fn(&PointMode) -> bool| {
-            point.modes().map_or_else(String::new, |modes| modes.iter().filter(|mode| of(mode)).count().to_string())
-        };
-        let reason = match &point.outcome {
-            Outcome::Failed(reason) => reason.clone(),
-            Outcome::Modes(_) => String::new(),
-        };
-        let values = point.values.iter().map(|value| shown(*value));
-        let results = [
-            count(|_| true),
-            count(|mode| mode.unstable),
-            critical(PointMode::growth_rate),
-            critical(PointMode::frequency),
-            reason,
-        ];
-        table.write_record([number.to_string()].into_iter().chain(values).chain(results))?;
-    }
-    table.flush()
-}
-
-/// A row for each mode of each point.
-fn write_modes(out: &mut dyn Write, points: &[PointResult]) -> IoResult<()> {
-    let mut table = csv::Writer::from_writer(out);
-    let head = [
-        "point",
-        "mode",
-        "frequency_hz",
-        "growth_rate_per_s",
-        "damping_ratio",
-        "backward_error",
-        "unstable",
-        "nominal_mode",
-        "share",
-        "doubtful",
-    ];
-    table.write_record(head)?;
-    for (number, point) in points.iter().enumerate() {
-        for (mode, own) in (1..).zip(point.modes().into_iter().flatten()) {
-            let link = |of: fn(&crate::explore::Link) -> String| own.link.as_ref().map_or_else(String::new, of);
-            table.write_record([
-                number.to_string(),
-                mode.to_string(),
-                shown(own.frequency()),
-                shown(own.growth_rate()),
-                shown(own.damping_ratio()),
-                shown(own.backward_error),
-                own.unstable.to_string(),
-                link(|link| link.nominal.to_string()),
-                link(|link| format!("{:.4}", link.share)),
-                link(|link| link.doubtful.to_string()),
-            ])?;
-        }
-    }
-    table.flush()
-}
-
-/// A row for each nominal mode and parameter.
-fn write_gradients(
-    out: &mut dyn Write,
-    parameters: &[Parameter],
-    gradients: &[Gradient],
-    points: &[PointResult],
-) -> IoResult<()> {
-    let mut table = csv::Writer::from_writer(out);
-    table.write_record([
-        "nominal_mode",
-        "parameter",
-        "growth_rate_slope",
-        "frequency_slope",
-        "from",
-        "to",
-        "growth_rate_change_per_s",
-        "frequency_change_hz",
-        "difference",
-    ])?;
-    let difference = |name: &str| {
-        let place = parameters.iter().position(|own| own.name == name);
-        place.map_or("", |i| gradients[i].difference.text())
-    };
-    for Tornado { nominal, bars, .. } in &tornados(parameters, gradients, points) {
-        for bar in bars {
-            let numbers = [
-                bar.growth_rate_slope,
-                bar.frequency_slope,
-                bar.from,
-                bar.to,
-                bar.growth_rate_change_per_s,
-                bar.frequency_change_hz,
-            ];
-            let head = [nominal.to_string(), bar.parameter.clone()];
-            let row = head.into_iter().chain(numbers.map(shown)).chain([difference(&bar.parameter).to_owned()]);
-            table.write_record(row)?;
-        }
-    }
-    table.flush()
-}
-
-/// A number to its last digit.
-fn shown(number: f64) -> String {
-    serde_json::Value::from(number).to_string()
 }
 
 /// A heading with what stands below it; nothing where that is empty.

@@ -151,6 +151,12 @@ fn cautions(found: &Exploration) -> Markup {
         @if !answers.is_sample {
             p.hint { "The points of this design represent no distribution: their fractions are no probabilities." }
         }
+        @if let Some(widest) = answers.boundary.first() {
+            p.hint {
+                "Probabilities are of the first " (answers.unstable.n_points) " points; those that follow lie near the boundary, of which "
+                (answers.boundary.len()) " pairs of neighbours are known, at most " (format!("{:.1e}", widest.distance)) " apart."
+            }
+        }
         @if n_failed + answers.n_doubtful > 0 {
             ul.cautions {
                 @if n_failed > 0 { li { (n_failed) " point" (plural(n_failed)) " failed, see below." } }

@@ -4,6 +4,7 @@
 
 mod certificate;
 mod exploration;
+pub mod exploration_file;
 mod external;
 pub mod file;
 mod free_modes;

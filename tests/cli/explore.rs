@@ -106,10 +106,9 @@ fn every_point_is_what_stability_finds_on_the_model_file_with_its_numbers() {
 fn the_worst_point_is_a_model_file() {
     let place = place_with(STUDY);
     let out = done(place.run(&EXPLORE)).out;
-    assert_eq!(
-        place.list("run"),
-        [".squeal", "gradients.csv", "modes.csv", "points.csv", "summary.json", "summary.txt", "worst.toml"]
-    );
+    let files =
+        ".squeal explore.html gradients.csv modes.csv points.csv results.h5 summary.json summary.txt worst.toml";
+    assert_eq!(place.list("run").join(" "), files);
     let points = table(&place, "run/points.csv");
     let growth = |row: &BTreeMap<String, String>| number(row, "growth_rate_per_s");
     let worst = points[1..].iter().max_by(|a, b| growth(a).total_cmp(&growth(b))).unwrap();
@@ -296,4 +295,29 @@ fn a_study_that_cannot_be_made_writes_nothing() {
     place.write("explore.toml", swap(STUDY, "brake.toml", "bake.toml"));
     assert_refused(&place.run(&EXPLORE), &["bake.toml", "cannot read the model file"]);
     assert!(!place.path("run").exists() && !place.path(".run.unfinished").exists());
+}
+
+/// The pad squeals above a friction coefficient, which is bracketed, on two ranks as on one.
+#[test]
+fn an_adaptive_design_finds_the_boundary_on_any_number_of_ranks() {
+    let study = "model = \"brake.toml\"\nband = [0, 60000]\nfollow = false\n[design]\nkind = \"adaptive\"\npoints = 14\n\
+        start = 4\nresolution = 0.04\n[parameter.mu]\nkey = \"friction\"\nuniform = [0.0, 0.9]\n";
+    let place = place_with(study);
+    let out = done(place.run(&EXPLORE)).out;
+    assert!(out.contains("probabilities are of the points that the design starts with"), "{out}");
+    let points = table(&place, "run/points.csv");
+    assert!((6..=15).contains(&points.len()), "{}", points.len());
+    let boundary = table(&place, "run/boundary.csv");
+    assert!(!boundary.is_empty() && boundary.iter().all(|row| number(row, "distance") <= 0.04), "{boundary:?}");
+    for row in &boundary {
+        let end = |column: &str| &points[number(row, column) as usize];
+        let [stable, unstable] = ["stable_point", "unstable_point"].map(end);
+        assert!(number(stable, "unstable_modes") == 0.0 && number(unstable, "unstable_modes") > 0.0);
+        assert!((number(row, "mu") - 0.5 * (number(stable, "mu") + number(unstable, "mu"))).abs() < 1e-12);
+    }
+    let json: serde_json::Value = serde_json::from_str(&place.read("run/summary.json")).unwrap();
+    assert_eq!(json["unstable"]["n_points"], 4);
+    done(place.run_on(2, &["explore", "explore.toml", "-o", "two"]));
+    let two = table(&place, "two/points.csv");
+    assert!(points.len() == two.len() && points.iter().zip(&two).all(|(a, b)| a["mu"] == b["mu"]));
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::explore::{Answers, Distribution, Outcome, PointResult, Study, standing_alone};
+use crate::explore::{Answers, Distribution, Outcome, PointResult, Refinement, Study, standing_alone};
 use crate::hdf::is_hdf5;
 use crate::native::Comm;
 use crate::output::explore::{Document, WORST, write};
@@ -75,6 +75,8 @@ struct Run<'s> {
     request: Request,
     /// Values of the parameters, the nominal point first.
     values: Vec<Vec<f64>>,
+    /// What adds points, in an adaptive design.
+    refinement: Option<Refinement>,
     /// Ranges of the parameters over all points.
     scales: Vec<f64>,
     folder: Option<Folder>,
@@ -100,7 +102,8 @@ impl<'s> Run<'s> {
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
         let request = Request { band, criterion, follow: study.follow, gradients: study.gradients };
         let scales = scales(&values);
-        Ok(Run { world: world.clone(), comm, study, subject, about, request, values, scales, folder })
+        let refinement = Refinement::new(study)?;
+        Ok(Run { world: world.clone(), comm, study, subject, about, request, values, refinement, scales, folder })
     }
 
     /// Solves the points, and writes the folder. Collective.
@@ -108,7 +111,7 @@ impl<'s> Run<'s> {
         let place = output.map(|output| output.folder.as_path());
         let (mut points, mut nominal) = self.open(output)?;
         self.announce(&points, place, observer);
-        while points.done.len() < self.values.len() {
+        while self.has_next(&points, observer)? {
             for (point, state) in self.next(&mut points, &mut nominal, observer)? {
                 let n_dofs = self.comm.sum(state.as_ref().map_or(0, Vec::len));
                 let room = (STATES_BYTES / 8 / n_dofs.max(1)).clamp(1, MAX_STATES);
@@ -129,6 +132,19 @@ impl<'s> Run<'s> {
             _ => Ok(()),
         })?;
         Ok(found)
+    }
+
+    /// Whether there is another point; where all so far are finished, an adaptive design may add some.
+    fn has_next(&mut self, points: &Points, observer: &mut dyn Observer) -> Result<bool> {
+        while let Some(refinement) = self.refinement.as_mut().filter(|_| points.done.len() >= self.values.len()) {
+            let added = refinement.next(&points.done[1..self.values.len()])?;
+            if added.is_empty() {
+                break;
+            }
+            added.iter().for_each(|_| observer.event(Event::Inserted));
+            self.values.extend(added);
+        }
+        Ok(points.done.len() < self.values.len())
     }
 
     /// The points that an earlier run has finished, and its nominal modes, on all ranks. Collective.

@@ -1,0 +1,125 @@
+//! Tables of a study of many parameters.
+
+use std::io::{Result as IoResult, Write};
+
+use crate::explore::{BoundaryPair, Gradient, Link, Outcome, Parameter, PointMode, PointResult, Tornado, tornados};
+
+/// A row for each point: values, largest growth rate, and why it has failed where it has.
+pub(super) fn write_points(out: &mut dyn Write, names: &[&str], points: &[PointResult]) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let results = ["modes", "unstable_modes", "growth_rate_per_s", "frequency_hz", "failure"];
+    table.write_record(["point"].iter().chain(names).chain(&results))?;
+    for (number, point) in points.iter().enumerate() {
+        let critical = |of: fn(&PointMode) -> f64| point.critical().map_or_else(String::new, |mode| shown(of(mode)));
+        let count = |of: fn(&PointMode) -> bool| {
+            point.modes().map_or_else(String::new, |modes| modes.iter().filter(|mode| of(mode)).count().to_string())
+        };
+        let reason = match &point.outcome {
+            Outcome::Failed(reason) => reason.clone(),
+            Outcome::Modes(_) => String::new(),
+        };
+        let values = point.values.iter().map(|value| shown(*value));
+        let results = [
+            count(|_| true),
+            count(|mode| mode.unstable),
+            critical(PointMode::growth_rate),
+            critical(PointMode::frequency),
+            reason,
+        ];
+        table.write_record([number.to_string()].into_iter().chain(values).chain(results))?;
+    }
+    table.flush()
+}
+
+/// A row for each mode of each point.
+pub(super) fn write_modes(out: &mut dyn Write, points: &[PointResult]) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let head = [
+        "point",
+        "mode",
+        "frequency_hz",
+        "growth_rate_per_s",
+        "damping_ratio",
+        "backward_error",
+        "unstable",
+        "nominal_mode",
+        "share",
+        "doubtful",
+    ];
+    table.write_record(head)?;
+    for (number, point) in points.iter().enumerate() {
+        for (mode, own) in (1..).zip(point.modes().into_iter().flatten()) {
+            let link = |of: fn(&Link) -> String| own.link.as_ref().map_or_else(String::new, of);
+            table.write_record([
+                number.to_string(),
+                mode.to_string(),
+                shown(own.frequency()),
+                shown(own.growth_rate()),
+                shown(own.damping_ratio()),
+                shown(own.backward_error),
+                own.unstable.to_string(),
+                link(|link| link.nominal.to_string()),
+                link(|link| format!("{:.4}", link.share)),
+                link(|link| link.doubtful.to_string()),
+            ])?;
+        }
+    }
+    table.flush()
+}
+
+/// A row for each pair of neighbours with opposite verdicts.
+pub(super) fn write_boundary(out: &mut dyn Write, names: &[&str], pairs: &[BoundaryPair]) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(names.iter().chain(&["distance", "stable_point", "unstable_point"]))?;
+    for BoundaryPair { stable, unstable, distance, middle } in pairs {
+        let ends = [shown(*distance), stable.to_string(), unstable.to_string()];
+        table.write_record(middle.iter().map(|value| shown(*value)).chain(ends))?;
+    }
+    table.flush()
+}
+
+/// A row for each nominal mode and parameter.
+pub(super) fn write_gradients(
+    out: &mut dyn Write,
+    parameters: &[Parameter],
+    gradients: &[Gradient],
+    points: &[PointResult],
+) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record([
+        "nominal_mode",
+        "parameter",
+        "growth_rate_slope",
+        "frequency_slope",
+        "from",
+        "to",
+        "growth_rate_change_per_s",
+        "frequency_change_hz",
+        "difference",
+    ])?;
+    let difference = |name: &str| {
+        let place = parameters.iter().position(|own| own.name == name);
+        place.map_or("", |i| gradients[i].difference.text())
+    };
+    for Tornado { nominal, bars, .. } in &tornados(parameters, gradients, points) {
+        for bar in bars {
+            let numbers = [
+                bar.growth_rate_slope,
+                bar.frequency_slope,
+                bar.from,
+                bar.to,
+                bar.growth_rate_change_per_s,
+                bar.frequency_change_hz,
+            ];
+            let head = [nominal.to_string(), bar.parameter.clone()];
+            let row = head.into_iter().chain(numbers.map(shown)).chain([difference(&bar.parameter).to_owned()]);
+            table.write_record(row)?;
+        }
+    }
+    table.flush()
+}
+
+/// A number to its last digit.
+fn shown(number: f64) -> String {
+    serde_json::Value::from(number).to_string()
+}
