@@ -136,7 +136,8 @@ pub fn tornados(parameters: &[Parameter], gradients: &[Gradient], points: &[Poin
 
 impl Tornado {
     /// Whether the mode is unstable at a point, or one parameter alone makes it so to first order: its bar reaches
-    /// above a growth rate of 0, by more than rounding. `nominal` are the values of the parameters `names` at the nominal point.
+    /// above a growth rate of 0, by more than rounding. `nominal` are the values of the parameters `names` at the
+    /// nominal point.
     pub fn may_squeal(&self, names: &[&str], nominal: &[f64], points: &[PointResult]) -> bool {
         let is_own = |mode: &PointMode| mode.unstable && mode.link.is_some_and(|link| link.nominal == self.nominal);
         let lambda = Complex64::new(0.0, TAU * self.frequency_hz);
@@ -151,8 +152,8 @@ impl Tornado {
     }
 }
 
-/// `1 - sum (a - a_1)^2 / sum (a - mean)^2` over the points at which a mode is recognised without doubt, with the growth
-/// rate `a_1 = a_0 + sum_i a'_i (p_i - p_i0)` of first order.
+/// `1 - sum (a - a_1)^2 / sum (a - mean)^2` over the points at which a mode is recognised without doubt, with the
+/// growth rate `a_1 = a_0 + sum_i a'_i (p_i - p_i0)` of first order.
 fn linear_share(
     i: usize,
     mode: &PointMode,

@@ -6,10 +6,21 @@ import { test } from "node:test";
 import vm from "node:vm";
 
 vm.runInThisContext(readFileSync(new URL("../../src/report/assets/numbers.js", import.meta.url), "utf8"));
-const { unpacked, fixed, signed, percent, viridis, parsedFilter, blend, corner, fillTriangle, roundNumbers, zeroLines } =
-  vm.runInThisContext(
-    "({ unpacked, fixed, signed, percent, viridis, parsedFilter, blend, corner, fillTriangle, roundNumbers, zeroLines })",
-  );
+const {
+  unpacked,
+  fixed,
+  signed,
+  percent,
+  viridis,
+  parsedFilter,
+  blend,
+  corner,
+  fillTriangle,
+  roundNumbers,
+  zeroLines,
+} = vm.runInThisContext(
+  "({ unpacked, fixed, signed, percent, viridis, parsedFilter, blend, corner, fillTriangle, roundNumbers, zeroLines })",
+);
 
 test("packed numbers are little-endian", () => {
   const packed = Buffer.from([1, 0, 0, 1, 255, 255]).toString("base64");
@@ -61,7 +72,13 @@ test("numbers on an axis are round and differ", () => {
   const texts = (from, to) => roundNumbers(from, to, 5).map((tick) => tick.text);
   assert.deepEqual(texts(0.05, 0.8), ["0.2", "0.4", "0.6", "0.8"]);
   assert.deepEqual(texts(-12, 34), ["\u221210", "0", "10", "20", "30"]);
-  assert.deepEqual(texts(1.9e13, 2.1e13), ["19000000000000", "19500000000000", "20000000000000", "20500000000000", "21000000000000"]);
+  assert.deepEqual(texts(1.9e13, 2.1e13), [
+    "19000000000000",
+    "19500000000000",
+    "20000000000000",
+    "20500000000000",
+    "21000000000000",
+  ]);
 });
 
 test("zero lines lie between values of other signs and leave holes out", () => {

@@ -4,9 +4,10 @@
 //! d lambda / dp = -y^H (dP/dp) x / y^H P'(lambda) x        P = lambda^2 M + lambda C + K + i G + viscoelastic terms
 //! ```
 //!
-//! `dP/dp` is the difference of the matrices about the equilibria a little below and above the nominal value, which no
-//! key of a model file escapes. It has what the parameter changes in the matrices and what it changes in the equilibrium:
-//! contact status, contact stiffness of curved laws, prestress. It takes two equilibria a parameter and no modes.
+//! `dP/dp` is the difference of the matrices about the equilibria a little below and above the nominal value, which any
+//! key of a model file has. It contains what the parameter changes in the matrices, and what it changes in the
+//! equilibrium: contact status, contact stiffness of curved laws, prestress. It takes two equilibria a parameter and no
+//! modes.
 
 use num_complex::Complex64;
 

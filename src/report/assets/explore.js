@@ -23,13 +23,33 @@ function axis(values, [from, to]) {
 /** An empty figure with two axes. */
 function panel(container, title, x, y, names) {
   const { left, top, width, height } = AREA;
-  const svg = draw(document.createDocumentFragment(), "svg", { viewBox: "0 0 560 400", role: "img", "aria-label": title, "font-size": 13, tabindex: 0 });
+  const svg = draw(document.createDocumentFragment(), "svg", {
+    viewBox: "0 0 560 400",
+    role: "img",
+    "aria-label": title,
+    "font-size": 13,
+    tabindex: 0,
+  });
   for (const tick of x.ticks) {
-    draw(svg, "line", { x1: x.at(tick.value), x2: x.at(tick.value), y1: top, y2: top + height, class: "grid", stroke: "#e3e6ea" });
+    draw(svg, "line", {
+      x1: x.at(tick.value),
+      x2: x.at(tick.value),
+      y1: top,
+      y2: top + height,
+      class: "grid",
+      stroke: "#e3e6ea",
+    });
     draw(svg, "text", { x: x.at(tick.value), y: top + height + 18, "text-anchor": "middle" }, tick.text);
   }
   for (const tick of y.ticks) {
-    draw(svg, "line", { x1: left, x2: left + width, y1: y.at(tick.value), y2: y.at(tick.value), class: "grid", stroke: "#e3e6ea" });
+    draw(svg, "line", {
+      x1: left,
+      x2: left + width,
+      y1: y.at(tick.value),
+      y2: y.at(tick.value),
+      class: "grid",
+      stroke: "#e3e6ea",
+    });
     draw(svg, "text", { x: left - 6, y: y.at(tick.value) + 4.5, "text-anchor": "end" }, tick.text);
   }
   draw(svg, "text", { x: left + width / 2, y: top + height + 42, "text-anchor": "middle" }, names[0]);
@@ -66,7 +86,14 @@ function mark(svg, i, x, y) {
     ? { fill: growthColour(point.growth), stroke: "#5b2008", "stroke-width": 0.6 }
     : { fill: "#ffffff", "fill-opacity": 0.2, stroke: "#0072b2", "stroke-width": 1.4 };
   const circle = draw(svg, "circle", { cx: x, cy: y, r: 5, "data-point": i, ...attributes });
-  if (i === 0) draw(svg, "path", { d: `M${x - 9} ${y}H${x + 9}M${x} ${y - 9}V${y + 9}`, class: "ink", stroke: "#333333", "stroke-width": 1.5, "pointer-events": "none" });
+  if (i === 0)
+    draw(svg, "path", {
+      d: `M${x - 9} ${y}H${x + 9}M${x} ${y - 9}V${y + 9}`,
+      class: "ink",
+      stroke: "#333333",
+      "stroke-width": 1.5,
+      "pointer-events": "none",
+    });
   circle.addEventListener("pointermove", (event) => tip.show(event, pointLabel(point, i)));
   circle.addEventListener("pointerleave", () => tip.hide());
   circle.addEventListener("click", () => choice.set(i));
@@ -83,10 +110,23 @@ function drawScatter() {
   const solved = solvedPoints();
   if (!solved.length) return;
   const { left, top, width, height } = AREA;
-  const x = axis(solved.map((n) => data.points[n].values[i]), [left, left + width]);
+  const x = axis(
+    solved.map((n) => data.points[n].values[i]),
+    [left, left + width],
+  );
   const y = axis([0, ...solved.map((n) => data.points[n].growth)], [top + height, top]);
-  const svg = panel(byId("scatter"), "Largest growth rate over a parameter", x, y, [data.parameters[i], "largest growth rate, 1/s"]);
-  draw(svg, "line", { x1: left, x2: left + width, y1: y.at(0), y2: y.at(0), stroke: "#9aa0a6", "stroke-dasharray": "4 3" });
+  const svg = panel(byId("scatter"), "Largest growth rate over a parameter", x, y, [
+    data.parameters[i],
+    "largest growth rate, 1/s",
+  ]);
+  draw(svg, "line", {
+    x1: left,
+    x2: left + width,
+    y1: y.at(0),
+    y2: y.at(0),
+    stroke: "#9aa0a6",
+    "stroke-dasharray": "4 3",
+  });
   solved.forEach((n) => mark(svg, n, x.at(data.points[n].values[i]), y.at(data.points[n].growth)));
   markPoint(choice.name);
 }
@@ -97,11 +137,17 @@ function drawMap() {
   const solved = solvedPoints();
   if (!solved.length) return;
   const { left, top, width, height } = AREA;
-  const x = axis(solved.map((n) => data.points[n].values[i]), [left, left + width]);
-  const y = axis(solved.map((n) => data.points[n].values[j]), [top + height, top]);
+  const x = axis(
+    solved.map((n) => data.points[n].values[i]),
+    [left, left + width],
+  );
+  const y = axis(
+    solved.map((n) => data.points[n].values[j]),
+    [top + height, top],
+  );
   const svg = panel(byId("map"), "Stability over two parameters", x, y, [data.parameters[i], data.parameters[j]]);
   if (data.grid && i !== j) {
-    const rates = data.points.slice(1).map((point) => point.growth === null ? null : verdictRate(point));
+    const rates = data.points.slice(1).map((point) => (point.growth === null ? null : verdictRate(point)));
     for (const ends of zeroLines(data.grid, rates)) {
       const [[x1, y1], [x2, y2]] = ends.map((values) => [x.at(values[i]), y.at(values[j])]);
       draw(svg, "line", { x1, y1, x2, y2, class: "ink zero", stroke: "#333333", "stroke-width": 2 });
@@ -134,7 +180,9 @@ function markPoint(i) {
 /** The table of a point's modes. */
 function modesOf(point) {
   const head = make("tr");
-  ["mode", "frequency, Hz", "growth rate, 1/s", "nominal mode"].forEach((name) => head.append(make("th", { scope: "col" }, name)));
+  ["mode", "frequency, Hz", "growth rate, 1/s", "nominal mode"].forEach((name) =>
+    head.append(make("th", { scope: "col" }, name)),
+  );
   const rows = point.modes.map(([frequency, growth, unstable, nominal, doubtful], i) => {
     const link = nominal === null ? "\u2013" : `${nominal}${doubtful ? " ?" : ""}`;
     const cells = [i + 1, frequency.toFixed(2), signed(growth, 3), link];
@@ -147,9 +195,14 @@ function modesOf(point) {
 function showPoint(i) {
   const point = data.points[i];
   const list = make("dl");
-  data.parameters.forEach((name, k) => list.append(make("dt", {}, name), make("dd", {}, Number(point.values[k].toPrecision(8)))));
+  data.parameters.forEach((name, k) =>
+    list.append(make("dt", {}, name), make("dd", {}, Number(point.values[k].toPrecision(8)))),
+  );
   const body = point.failure === null ? modesOf(point) : make("p", {}, `Failed: ${point.failure}`);
-  byId("point").replaceChildren(make("h3", {}, i ? `Point ${i}` : "Nominal point"), make("div", { class: "split" }, list, body));
+  byId("point").replaceChildren(
+    make("h3", {}, i ? `Point ${i}` : "Nominal point"),
+    make("div", { class: "split" }, list, body),
+  );
   markPoint(i);
 }
 
@@ -165,4 +218,9 @@ document.querySelectorAll("button[data-point]").forEach((button) => {
 choice.onChange(showPoint);
 drawScatter();
 drawMap();
-choice.set(data.points.reduce((best, point, i) => ((point.growth ?? -Infinity) > (data.points[best].growth ?? -Infinity) ? i : best), 0));
+choice.set(
+  data.points.reduce(
+    (best, point, i) => ((point.growth ?? -Infinity) > (data.points[best].growth ?? -Infinity) ? i : best),
+    0,
+  ),
+);

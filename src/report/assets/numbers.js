@@ -82,9 +82,11 @@ function roundNumbers(from, to, n) {
   const step = [1, 2, 5, 10].map((s) => s * power).find((s) => s >= 0.999 * rough);
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const isLarge = Math.max(Math.abs(from), Math.abs(to)) >= 1e5 || decimals > 5;
-  const text = (value) => (isLarge ? String(Number(value.toPrecision(6))).replace("-", "\u2212") : fixed(value, decimals));
+  const text = (value) =>
+    isLarge ? String(Number(value.toPrecision(6))).replace("-", "\u2212") : fixed(value, decimals);
   const all = [];
-  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k++) all.push({ value: k * step, text: text(k * step) });
+  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k++)
+    all.push({ value: k * step, text: text(k * step) });
   return all;
 }
 
@@ -103,7 +105,12 @@ function zeroLines([first, second], values) {
   };
   for (let i = 0; i + 1 < first.length; i++) {
     for (let j = 0; j + 1 < second.length; j++) {
-      const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
+      const corners = [
+        [i, j],
+        [i + 1, j],
+        [i + 1, j + 1],
+        [i, j + 1],
+      ];
       if (corners.some(([k, l]) => at(k, l) === null)) continue;
       const ends = corners.map((corner, k) => crossing(corner, corners[(k + 1) % 4])).filter(Boolean);
       for (let k = 0; k + 1 < ends.length; k += 2) lines.push([ends[k], ends[k + 1]]);
