@@ -6,7 +6,7 @@ use crate::support::program::Place;
 /// A grid of friction and load, with a column of points that the model reader refuses.
 const GRID: &str = "model = \"brake.toml\"\nband = [0, 60000]\nbin = 10000\n\
     [design]\nkind = \"grid\"\nlevels = 3\n\
-    [parameter.mu]\nkey = \"friction\"\nvalues = [0.0, 0.4, 0.8, 2.6]\n\
+    [parameter.mu]\nkey = \"friction\"\nvalues = [0.0, 0.5, 0.9, 2.6]\n\
     [parameter.\"<load>\"]\nkey = \"load.*.force\"\nfactor = true\nuniform = [0.5, 1.5]\n";
 
 #[test]
