@@ -306,15 +306,36 @@ fn failures(study: &Study, points: &[PointResult]) -> Markup {
                 h2 { "Failed points" }
                 div.over {
                     table {
-                        thead { tr { th { "point" } @for own in &study.parameters { th { (own.name) } } th.left { "reason" } } }
+                        thead {
+                            tr { th { "point" } @for own in &study.parameters { th { (own.name) } } th.left { "reason" } }
+                        }
                         tbody {
                             @for (i, point, reason) in &failed {
-                                tr { td { (i) } @for value in &point.values { td { (format!("{value:.5}")) } } td.left { (reason) } }
+                                tr {
+                                    td { (i) }
+                                    @for value in &point.values { td { (shown(*value)) } }
+                                    td.left { (reason) }
+                                }
                             }
                         }
                     }
                 }
             }
         }
+    }
+}
+
+/// Some digits of a number of any size.
+fn shown(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { format!("{value:.4}") } else { format!("{value:.4e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_any_size_have_their_digits() {
+        assert_eq!([0.0, 0.4, -1.0, 2e13, 1e-7].map(shown), ["0.0000", "0.4000", "-1.0000", "2.0000e13", "1.0000e-7"]);
     }
 }
