@@ -262,14 +262,7 @@ fn points_section(study: &Study, found: &Exploration) -> Markup {
     html! {
         section #points aria-label="Points" {
             h2 { "Points" }
-            p.hint {
-                "Click a point to see its modes; the arrow keys choose the next one. Open circles are stable points, filled ones unstable"
-                @if let Some(worst) = found.answers.worst.and_then(|worst| found.points[worst].critical()) {
-                    ", the darker the faster they grow (up to " (format!("{:.1}", worst.growth_rate())) " 1/s)"
-                }
-                ". The cross is the nominal point."
-                @if study.plane().is_some() { " The line is where the largest growth rate is 0, between the points." }
-            }
+            (points_hint(study, found))
             div.charts {
                 figure.card.plot {
                     div.controls { (select("scatter-x", first, "Largest growth rate over")) }
@@ -283,6 +276,20 @@ fn points_section(study: &Study, found: &Exploration) -> Markup {
                 }
             }
             div #point.card {}
+        }
+    }
+}
+
+fn points_hint(study: &Study, found: &Exploration) -> Markup {
+    let worst = found.answers.worst.and_then(|worst| found.points[worst].critical()).filter(|mode| mode.unstable);
+    html! {
+        p.hint {
+            "Click a point to see its modes; the arrow keys choose the next one. Open circles are stable points, filled ones unstable"
+            @if let Some(mode) = worst {
+                ", the darker the faster they grow (up to " (format!("{:.1}", mode.growth_rate())) " 1/s)"
+            }
+            ". The cross is the nominal point."
+            @if study.plane().is_some() { " The line is where the largest growth rate is 0, between the points." }
         }
     }
 }

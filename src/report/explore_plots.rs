@@ -36,6 +36,10 @@ struct Rows<'a> {
 
 /// Height of a row, pixels.
 const ROW: f64 = 30.0;
+/// An axis covers no less, in its own unit.
+const LEAST_RANGE: f64 = 0.1;
+/// Intervals of Sobol indices are drawn as far as this.
+const INDEX_RANGE: [f64; 2] = [-0.5, 1.5];
 /// Names of rows are cut after so many letters.
 const MAX_NAME: usize = 26;
 
@@ -69,13 +73,13 @@ impl Rows<'_> {
     }
 
     fn scale(&self) -> Scale {
-        let ends = self
-            .rows
-            .iter()
-            .flat_map(|row| &row.spans)
-            .flat_map(|span| span.ends.into_iter().chain(span.whisker.into_iter().flatten()));
-        let all = || ends.clone().chain(self.lines.iter().copied());
-        Scale::with_margin([all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)], 0.04)
+        let spans = || self.rows.iter().flat_map(|row| &row.spans);
+        let ends = spans().flat_map(|span| span.ends.into_iter().chain(span.whisker.into_iter().flatten()));
+        let all: Vec<f64> = ends.chain(self.lines.iter().copied()).collect();
+        let (low, high) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+        // Rounding does not fill a figure.
+        let slack = (0.5 * (LEAST_RANGE - (high - low))).max(0.0);
+        Scale::with_margin([low - slack, high + slack], 0.04)
     }
 }
 
@@ -131,7 +135,7 @@ pub(super) fn indices(all: &[Indices]) -> String {
             height: 9.0,
             below,
             colour: colour(n),
-            whisker: Some([estimate.low, estimate.high]),
+            whisker: Some([estimate.low, estimate.high].map(|end| end.clamp(INDEX_RANGE[0], INDEX_RANGE[1]))),
         };
         Row {
             name: own.parameter.clone(),

@@ -114,7 +114,8 @@ function drawScatter() {
     solved.map((n) => data.points[n].values[i]),
     [left, left + width],
   );
-  const y = axis([0, ...solved.map((n) => data.points[n].growth)], [top + height, top]);
+  // Rounding does not fill the figure.
+  const y = axis([-0.05, 0.05, ...solved.map((n) => data.points[n].growth)], [top + height, top]);
   const svg = panel(byId("scatter"), "Largest growth rate over a parameter", x, y, [
     data.parameters[i],
     "largest growth rate, 1/s",
