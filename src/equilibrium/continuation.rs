@@ -1,14 +1,13 @@
 //! Continuation in the friction coefficient: which steps lead from rest to a value that is wanted.
 //!
 //! At rest there is no pressure, so every bound on sticking is zero and the pads are loose. So the first step *settles*
-//! with all points sticking and touching points closed. From there friction rises to 0.1 and then by 0.2 at most, each
-//! step from the extrapolation of the last two equilibria. A step that fails is halved; where the first one fails, the
-//! true laws are solved without friction at the disc before it.
+//! with all points sticking and touching points closed. From there one step leads to the value that is wanted, and from
+//! an equilibrium to the next one, which it extrapolates the last two to. A step that fails is halved, and those after
+//! it are at most twice as long as the one before. Where the first one fails, the true laws are solved without friction
+//! at the disc before it.
 
 use crate::Result;
 
-/// The first rise of friction from 0; later ones are twice as large.
-const FIRST_RISE: f64 = 0.1;
 /// A failing step is halved down to this.
 const MIN_RISE: f64 = 0.005;
 /// Friction values that differ by no more are the same.
@@ -59,12 +58,14 @@ pub(super) struct Continuation<S> {
     before: Option<Point<S>>,
     /// Whether the last state is that of settling, no equilibrium of the true laws.
     is_settled_only: bool,
+    /// The longest step that may be tried.
+    longest: f64,
 }
 
 impl<S> Continuation<S> {
     /// At rest.
     pub fn new() -> Continuation<S> {
-        Continuation { last: None, before: None, is_settled_only: false }
+        Continuation { last: None, before: None, is_settled_only: false, longest: f64::INFINITY }
     }
 
     /// The last states, each with its friction value, the last one last.
@@ -82,6 +83,7 @@ impl<S> Continuation<S> {
         self.last = states.pop();
         self.before = states.pop();
         self.is_settled_only = false;
+        self.longest = f64::INFINITY;
     }
 
     /// Goes to a friction value.
@@ -91,7 +93,7 @@ impl<S> Continuation<S> {
         }
         loop {
             let reached = self.last.as_ref().expect("settled above").0;
-            match self.rise(next_goal(reached, friction), solver)? {
+            match self.rise(next_goal(reached, friction, self.longest), solver)? {
                 Err(failed) => return Ok(Reached::Failed(failed)),
                 Ok(goal) if goal == friction => return Ok(Reached::Goal),
                 Ok(_) => {}
@@ -123,6 +125,7 @@ impl<S> Continuation<S> {
             if solver.solve(Laws::Friction(goal), &mut trial)? {
                 // A settled state is no equilibrium of the true laws: nothing to extrapolate from.
                 let is_settled_only = std::mem::take(&mut self.is_settled_only);
+                self.longest *= 2.0;
                 self.before = self.last.replace((goal, trial)).filter(|_| !is_settled_only);
                 return Ok(Ok(goal));
             }
@@ -134,23 +137,27 @@ impl<S> Continuation<S> {
             } else if (goal - reached).abs() <= MIN_RISE {
                 return Ok(Err(goal));
             } else {
-                goal = 0.5 * (goal + reached);
+                self.longest = 0.5 * (goal - reached).abs();
+                goal = next_goal(reached, goal, self.longest);
             }
         }
     }
 
-    /// `u + (u - u_before) (goal - mu) / (mu - mu_before)`: the last equilibrium, extrapolated.
+    /// `u + (u - u_before) (goal - mu) / (mu - mu_before)`: the last equilibrium, extrapolated, by no more than the
+    /// distance of the two.
     fn predict(&self, goal: f64, solver: &impl StepSolver<State = S>) -> Result<S> {
         let (mu, u) = self.last.as_ref().expect("a step starts from a state");
         let before = self.before.as_ref().filter(|(mu_before, _)| mu_before != mu);
-        solver.extrapolate(u, before.map(|(mu_before, before)| (before, (goal - mu) / (mu - mu_before))))
+        solver.extrapolate(
+            u,
+            before.map(|(mu_before, before)| (before, ((goal - mu) / (mu - mu_before)).clamp(-1.0, 1.0))),
+        )
     }
 }
 
-/// The next value on the way from one friction value to another.
-fn next_goal(reached: f64, friction: f64) -> f64 {
-    let rise = if reached == 0.0 { FIRST_RISE } else { 2.0 * FIRST_RISE };
-    let goal = reached + (friction - reached).clamp(-rise, rise);
+/// The next value on the way from one friction value to another, by steps that are no longer than `longest`.
+fn next_goal(reached: f64, friction: f64, longest: f64) -> f64 {
+    let goal = reached + (friction - reached).clamp(-longest, longest);
     if (goal - friction).abs() < FRICTION_ROUNDING { friction } else { goal }
 }
 
@@ -201,51 +208,51 @@ mod tests {
     }
 
     #[test]
-    fn friction_rises_by_a_tenth_and_then_by_two_and_hits_the_goal() {
+    fn one_step_leads_to_a_value_up_and_down() {
         let (mut path, mut line) = line(|_, _| true);
         assert_eq!(path.advance(0.6, &mut line).unwrap(), Reached::Goal);
+        assert_eq!(path.advance(0.1, &mut line).unwrap(), Reached::Goal);
         assert_eq!(line.steps[0], (Laws::Settling, -1.0));
-        let values = values(&line.steps);
-        assert!(values.iter().zip([0.1, 0.3, 0.5, 0.6]).all(|(a, b)| is_near(*a, b)), "{values:?}");
-        assert_eq!((values.len(), values[3], path.last().unwrap().0), (4, 0.6, 0.6));
+        assert_eq!(values(&line.steps), [0.6, 0.1]);
+        assert_eq!(path.last().unwrap().0, 0.1);
     }
 
     #[test]
-    fn friction_falls_by_as_much() {
+    fn a_step_starts_from_the_extrapolation_of_the_last_two_equilibria_by_no_more_than_their_distance() {
         let (mut path, mut line) = line(|_, _| true);
-        path.restore(vec![(0.9, 90.0)]);
-        path.advance(0.6, &mut line).unwrap();
-        let values = values(&line.steps);
-        assert!(values.len() == 2 && is_near(values[0], 0.7) && values[1] == 0.6, "{values:?}");
-    }
-
-    #[test]
-    fn a_step_starts_from_the_extrapolation_of_the_last_two_equilibria() {
-        let (mut path, mut line) = line(|_, _| true);
-        path.advance(0.5, &mut line).unwrap();
+        for friction in [0.1, 0.3, 0.4, 0.9] {
+            path.advance(friction, &mut line).unwrap();
+        }
         let starts: Vec<f64> = line.steps.iter().map(|(_, start)| *start).collect();
-        // From rest, from the settled state, from 0.1 alone, from 0.1 and 0.3.
-        assert!(starts.iter().zip([-1.0, 7.0, 10.0, 50.0]).all(|(a, b)| is_near(*a, b)), "{starts:?}");
+        // From rest, from the settled state, from 0.1 alone, from 0.1 and 0.3 to 0.4, from 0.3 and 0.4 to 0.5.
+        assert!(starts.iter().zip([-1.0, 7.0, 10.0, 40.0, 50.0]).all(|(a, b)| is_near(*a, b)), "{starts:?}");
     }
 
     #[test]
-    fn a_failing_step_is_halved_and_the_goal_reached_by_smaller_ones() {
+    fn a_failing_step_is_halved_and_later_ones_grow_from_there() {
         let (mut path, mut line) = line(|laws, start| match laws {
-            Laws::Friction(mu) => (100.0 * mu - start).abs() < 6.0 || mu < 0.15,
+            Laws::Friction(mu) => (100.0 * mu - start).abs() < 11.0,
             _ => true,
         });
-        assert_eq!(path.advance(0.3, &mut line).unwrap(), Reached::Goal);
+        path.restore(vec![(0.1, 10.0)]);
+        assert_eq!(path.advance(0.9, &mut line).unwrap(), Reached::Goal);
         let values = values(&line.steps);
-        // 0.1, then 0.3 and 0.2 fail, 0.15 converges; from there extrapolation is exact.
-        assert!(values.iter().zip([0.1, 0.3, 0.2, 0.15, 0.3]).all(|(a, b)| is_near(*a, b)), "{values:?}");
+        // Extrapolation by as much as the step before is exact, by more it is not.
+        let expected = [0.9, 0.5, 0.3, 0.2, 0.4, 0.8, 0.6, 0.9];
+        assert!(values.iter().zip(expected).all(|(a, b)| is_near(*a, b)) && values.len() == 8, "{values:?}");
     }
 
     #[test]
     fn a_step_is_not_halved_below_the_smallest() {
         let (mut path, mut line) = line(|laws, _| !matches!(laws, Laws::Friction(mu) if mu > 0.1 + 1e-6));
+        path.advance(0.1, &mut line).unwrap();
         let Reached::Failed(value) = path.advance(0.3, &mut line).unwrap() else { panic!("it cannot get there") };
         assert!(value - 0.1 <= MIN_RISE && value - 0.1 > 0.5 * MIN_RISE, "{value}");
         assert!(is_near(path.last().unwrap().0, 0.1), "the last equilibrium stays");
+        path.restore(vec![(0.1, 10.0)]);
+        line.steps.clear();
+        path.advance(0.05, &mut line).unwrap();
+        assert_eq!(values(&line.steps), [0.05], "a path put back has forgotten its short steps");
     }
 
     #[test]

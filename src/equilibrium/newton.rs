@@ -22,8 +22,8 @@ const ROUNDING_LIMIT: f64 = 1e-6;
 const LINEAR_TOLERANCE: f64 = 1e-2;
 /// The last step need not go further below the equilibrium's tolerance than this.
 const LAST_STEP_SHARE: f64 = 0.1;
-/// Newton steps at most.
-const MAX_ITERATIONS: usize = 40;
+/// Newton steps at most: those that converge take 5 to 20, and a shorter step in friction is better than more of them.
+const MAX_ITERATIONS: usize = 30;
 
 /// What one Newton iterate looked like.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -7,6 +7,7 @@
 pub mod eigen;
 mod entries;
 pub mod error;
+mod line_search;
 pub mod linear;
 mod matrix;
 pub mod nonlinear;

@@ -6,8 +6,9 @@ use std::ptr;
 use squeal_sys as sys;
 
 use super::error::{Trap, check};
+use super::line_search;
 use super::vector::Borrowed;
-use super::{DEFAULT, Int, Matrix, Vector};
+use super::{Int, Matrix, Vector};
 use crate::Result;
 use crate::native::Comm;
 
@@ -68,8 +69,7 @@ impl Drop for Snes {
 }
 
 /// Solves `F(u) = 0` from `u`, which ends as the last iterate whether or not it converged, and gives whether it did by
-/// [`Problem::judge`]. Options of the prefix
-/// `equilibrium_` act (`-equilibrium_snes_monitor`). Collective.
+/// [`Problem::judge`]. Options of the prefix `equilibrium_` act (`-equilibrium_snes_monitor`). Collective.
 ///
 /// # Errors
 /// PETSc's, or what the problem's callbacks returned.
@@ -93,7 +93,7 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -
         check(sys::SNESSetConvergenceTest(snes.0, Some(judge), pointer, None))?;
         check(sys::SNESSetTolerances(snes.0, 0.0, 0.0, 0.0, max_iterations as Int, Int::MAX))?;
         use_corrections(snes.0, pointer)?;
-        use_critical_points(snes.0)?;
+        use_critical_lengths(snes.0, pointer)?;
         check(sys::SNESSetFromOptions(snes.0))?;
         let code = sys::SNESSolve(snes.0, ptr::null_mut(), u.raw());
         (*pointer.cast::<Context>()).trap.release(code)?;
@@ -115,17 +115,14 @@ unsafe fn use_corrections(snes: sys::SNES, context: *mut c_void) -> Result<()> {
     }
 }
 
-/// Line search for the critical point of the residual's projection on the step: robust under contact. Its absolute
-/// tolerance is zero, as that of SNES is: PETSc's own, 1e-15 of `F^T du`, ends the solve as converged where the loads
-/// are small.
-unsafe fn use_critical_points(snes: sys::SNES) -> Result<()> {
+/// Each step is shortened by [`shorten`].
+unsafe fn use_critical_lengths(snes: sys::SNES, context: *mut c_void) -> Result<()> {
     let mut line = ptr::null_mut();
     // SAFETY: the solver is alive; the string is static.
     unsafe {
         check(sys::SNESGetLineSearch(snes, &mut line))?;
-        check(sys::SNESLineSearchSetType(line, c"cp".as_ptr()))?;
-        let same = DEFAULT as f64;
-        check(sys::SNESLineSearchSetTolerances(line, same, same, same, 0.0, same, DEFAULT))
+        check(sys::SNESLineSearchSetType(line, c"basic".as_ptr()))?;
+        check(sys::SNESLineSearchSetPostCheck(line, Some(shorten), context))
     }
 }
 
@@ -173,6 +170,40 @@ unsafe extern "C" fn correct(pc: sys::PC, r: sys::Vec, du: sys::Vec) -> sys::Pet
             code => code,
         }
     }
+}
+
+/// `w = x - l y` with the step y and the length l of [`line_search`]; SNES comes with l = 1.
+unsafe extern "C" fn shorten(
+    line: sys::SNESLineSearch,
+    x: sys::Vec,
+    y: sys::Vec,
+    w: sys::Vec,
+    _: *mut sys::PetscBool,
+    is_changed: *mut sys::PetscBool,
+    pointer: *mut c_void,
+) -> sys::PetscErrorCode {
+    let body = |problem: &mut dyn Problem, comm: &Comm| {
+        let mut f = ptr::null_mut();
+        let none = ptr::null_mut();
+        // SAFETY: SNES passes the line search that calls; only the residual at x is asked for.
+        check(unsafe { sys::SNESLineSearchGetVecs(line, none, &mut f, none, none, none) })?;
+        let [x, y, f] = [Borrowed::new(x, comm)?, Borrowed::new(y, comm)?, Borrowed::new(f, comm)?];
+        let [mut trial, mut residual] = [x.duplicate()?, x.duplicate()?];
+        let length = line_search::critical_length(f.dot(&y)?, |length| {
+            trial.copy_from(&x)?;
+            trial.axpy(-length, &y)?;
+            problem.residual(&trial, &mut residual)?;
+            residual.dot(&y)
+        })?;
+        if length != 1.0 {
+            Borrowed::new(w, comm)?.get_mut().copy_from(&trial)?;
+            // SAFETY: SNES passes a valid place for the answer.
+            unsafe { *is_changed = sys::PetscBool::PETSC_TRUE };
+        }
+        Ok(())
+    };
+    // SAFETY: see `with_context`.
+    unsafe { with_context(pointer, c"shorten", body) }
 }
 
 unsafe extern "C" fn judge(

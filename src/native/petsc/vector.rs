@@ -119,6 +119,17 @@ impl Vector {
         check(unsafe { sys::VecAXPY(self.raw, a, x.raw) })
     }
 
+    /// `self . x`. Collective.
+    ///
+    /// # Errors
+    /// PETSc's, where layouts differ.
+    pub fn dot(&self, x: &Vector) -> Result<f64> {
+        let mut product = 0.0;
+        // SAFETY: both handles are alive.
+        check(unsafe { sys::VecDot(self.raw, x.raw, &mut product) })?;
+        Ok(product)
+    }
+
     /// `self *= a`.
     ///
     /// # Errors
