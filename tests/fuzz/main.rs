@@ -125,6 +125,13 @@ fn matrices_of_abaqus() {
 }
 
 #[test]
+fn gap_fields() {
+    let points = [[0.0125, 0.098, 0.0], [0.0, 0.09, 0.002]];
+    let read = |path: &Path| model::GapField::read(path, "disc / pad").and_then(|field| field.at(&points));
+    fuzz("gap", "csv", seeds::gap_fields(), |path| read(path).is_ok());
+}
+
+#[test]
 fn measured_modes() {
     fuzz("measured", "csv", seeds::measured(), |path| analysis::read_measured(path).is_ok());
 }

@@ -126,6 +126,14 @@ TWO.TOP, P, 1.5
 *END STEP
 ";
 
+/// With a column of contacts, all coordinates and other columns; with two coordinates alone.
+pub fn gap_fields() -> Vec<Vec<u8>> {
+    let whole = "contact,x_mm,y_mm,z_mm,pressure_pa,gap_um\ndisc / pad,12.5,98,0,1e5,3.2\ndisc / pad,0,90,2,0,-0.5\n\
+                 other,1,2,3,4,5\n\"disc / pad\", 7, 91.25, 1e0,,0\n";
+    let plane = "y_m,x_m,gap_mm\n0.098,0.0125,1e-3\n0.09,0,2E-3\n";
+    [whole, plane].map(|text| text.as_bytes().to_vec()).into()
+}
+
 pub fn measured() -> Vec<Vec<u8>> {
     let rows = "x,y,z,direction,812.5,1930\n0,0,10,z,0.5,-1e-3\n12.5,-3,10,-y,1,0.25\n1,2,3,0.6 0 0.8,-0.5,2\n";
     vec![rows.as_bytes().to_vec()]
