@@ -170,6 +170,21 @@ fn contacts_and_pressures_act_on_surfaces_and_not_on_node_sets() {
 }
 
 #[test]
+fn gravity_acts_on_a_part_or_a_mass() {
+    let mesh = mesh();
+    let load = |on: &str| GOOD.replace("on = \"backplate_inner_back\"\npressure = 1e6", on);
+    for on in ["", "on = \"disc\"\n", "[[mass]]\nname = \"bolt\"\nnodes = \"hub\"\nmass = 1\n[[load]]\non = \"bolt\"\n"]
+    {
+        let text = load(&format!("{on}gravity = [0, 0, -9.81]"));
+        let text = text.replace("[[load]]\n[[mass]]", "[[mass]]");
+        model(&text).check_against(&mesh).unwrap();
+    }
+    let said_of = said(&load("on = \"disk\"\ngravity = [0, 0, -9.81]"), &mesh);
+    let expected = "brake.toml:49: there is no part or [[mass]] \"disk\" (load \"disk\"). Did you mean \"disc\"?";
+    assert!(said_of.starts_with(expected), "{said_of}");
+}
+
+#[test]
 fn contact_surfaces_lie_on_one_part_each() {
     let mut mesh = mesh();
     let outer = mesh.surfaces["lining_outer_face"].clone();
