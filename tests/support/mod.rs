@@ -4,6 +4,7 @@
 //! A module of each test crate and not a crate of its own: Cargo would build the library twice for its unit tests.
 #![allow(dead_code, reason = "every test crate takes its own part")]
 
+pub mod as_deck;
 pub mod block;
 pub mod browser;
 pub mod gmsh;

@@ -7,6 +7,7 @@
 mod annulus;
 mod cattaneo_mindlin;
 mod contact_patch;
+mod deck;
 mod document;
 mod hertz;
 mod konter;
