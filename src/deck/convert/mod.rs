@@ -115,8 +115,7 @@ impl Conversion<'_> {
         let loads = self.loads(&state)?;
         let references = self.references(&state)?;
         let rotations = self.rotations(&state)?;
-        let settings = self.settings();
-        let file = self.deck.files[0].clone();
+        let (settings, file) = (self.settings(), self.deck.files[0].clone());
         let mut model = Model {
             title: self.deck.title.clone().unwrap_or_else(|| stem(&file)),
             mesh_file: file.clone(),
