@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-use crate::assembly::System;
+use crate::assembly::{Prestress, System};
 use crate::contact::Interface;
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::{Block, Comm, Factor, FactorKind, Vector};
@@ -27,6 +27,8 @@ pub(super) struct Whole<'a> {
     pub system: &'a System,
     /// The contacts.
     pub interface: &'a Interface,
+    /// What makes the geometric stiffness of an equilibrium, where the model has prestress.
+    pub prestress: Option<&'a Prestress<'a>>,
     /// The basis V of the super-element.
     pub basis: &'a Block,
     /// The factor of K_ref.
@@ -48,8 +50,8 @@ struct ReducedSolution {
 impl ReducedSolution {
     /// Of a super-element at some friction values, on one rank.
     fn at_all(alone: &Comm, reduced: &Structure, values: &[f64], band: [f64; 2]) -> Result<Vec<ReducedSolution>> {
-        let system = reduced.assemble(alone)?;
-        let mut sweep = Sweep::new(&system, reduced.interface(), reduced.friction_damping())?;
+        let (system, prestress) = (reduced.assemble(alone)?, reduced.prestress()?);
+        let mut sweep = Sweep::of(reduced, &system, prestress.as_ref())?;
         values.iter().map(|&friction| ReducedSolution::at(&mut sweep, friction, band)).collect()
     }
 
@@ -97,7 +99,9 @@ pub(super) fn certify(
     let metric = project(DMatrix::zeros(0, 0), basis, &k_ref)?;
     let inverse = metric.cholesky().ok_or_else(|| Error::Singular { found_by: "Cholesky of the basis".into() })?;
     let inverse_metric = Some(inverse.inverse());
-    let whole = Whole { system: &system, interface, basis, factor: &factor, inverse_metric };
+    let prestress = full.prestress()?;
+    let whole =
+        Whole { system: &system, interface, prestress: prestress.as_ref(), basis, factor: &factor, inverse_metric };
     solutions.iter().map(|solution| whole.compare(solution, structure.friction_damping())).collect()
 }
 
@@ -131,7 +135,7 @@ impl Whole<'_> {
             [&solution.right, &solution.left].map(|vectors| self.basis.combined(vectors, 2 * lambdas.len()));
         let equilibrium = equilibrium(self.system, self.interface, self.basis, solution)?;
         let equilibrium_error = self.equilibrium_error(&equilibrium)?;
-        let mut sweep = Sweep::new(self.system, self.interface, friction_damping)?;
+        let mut sweep = Sweep::new(self.system, self.interface, friction_damping)?.with_prestress(self.prestress);
         let approximation = Approximation { lambdas: &lambdas, right: &right, left: &left };
         let corrections =
             sweep.linearise(&equilibrium, |problem| corrections(problem, &approximation, |r| self.answer(r)))?;

@@ -114,8 +114,9 @@ pub fn explain(
             let element = &reduced.element;
             let parts = element.parts.iter().map(|part| (Kind::Part, part.name.clone()));
             let named: Vec<_> = parts.chain(element.rest.iter().map(|rest| (Kind::Rest, rest.clone()))).collect();
-            let forms = |system: &System, vectors: [Complex; 2]| part_forms(element, system, vectors);
-            let sources = SourceForms { named: &named, forms: &forms, slopes: &[] };
+            let forms = |system: &System, vectors: [Complex; 2]| part_forms(element, system, mode.lambda, vectors);
+            let laws: Vec<_> = element.parts.iter().map(|part| part.law.as_ref()).collect();
+            let sources = SourceForms { named: &named, forms: &forms, slopes: &slopes(&laws, mode.lambda) };
             sweep.explain(&sources, None, equilibrium, mode, left)
         }
     }
@@ -148,10 +149,14 @@ pub fn explain_full(
         }
         Ok(forms)
     };
-    let slope = |law: &ViscoelasticLaw| law.slope(mode.lambda) / law.factor(mode.lambda).re;
-    let slopes: Vec<Complex64> = laws.iter().map(|law| law.map_or(Complex64::ZERO, slope)).collect();
-    let sources = SourceForms { named: &named, forms: &forms, slopes: &slopes };
+    let sources = SourceForms { named: &named, forms: &forms, slopes: &slopes(&laws, mode.lambda) };
     sweep.explain(&sources, Some(&families.turning), equilibrium, mode, left)
+}
+
+/// What the derivative of the stiffness of parts with some laws is at an eigenvalue, relative to its real part.
+fn slopes(laws: &[Option<&ViscoelasticLaw>], lambda: Complex64) -> Vec<Complex64> {
+    let slope = |law: &ViscoelasticLaw| law.slope(lambda) / law.factor(lambda).re;
+    laws.iter().map(|law| law.map_or(Complex64::ZERO, slope)).collect()
 }
 
 /// The forms of a part whose stiffness at rest is multiplied by r: the imaginary part of that is structural damping.
@@ -159,8 +164,8 @@ fn viscoelastic(at_rest: &Forms, r: Complex64) -> Forms {
     Forms { k: r.re * at_rest.k, g: Some(at_rest.g.unwrap_or_default() + r.im * at_rest.k), ..*at_rest }
 }
 
-/// The forms of the parts of a super-element, and of its rest where it has one.
-fn part_forms(element: &SuperElement, system: &System, [y, x]: [Complex; 2]) -> Result<Vec<Forms>> {
+/// The forms of the parts of a super-element at an eigenvalue, and of its rest where it has one.
+fn part_forms(element: &SuperElement, system: &System, lambda: Complex64, [y, x]: [Complex; 2]) -> Result<Vec<Forms>> {
     let n = element.n_coordinates();
     let columns = |v: Complex| -> Result<Vec<f64>> {
         Ok(coordinates(system, &[v.re, v.im])?.iter().flat_map(|column| &column[..n]).copied().collect())
@@ -181,6 +186,11 @@ fn part_forms(element: &SuperElement, system: &System, [y, x]: [Complex; 2]) -> 
             Forms { m: rest.m - own.m, c: rest.c - own.c, k: rest.k - own.k, g }
         };
         forms.push(forms.iter().fold(total, less));
+    }
+    for (form, part) in forms.iter_mut().zip(&element.parts) {
+        if let Some(law) = &part.law {
+            *form = viscoelastic(form, law.factor(lambda));
+        }
     }
     Ok(forms)
 }

@@ -83,9 +83,7 @@ pub fn export(
     folder: Option<&Folder>,
     observer: &mut dyn Observer,
 ) -> Result<Exported> {
-    if let Structure::Full(full) = structure {
-        full.model.require_no_viscoelastic("the matrices written have one stiffness whatever the frequency")?;
-    }
+    require_one_stiffness(structure)?;
     let friction = if options.with_contact { Some(one_value(structure, options)?) } else { None };
     observer.event(Event::Stage("assembling"));
     let system = structure.assemble(comm)?;
@@ -101,6 +99,19 @@ pub fn export(
     system.g.iter().try_for_each(|g| export.matrix(&STRUCTURAL, g))?;
     export.rows(structure, &system)?;
     Ok(Exported { title: structure.title().to_owned(), friction, n_dofs: system.dofs.n_global(), files: export.files })
+}
+
+/// Refuses viscoelastic materials.
+fn require_one_stiffness(structure: &Structure) -> Result<()> {
+    const WHAT: &str = "the matrices written have one stiffness whatever the frequency";
+    match structure {
+        Structure::Full(full) => full.model.require_no_viscoelastic(WHAT),
+        Structure::Reduced(reduced) if reduced.element.viscoelastic.is_empty() => Ok(()),
+        Structure::Reduced(_) => {
+            let advice = "Make one of a model whose materials have a young and a loss_factor";
+            Err(Error::input(format!("{WHAT}, and the super-element has viscoelastic materials. {advice}")))
+        }
+    }
 }
 
 /// The friction coefficient of the equilibrium.

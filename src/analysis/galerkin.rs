@@ -93,6 +93,11 @@ impl GalerkinOptions {
 }
 
 impl GalerkinOptions {
+    /// The sample in the middle of those of the modes: where the basis has its energy, and prestress its stress.
+    fn middle(&self) -> Sample {
+        self.modes[self.modes.len() / 2]
+    }
+
     /// Accuracy of the modes' vectors.
     fn vector_accuracy(&self) -> f64 {
         VECTOR_ACCURACY * self.negligible
@@ -173,7 +178,7 @@ pub fn reduce_galerkin(
 
     observer.event(Event::Stage("making the basis"));
     let clock = Instant::now();
-    let k_ref = snapshots.reference_stiffness(model, &system, options.modes[options.modes.len() / 2])?;
+    let k_ref = snapshots.reference_stiffness(model, &system, options.middle())?;
     let mut factor = Factor::new(FactorKind::Symmetric);
     factor.factorise(&k_ref)?;
     let mut basis = Basis::new(&k_ref, &snapshots.modes[0], options.max_coordinates);
@@ -182,7 +187,9 @@ pub fn reduce_galerkin(
 
     observer.event(Event::Stage("projecting the matrices"));
     let clock = Instant::now();
-    let (element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
+    let (mut element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
+    let middle = snapshots.equilibrium(options.middle())?;
+    model.freeze_prestress(&mut element, &system, &middle, basis.vectors())?;
     let kept = options.keep_basis.then(|| nodal_basis::gathered(&system, &model.nodes, basis.vectors()));
     place.write(comm, &element, &surface, kept.as_deref())?;
     drop((surface, kept));
@@ -193,7 +200,9 @@ pub fn reduce_galerkin(
     let reduced = ReducedModel::new(&options.file, element.clone(), OuterSurface::default());
     let reduced = Structure::Reduced(Box::new(reduced));
     let (interface, basis) = (&model.interface, basis.vectors());
-    let whole = Whole { system: &system, interface, basis, factor: &factor, inverse_metric: None };
+    let prestress = model.prestress()?;
+    let prestress = prestress.as_ref();
+    let whole = Whole { system: &system, interface, prestress, basis, factor: &factor, inverse_metric: None };
     let certificates = whole.certify(&reduced, &snapshots.test_values(options), model.model.band)?;
     report.test_seconds = clock.elapsed().as_secs_f64();
     report.seconds = start.elapsed().as_secs_f64();
@@ -240,7 +249,9 @@ impl Snapshots {
     ) -> Result<()> {
         let mut interface = model.interface.clone();
         interface.scale_contact_stiffness(path[0].0.contact_stiffness);
+        let prestress = model.prestress()?;
         let mut sweep = Sweep::new(system, &interface, model.model.friction_damping)?;
+        sweep = sweep.with_prestress(prestress.as_ref());
         sweep.search_by(EigenOptions::with_vector_accuracy(accuracy));
         for &(sample, end) in path {
             let equilibrium = match self.states.iter().find(|state| state.sample == Sample::at(sample.friction)) {
@@ -262,11 +273,16 @@ impl Snapshots {
         Ok(())
     }
 
-    /// The stiffness at a state with contact and without friction's coupling. Collective.
-    fn reference_stiffness(&self, model: &FullModel, system: &System, sample: Sample) -> Result<Matrix> {
+    /// The equilibrium at a sample.
+    fn equilibrium(&self, sample: Sample) -> Result<Equilibrium> {
         let state = self.states.iter().find(|state| state.sample == sample).expect("every sample has a state");
         let (u, responses) = (state.u.duplicate()?, state.responses.clone());
-        let equilibrium = Equilibrium { u, responses, friction: sample.friction, steps: Vec::new() };
+        Ok(Equilibrium { u, responses, friction: sample.friction, steps: Vec::new() })
+    }
+
+    /// The stiffness at a state with contact and without friction's coupling. Collective.
+    fn reference_stiffness(&self, model: &FullModel, system: &System, sample: Sample) -> Result<Matrix> {
+        let equilibrium = self.equilibrium(sample)?;
         Sweep::new(system, &model.interface, false)?.symmetric_stiffness(&equilibrium)
     }
 

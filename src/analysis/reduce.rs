@@ -9,7 +9,7 @@ use crate::reduction::craig_bampton::Costs;
 use crate::reduction::file;
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::SuperElement;
-use crate::structure::{FullModel, ONE_STIFFNESS};
+use crate::structure::FullModel;
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer, warn};
@@ -36,8 +36,6 @@ impl SuperElementPlace<'_> {
         model.require_constrained(comm)?;
         model.require_mass()?;
         model.require_no_prescribed()?;
-        model.require_no_prestress()?;
-        model.model.require_no_viscoelastic(ONE_STIFFNESS)?;
         comm.agree(if comm.is_root() { self.may_write() } else { Ok(()) })
     }
 

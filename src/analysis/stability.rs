@@ -12,7 +12,7 @@ use crate::output::fields::FieldWriter;
 use crate::output::summary;
 use crate::results::{About, Results, Source};
 use crate::stability::{Complex, Mode};
-use crate::structure::{ONE_STIFFNESS, Structure};
+use crate::structure::Structure;
 use crate::tracking::track;
 use crate::{Error, Result};
 
@@ -111,9 +111,6 @@ impl StabilityOptions {
     fn job(&self, structure: &Structure) -> Result<Job> {
         if self.reduce_each && matches!(structure, Structure::Reduced(_)) {
             return Err(Error::input("a super-element cannot be reduced again: --reduce-each is for models"));
-        }
-        if let (true, Structure::Full(full)) = (self.reduce_each, structure) {
-            full.model.require_no_viscoelastic(ONE_STIFFNESS)?;
         }
         match (&self.certify, structure) {
             (Some(_), Structure::Reduced(reduced)) => reduced.require_basis()?,
@@ -215,7 +212,8 @@ fn reduced_modes_at(run: &mut Run, full: &Equilibrium) -> Result<ValueResult> {
     let structure = run.structure.reduced_about(run.system, full)?;
     structure.band(Some(band))?;
     let system = structure.assemble(run.system.k.comm())?;
-    let mut sweep = Sweep::new(&system, structure.interface(), structure.friction_damping())?;
+    let prestress = structure.prestress()?;
+    let mut sweep = Sweep::of(&structure, &system, prestress.as_ref())?;
     let equilibrium = sweep.equilibrium(friction, run.observer)?;
     let modes = sweep.modes(&equilibrium, band, run.observer)?;
     let fields = FieldWriter { structure: &structure, system: &system, folder: run.fields.folder };

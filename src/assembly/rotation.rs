@@ -135,7 +135,15 @@ fn coriolis_and_softening(omega: [f64; 3]) -> [[[f64; 3]; 3]; 2] {
 }
 
 /// What makes the geometric stiffness of an equilibrium.
-pub struct Prestress<'a> {
+pub enum Prestress<'a> {
+    /// The stress of that equilibrium.
+    Stress(StressedSolids<'a>),
+    /// `K_g` of another one, by rows, on the first displacements of a system on one rank, N/m.
+    Frozen(&'a [f64]),
+}
+
+/// Solid elements that an equilibrium stresses.
+pub struct StressedSolids<'a> {
     solids: Solids<'a>,
     /// Prescribed displacements, which the system's vectors lack: by node, m.
     prescribed: &'a BTreeMap<u32, [f64; 3]>,
@@ -144,7 +152,7 @@ pub struct Prestress<'a> {
 impl<'a> Prestress<'a> {
     /// Of the solid elements of a model.
     pub fn new(solids: Solids<'a>, prescribed: &'a BTreeMap<u32, [f64; 3]>) -> Prestress<'a> {
-        Prestress { solids, prescribed }
+        Prestress::Stress(StressedSolids { solids, prescribed })
     }
 
     /// `K += K_g(u)`, on K's own pattern. Collective.
@@ -152,6 +160,22 @@ impl<'a> Prestress<'a> {
     /// # Errors
     /// PETSc's.
     pub fn add(&self, system: &System, u: &Vector, k: &mut Matrix) -> Result<()> {
+        match self {
+            Prestress::Stress(stressed) => stressed.add(system, u, k),
+            Prestress::Frozen(stiffness) => {
+                let mut indices = Vec::new();
+                let nodes: Vec<u32> = (0..stiffness.len().isqrt().div_ceil(3) as u32).collect();
+                system.dofs.indices_into(&nodes, &mut indices);
+                indices.truncate(stiffness.len().isqrt());
+                k.add_block(&indices, stiffness)?;
+                k.finish()
+            }
+        }
+    }
+}
+
+impl StressedSolids<'_> {
+    fn add(&self, system: &System, u: &Vector, k: &mut Matrix) -> Result<()> {
         let mut nodal = system.nodal(&[u])?.remove(0);
         add_prescribed(&mut nodal, self.prescribed);
         let (mut dense, mut indices) = (Vec::new(), Vec::new());

@@ -109,7 +109,7 @@ impl Model {
     }
 
     /// Refuses a viscoelastic material for what has one stiffness whatever the frequency. `what` says what that is, as
-    /// "a super-element has one stiffness whatever the frequency".
+    /// "the matrices written have one stiffness whatever the frequency".
     ///
     /// # Errors
     /// [`Error::Input`] that names part and material.

@@ -105,6 +105,27 @@ impl ViscoelasticLaw {
     }
 }
 
+impl ViscoelasticLaw {
+    /// Whether its numbers are those of a material: for laws that do not come from a model file.
+    pub fn is_sound(&self) -> bool {
+        let is_positive = |x: &f64| *x > 0.0 && x.is_finite();
+        match self {
+            ViscoelasticLaw::Maxwell(elements) => {
+                elements.iter().all(|own| is_positive(&own.ratio) && is_positive(&own.relaxation_time))
+            }
+            ViscoelasticLaw::FractionalZener(own) => {
+                [own.unrelaxed_ratio, own.relaxation_time, own.order].iter().all(is_positive)
+            }
+            ViscoelasticLaw::Table(ModulusTable { frequencies, ratios, loss_factors }) => {
+                let rises = frequencies.is_sorted_by(|a, b| a < b) && frequencies.iter().chain(ratios).all(is_positive);
+                let n = frequencies.len();
+                let is_loss = |x: &f64| *x >= 0.0 && x.is_finite();
+                n > 0 && rises && [ratios.len(), loss_factors.len()] == [n; 2] && loss_factors.iter().all(is_loss)
+            }
+        }
+    }
+}
+
 impl FractionalZener {
     /// `(s tau)^alpha`, 0 at 0.
     fn fractional(&self, s: Complex64) -> Complex64 {
@@ -281,6 +302,26 @@ mod tests {
         let middle = (3.0 * 20.0_f64).sqrt() * Complex64::new(1.0, 0.7);
         assert!((at(1e4 / 10_f64.sqrt()) - middle).norm() < 1e-12);
         assert!((at(1.0) - Complex64::new(1.0, 0.2)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn laws_of_no_material_are_not_sound() {
+        assert!(laws().iter().all(ViscoelasticLaw::is_sound));
+        let [maxwell, zener, table] = laws();
+        let ViscoelasticLaw::Table(table) = table else { panic!("a table") };
+        let ViscoelasticLaw::FractionalZener(zener) = zener else { panic!("a fractional law") };
+        assert!(!ViscoelasticLaw::FractionalZener(FractionalZener { order: f64::NAN, ..zener }).is_sound());
+        let ViscoelasticLaw::Maxwell(mut elements) = maxwell else { panic!("Maxwell's law") };
+        elements[1].relaxation_time = 0.0;
+        assert!(!ViscoelasticLaw::Maxwell(elements).is_sound());
+        for wrong in [
+            ModulusTable { frequencies: Vec::new(), ratios: Vec::new(), loss_factors: Vec::new() },
+            ModulusTable { frequencies: vec![100.0, 1e4, 1e3], ..table.clone() },
+            ModulusTable { ratios: vec![1.0, 2.0], ..table.clone() },
+            ModulusTable { loss_factors: vec![0.1, -0.2, 0.3], ..table },
+        ] {
+            assert!(!ViscoelasticLaw::Table(wrong.clone()).is_sound(), "{wrong:?}");
+        }
     }
 
     #[test]

@@ -50,7 +50,7 @@ impl<'a> ReductionDocument<'a> {
         format!(
             "{}: super-element at friction {}\n\n\
              {} contacts, {} retained points, {} fixed-interface modes below {} Hz and {} residual modes: {} coordinates \
-             instead of {}\n\n\
+             instead of {}\n{}\n\
              equilibrium            {:8.1} s\n\
              one LDL^T factor       {:8.1} s  {:.0} M entries, {:.0} MB, ordering {}\n\
              constraint modes       {:8.1} s  {} solves in blocks\n\
@@ -67,6 +67,7 @@ impl<'a> ReductionDocument<'a> {
             self.residual_modes,
             self.coordinates,
             self.origin.n_dofs,
+            prestress(self.origin),
             self.seconds_before,
             factor.analysis_seconds + factor.factorisation_seconds,
             1e-6 * factor.entries,
@@ -80,6 +81,12 @@ impl<'a> ReductionDocument<'a> {
             self.seconds,
         )
     }
+}
+
+/// A line about the geometric stiffness, where there is one.
+fn prestress(origin: &Origin) -> String {
+    let what = "its modes have the geometric stiffness of the equilibrium at friction";
+    origin.prestress_friction.map_or(String::new(), |mu| format!("prestress is frozen: {what} {mu}\n"))
 }
 
 /// A Galerkin super-element just made: where its coordinates come from, and the seconds that its steps took.
@@ -128,7 +135,7 @@ impl<'a> GalerkinDocument<'a> {
              all {} contact points, {} coordinates instead of {}\n\n\
              {:4} of {} equilibria\n\
              {:4} of the right and left modes below {} Hz at {} samples\n\
-             {:4} of static answers at {} points that open or close\n\n\
+             {:4} of static answers at {} points that open or close\n{}\n\
              between the samples, estimated by the full model's residuals:\n{tests}\n\
              equilibria             {:8.1} s\n\
              modes                  {:8.1} s\n\
@@ -150,6 +157,7 @@ impl<'a> GalerkinDocument<'a> {
             report.mode_samples,
             report.coordinates_of_static_answers,
             report.switching_points,
+            prestress(self.origin),
             report.equilibrium_seconds,
             report.mode_seconds,
             report.left_seconds,

@@ -29,6 +29,11 @@
 //! modes* `E = A M Psi Y`, one for each. They take the error of a frequency at half the limit from some 1e-3 to some
 //! 1e-5.
 //!
+//! Viscoelastic materials have their stiffness at a reference frequency in `K_s`, that at rest in the reduced stiffness,
+//! and a reduced stiffness `T^T K_m T` for each law. What the interior does as the stiffness changes is to first order
+//! `A K_m T Y`, one for each law and each of these modes; and the equilibrium, at rest, adds `(I - Psi B) u`. Both join
+//! the basis.
+//!
 //! Sources: R. R. Craig, M. C. C. Bampton, *Coupling of substructures for dynamic analyses*, AIAA Journal 6 (1968), eq.
 //! 5-14; J.-G. Kim, P.-S. Lee, *An enhanced Craig-Bampton method*, Int. J. Numer. Meth. Engng 103 (2015) (the residual
 //! term; here as vectors of the basis).
@@ -43,6 +48,7 @@ use crate::assembly::System;
 use crate::contact::{GapOperator, Interface};
 use crate::equilibrium::Equilibrium;
 use crate::native::{Block, Factor, FactorKind, FactorStats, Matrix, Mck, Noise, Vector, lapack};
+use crate::stability::Viscoelastic;
 use crate::{Error, Result};
 
 use super::fixed_interface::{self, Modes};
@@ -69,6 +75,15 @@ pub struct Structure<'a> {
     pub equilibrium: &'a Equilibrium,
     /// Lists of nodes whose mean motions are retained.
     pub loaded: &'a [Vec<u32>],
+    /// Frequency at which the basis has the stiffness of viscoelastic materials, rad/s.
+    pub reference: f64,
+}
+
+impl Structure<'_> {
+    /// What of the stiffness depends on the frequency.
+    pub(super) fn viscoelastic(&self) -> Viscoelastic<'_> {
+        Viscoelastic { stiffnesses: &self.system.viscoelastic, reference: self.reference }
+    }
 }
 
 /// What a reduction is doing.
@@ -115,6 +130,8 @@ pub struct Reduced {
     pub basis: Block,
     /// `T^T M T`, `T^T C T`, `T^T K T` and `T^T G T`, K without the sliding contacts.
     pub matrices: Mck<DMatrix<f64>>,
+    /// `T^T K_m T` at rest of each viscoelastic law, part of the stiffness.
+    pub viscoelastic: Vec<DMatrix<f64>>,
     /// `T^T F_ext`, N.
     pub load: Vec<f64>,
     /// `T^T (F - F_ext)`: what the other contacts' forces are beside their linear part, N.
@@ -136,7 +153,7 @@ pub struct Reduced {
 /// let brake = FullModel::read_with_contacts(&comm, "brake.toml".as_ref(), Some(104))?;
 /// let (system, interface) = (brake.assemble(&comm, &brake.families()?)?, &brake.interface);
 /// let equilibrium = Path::new(&system, interface)?.advance(0.4, &mut |_, _, _| ())?;
-/// let structure = Structure { system: &system, interface, equilibrium: &equilibrium, loaded: &[] };
+/// let structure = Structure { system: &system, interface, equilibrium: &equilibrium, loaded: &[], reference: 0.0 };
 /// let reduced = reduce(&structure, 12e3, &mut |_| ())?;
 /// println!("{} coordinates", reduced.load.len());
 /// # Ok::<(), squeal::Error>(())
@@ -170,20 +187,50 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
 
     progress(Event::Project);
     let start = Instant::now();
-    let none = || DMatrix::zeros(0, 0);
-    let coarse = [project(none(), &basis, &system.m)?, project(none(), &basis, &linear.stiffness)?];
-    let motions = motions(&coarse[0], &coarse[1], &linear.contacts, REACH * limit, functionals.len())?;
-    basis.append(&interior.residual_modes(&basis, &motions, &modes)?);
-    let [mass, stiffness] = coarse;
-    let (mass, stiffness) = (project(mass, &basis, &system.m)?, project(stiffness, &basis, &linear.stiffness)?);
+    let coarse = Projected::default().extended(&basis, system, &linear)?;
+    let at_reference = coarse.stiffness_at_reference(&structure.viscoelastic());
+    let motions = motions(&coarse.mass, &at_reference, &linear.contacts, REACH * limit)?;
+    let residual = interior.residual_modes(&basis, &motions, &modes)?;
+    let answers = interior.viscoelastic_answers(&basis, &motions, [&modes.shapes, &residual], structure)?;
+    basis.append(&residual);
+    basis.append(&answers);
+    let projected = coarse.extended(&basis, system, &linear)?;
     let damping = project_damping(&basis, system)?;
-    let structural = system.g.as_ref().map(|g| project(none(), &basis, g)).transpose()?;
+    let structural = system.g.as_ref().map(|g| project(DMatrix::zeros(0, 0), &basis, g)).transpose()?;
     costs.projection_seconds = start.elapsed().as_secs_f64();
     let load = shadow(&basis, &system.load)?;
     let preload = shadow(&basis, &linear.preload)?;
     let frequencies = modes.frequencies;
+    let Projected { mass, stiffness, viscoelastic } = projected;
     let matrices = Mck { m: mass, c: damping, k: stiffness, g: structural };
-    Ok(Reduced { retained, contacts, frequencies, basis, matrices, load, preload, costs })
+    Ok(Reduced { retained, contacts, frequencies, basis, matrices, viscoelastic, load, preload, costs })
+}
+
+/// The projections of the symmetric matrices, which grow with the basis.
+#[derive(Default)]
+struct Projected {
+    mass: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    viscoelastic: Vec<DMatrix<f64>>,
+}
+
+impl Projected {
+    /// Those of a basis that begins with the one they have.
+    fn extended(mut self, basis: &Block, system: &System, linear: &Linear) -> Result<Projected> {
+        self.viscoelastic.resize(system.viscoelastic.len(), DMatrix::zeros(0, 0));
+        let laws = self.viscoelastic.into_iter().zip(&system.viscoelastic);
+        Ok(Projected {
+            mass: project(self.mass, basis, &system.m)?,
+            stiffness: project(self.stiffness, basis, &linear.stiffness)?,
+            viscoelastic: laws.map(|(known, own)| project(known, basis, &own.stiffness)).collect::<Result<_>>()?,
+        })
+    }
+
+    /// With the stiffness of viscoelastic materials at the reference frequency.
+    fn stiffness_at_reference(&self, viscoelastic: &Viscoelastic) -> DMatrix<f64> {
+        let terms = viscoelastic.stiffnesses.iter().zip(&self.viscoelastic);
+        terms.fold(self.stiffness.clone(), |sum, (own, matrix)| sum + (viscoelastic.rho(own) - 1.0) * matrix)
+    }
 }
 
 /// The static problem with all retained points held.
@@ -244,12 +291,40 @@ impl Interior<'_> {
         if motions.ncols() == 0 {
             return Ok(psi.columns(0..0));
         }
-        let moved = psi.leading_combined(self.functionals.len(), motions.as_slice(), motions.ncols());
+        let retained = motions.rows(0, self.functionals.len()).into_owned();
+        let moved = psi.leading_combined(self.functionals.len(), retained.as_slice(), motions.ncols());
         let mut answer = self.answer(psi, &moved.multiplied_by(&self.system.m)?)?;
         let room = self.n_dimensions() - modes.frequencies.len();
         fixed_interface::make_orthonormal(&modes.shapes, &mut answer, &self.system.m, NEGLIGIBLE_ADDITION, room)?;
         self.hold(psi, &mut answer);
         Ok(answer)
+    }
+
+    /// What the interior does as the stiffness of viscoelastic materials changes in some motions, `A K_m T Y`, and in
+    /// the equilibrium, beside what is `known` of it: M-orthonormal. None where no material is viscoelastic.
+    fn viscoelastic_answers(
+        &self,
+        basis: &Block,
+        motions: &DMatrix<f64>,
+        known: [&Block; 2],
+        structure: &Structure,
+    ) -> Result<Block> {
+        let (laws, u) = (&self.system.viscoelastic, &structure.equilibrium.u);
+        if laws.is_empty() {
+            return Ok(basis.columns(0..0));
+        }
+        let mut answers = Block::from_columns(u.comm(), u.n_local(), u.to_vec()?);
+        self.hold(basis, &mut answers);
+        let moved = basis.combined(motions.as_slice(), motions.ncols());
+        for own in laws {
+            answers.append(&self.answer(basis, &moved.multiplied_by(&own.stiffness)?)?);
+        }
+        let mut all = known[0].clone();
+        all.append(known[1]);
+        let room = self.n_dimensions() - all.n_columns();
+        fixed_interface::make_orthonormal(&all, &mut answers, &self.system.m, NEGLIGIBLE_ADDITION, room)?;
+        self.hold(basis, &mut answers);
+        Ok(answers)
     }
 }
 
@@ -277,13 +352,12 @@ fn arbitrary(system: &System, n_columns: usize) -> Block {
 }
 
 /// How the retained points move in the modes below `limit` (Hz) of the brake reduced so far, its contacts closed as at
-/// the equilibrium and without friction: a column of retained coordinates each.
+/// the equilibrium and without friction: a column of coordinates each.
 fn motions(
     mass: &DMatrix<f64>,
     stiffness: &DMatrix<f64>,
     contacts: &[[[f64; 3]; 3]],
     limit: f64,
-    n: usize,
 ) -> Result<DMatrix<f64>> {
     let mut k = stiffness.clone();
     for (c, d) in contacts.iter().enumerate() {
@@ -304,10 +378,8 @@ fn motions(
     let squares = lapack::symmetric_eigen(live.len(), y.as_mut_slice())?;
     let n_below = squares.iter().filter(|&&square| square < (TAU * limit).powi(2)).count();
     let x = l.tr_solve_lower_triangular(&y.columns(0, n_below)).expect("the diagonal of L is positive");
-    let mut motions = DMatrix::zeros(n, n_below);
-    for (row, &i) in live.iter().enumerate().filter(|&(_, &i)| i < n) {
-        motions.row_mut(i).copy_from(&x.row(row));
-    }
+    let mut motions = DMatrix::zeros(mass.nrows(), n_below);
+    live.iter().enumerate().for_each(|(row, &i)| motions.row_mut(i).copy_from(&x.row(row)));
     Ok(motions)
 }
 

@@ -1,14 +1,20 @@
 //! The file of a super-element, HDF5.
 //!
 //! ```text
-//! /                 attributes: format "squeal super-element", version 5
+//! /                 attributes: format "squeal super-element", version 6
 //! about             text, TOML: [origin] model, mesh with hash, friction, bands, samples; [[pair]] the pairs kept;
-//!                   parts; [[part_matrices]] name and damping of each part; rest, what is in no part
+//!                   parts; [[part_matrices]] name, damping and viscoelastic law of each part; rest, what is in no
+//!                   part; viscoelastic, the laws of which there is a stiffness
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
 //! mass, damping, stiffness      n x n, symmetric but for gyroscopic damping; n = 3 n_p + n_m + residual modes; kg,
 //!                               N s/m, N/m at the retained points, unit modal mass
+//!                               stiffness with that of viscoelastic materials at rest
 //! structural_damping            n x n, as stiffness; only where a stiffness has a loss factor
+//! viscoelastic_stiffnesses      n_v x n^2: the stiffness at rest of each viscoelastic law, part of stiffness; only
+//!                               where there is a law
+//! geometric_stiffness           n x n, of the equilibrium at prestress_at_friction of [origin], which modes have; only
+//!                               where the model has prestress
 //! part_masses, part_stiffnesses n_p x n^2: what each part adds to mass and stiffness; to damping it adds alpha and
 //!                   beta times these, to structural_damping its loss factor times its stiffness
 //! load, preload     n           generalised forces, N
@@ -37,17 +43,21 @@ use crate::contact::surface_points::Place;
 use crate::contact::{ContactPoint, PointLaw, Tangential};
 use crate::hdf::{self, Format, list, read_text, table, text, triples, values};
 use crate::model::Rayleigh;
+use crate::model::viscoelastic::ViscoelasticLaw;
 
 use super::pair_text::{PairText, pair_texts, pairs};
 use super::parts::PartMatrices;
 use super::recovery::OuterSurface;
-use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
+use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement, ViscoelasticTerm};
 
 const FORMAT: Format =
-    Format { name: "squeal super-element", version: 5, advice: "Make the super-element again with `squeal reduce`" };
+    Format { name: "squeal super-element", version: 6, advice: "Make the super-element again with `squeal reduce`" };
 
-/// The name of the matrix that only some have.
+/// The matrices that only some have.
 const STRUCTURAL_DAMPING: &str = "structural_damping";
+const GEOMETRIC_STIFFNESS: &str = "geometric_stiffness";
+/// The matrices of the viscoelastic laws, one after the other, which only some have.
+const VISCOELASTIC: &str = "viscoelastic_stiffnesses";
 /// The basis by nodes of the mesh, which only some have.
 const BASIS: &str = "basis";
 /// The matrices of the parts, one after the other.
@@ -61,6 +71,8 @@ struct About {
     parts: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     rest: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    viscoelastic: Vec<ViscoelasticLaw>,
     pair: Vec<PairText>,
     part_matrices: Vec<PartText>,
 }
@@ -71,6 +83,8 @@ struct PartText {
     name: String,
     rayleigh: Rayleigh,
     loss_factor: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    viscoelastic: Option<ViscoelasticLaw>,
 }
 
 /// Whether a file is a super-element, of whatever version. Not collective.
@@ -109,6 +123,7 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
         origin: element.origin.clone(),
         parts: surface.parts.clone(),
         rest: element.rest.clone(),
+        viscoelastic: element.viscoelastic.iter().map(|term| term.law.clone()).collect(),
         pair: pair_texts(element),
         part_matrices: element.parts.iter().map(part_text).collect(),
     };
@@ -120,7 +135,7 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
     table(file, "mass", n, &element.mass)?;
     table(file, "damping", n, &element.damping)?;
     table(file, "stiffness", n, &element.stiffness)?;
-    element.structural_damping.iter().try_for_each(|g| table(file, STRUCTURAL_DAMPING, n, g))?;
+    write_optional(file, element)?;
     table(file, PART_MASSES, n * n, &element.parts.iter().flat_map(|part| part.mass.clone()).collect::<Vec<_>>())?;
     let stiffnesses: Vec<f64> = element.parts.iter().flat_map(|part| part.stiffness.clone()).collect();
     table(file, PART_STIFFNESSES, n * n, &stiffnesses)?;
@@ -138,8 +153,22 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
     table(&group, "basis", 3 * surface.nodes.len(), &surface.basis)
 }
 
+/// The matrices that only some have.
+fn write_optional(file: &File, element: &SuperElement) -> hdf5::Result<()> {
+    let n = element.n_coordinates();
+    element.structural_damping.iter().try_for_each(|g| table(file, STRUCTURAL_DAMPING, n, g))?;
+    element.geometric_stiffness.iter().try_for_each(|k| table(file, GEOMETRIC_STIFFNESS, n, k))?;
+    let laws: Vec<f64> = element.viscoelastic.iter().flat_map(|term| term.stiffness.clone()).collect();
+    if laws.is_empty() { Ok(()) } else { table(file, VISCOELASTIC, n * n, &laws) }
+}
+
 fn part_text(part: &PartMatrices) -> PartText {
-    PartText { name: part.name.clone(), rayleigh: part.rayleigh, loss_factor: part.loss_factor }
+    PartText {
+        name: part.name.clone(),
+        rayleigh: part.rayleigh,
+        loss_factor: part.loss_factor,
+        viscoelastic: part.law.clone(),
+    }
 }
 
 fn write_contacts(group: &Group, contacts: &[NodeContact]) -> hdf5::Result<()> {
@@ -211,10 +240,9 @@ fn read_body(file: &File) -> hdf5::Result<SuperElement> {
         mass: values(file, "mass")?,
         damping: values(file, "damping")?,
         stiffness: values(file, "stiffness")?,
-        structural_damping: match file.link_exists(STRUCTURAL_DAMPING) {
-            true => Some(values(file, STRUCTURAL_DAMPING)?),
-            false => None,
-        },
+        viscoelastic: read_viscoelastic(file, about.viscoelastic)?,
+        geometric_stiffness: optional(file, GEOMETRIC_STIFFNESS)?,
+        structural_damping: optional(file, STRUCTURAL_DAMPING)?,
         load: values(file, "load")?,
         preload: values(file, "preload")?,
         contacts: read_contacts(&group, &pairs, &about.pair)?,
@@ -223,18 +251,40 @@ fn read_body(file: &File) -> hdf5::Result<SuperElement> {
     })
 }
 
-fn read_parts(file: &File, texts: Vec<PartText>) -> hdf5::Result<Vec<PartMatrices>> {
-    let (masses, stiffnesses): (Vec<f64>, Vec<f64>) = (values(file, PART_MASSES)?, values(file, PART_STIFFNESSES)?);
-    let length = masses.len() / texts.len().max(1);
-    if masses.len() != stiffnesses.len() || masses.len() != length * texts.len() {
-        return Err("the matrices of the parts differ in size".into());
+/// Values that only some files have.
+fn optional(file: &File, name: &str) -> hdf5::Result<Option<Vec<f64>>> {
+    file.link_exists(name).then(|| values(file, name)).transpose()
+}
+
+/// As many matrices of one size, which stand one after the other.
+fn matrices(file: &File, name: &str, n: usize) -> hdf5::Result<Vec<Vec<f64>>> {
+    let all: Vec<f64> = values(file, name)?;
+    match n {
+        _ if !all.len().is_multiple_of(n.max(1)) => Err(format!("{name} is not for {n} matrices").into()),
+        0 => Ok(Vec::new()),
+        _ => Ok((0..n).map(|i| all[i * all.len() / n..(i + 1) * all.len() / n].to_vec()).collect()),
     }
-    let part = |(i, text): (usize, PartText)| {
-        let own = |all: &[f64]| all[i * length..(i + 1) * length].to_vec();
-        let PartText { name, rayleigh, loss_factor } = text;
-        PartMatrices { name, mass: own(&masses), stiffness: own(&stiffnesses), rayleigh, loss_factor }
+}
+
+fn read_viscoelastic(file: &File, laws: Vec<ViscoelasticLaw>) -> hdf5::Result<Vec<ViscoelasticTerm>> {
+    let stiffnesses = if laws.is_empty() { Vec::new() } else { matrices(file, VISCOELASTIC, laws.len())? };
+    let term = |(law, stiffness): (ViscoelasticLaw, _)| match law.is_sound() {
+        true => Ok(ViscoelasticTerm { law, stiffness }),
+        false => Err("a viscoelastic law that no material has".into()),
     };
-    Ok(texts.into_iter().enumerate().map(part).collect())
+    laws.into_iter().zip(stiffnesses).map(term).collect()
+}
+
+fn read_parts(file: &File, texts: Vec<PartText>) -> hdf5::Result<Vec<PartMatrices>> {
+    let [masses, stiffnesses] = [PART_MASSES, PART_STIFFNESSES].map(|name| matrices(file, name, texts.len()));
+    let part = |(text, (mass, stiffness)): (PartText, (Vec<f64>, Vec<f64>))| {
+        let PartText { name, rayleigh, loss_factor, viscoelastic } = text;
+        match viscoelastic.as_ref().is_none_or(ViscoelasticLaw::is_sound) {
+            true => Ok(PartMatrices { name, mass, stiffness, rayleigh, loss_factor, law: viscoelastic }),
+            false => Err("a viscoelastic law that no material has".into()),
+        }
+    };
+    texts.into_iter().zip(masses?.into_iter().zip(stiffnesses?)).map(part).collect()
 }
 
 fn read_surface(file: &File) -> hdf5::Result<OuterSurface> {
@@ -291,7 +341,11 @@ fn inconsistency(element: &SuperElement) -> Option<String> {
         return Some(format!("{n} coordinates for {least} retained displacements and modes"));
     }
     let matrices = [("mass", &element.mass), ("damping", &element.damping), ("stiffness", &element.stiffness)];
-    let matrices = matrices.into_iter().chain(element.structural_damping.iter().map(|g| (STRUCTURAL_DAMPING, g)));
+    let optional =
+        [(STRUCTURAL_DAMPING, &element.structural_damping), (GEOMETRIC_STIFFNESS, &element.geometric_stiffness)];
+    let optional = optional.into_iter().filter_map(|(name, own)| Some((name, own.as_ref()?)));
+    let matrices = matrices.into_iter().chain(optional);
+    let matrices = matrices.chain(element.viscoelastic.iter().map(|term| (VISCOELASTIC, &term.stiffness)));
     let parts = element.parts.iter().flat_map(|part| [(PART_MASSES, &part.mass), (PART_STIFFNESSES, &part.stiffness)]);
     let matrices = matrices.chain(parts);
     let vectors = [("load", &element.load), ("preload", &element.preload)];

@@ -148,6 +148,8 @@ pub fn super_element(
         mass: m,
         damping: c,
         stiffness: k,
+        viscoelastic: matrices.viscoelastic(),
+        geometric_stiffness: None,
         structural_damping: g,
         rest: matrices.has_rest().then_some(matrices.rest_name),
         parts: matrices.parts,
@@ -230,6 +232,7 @@ mod tests {
             friction_damping: false,
             samples: vec![Sample::at(0.3)],
             criterion: crate::model::InstabilityCriterion::default(),
+            prestress_friction: None,
         }
     }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! K   = K_elements + sum_other B_a^T D_a B_a
 //! F   = F_ext + sum_other B_a^T (f_a + D_a g_a)
-//! K_s = K + B^T diag(k) B
+//! K_s = K_0 + B^T diag(k) B        K_0 = K with the stiffness of viscoelastic materials at the reference frequency
 //! ```
 
 use crate::Result;
@@ -15,7 +15,7 @@ use super::craig_bampton::Structure;
 
 /// The linear structure.
 pub(super) struct Linear {
-    /// K.
+    /// K, of viscoelastic materials that at rest.
     pub stiffness: Matrix,
     /// K_s, symmetric.
     pub supported: Matrix,
@@ -52,6 +52,7 @@ impl Linear {
             [[k, 0.0, 0.0], [0.0, k, 0.0], [0.0, 0.0, k]]
         };
         let mut supported = stiffness.duplicate()?;
+        structure.viscoelastic().add_to(&mut supported)?;
         Contacts::new(&sides, system)?.add_blocks((0..retained.len()).map(support), &mut supported)?;
         supported.declare_symmetric()?;
         Ok(Linear { stiffness, supported, preload, contacts: contacts.iter().map(|&a| frozen(a)).collect() })

@@ -14,6 +14,7 @@ pub mod functionals;
 pub mod galerkin;
 pub mod layout;
 mod linear;
+mod member;
 mod pair_text;
 pub mod parts;
 pub mod recovery;

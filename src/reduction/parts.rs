@@ -5,6 +5,7 @@
 //! C = sum_p (alpha_p M_p + beta_p K_p) + C_rest               G = sum_p g_p K_p + G_rest
 //! ```
 //!
+//! where K_p of a viscoelastic material is that at rest.
 //! The rest is what joints add, and contacts that were linearised. A part has exactly the share of an energy that it
 //! has in the full space at `u = V q`.
 
@@ -14,7 +15,10 @@ use crate::Result;
 use crate::assembly::{Elements, System};
 use crate::mesh::Numbering;
 use crate::model::Rayleigh;
+use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::native::{Block, Matrix, Mck};
+
+use super::super_element::ViscoelasticTerm;
 
 /// Columns multiplied at a time.
 const PANEL: usize = 64;
@@ -26,12 +30,14 @@ pub struct PartMatrices {
     pub name: String,
     /// `V^T M_part V`, column-major, kg.
     pub mass: Vec<f64>,
-    /// `V^T K_part V`, N/m.
+    /// `V^T K_part V`, N/m, at rest.
     pub stiffness: Vec<f64>,
     /// Its Rayleigh damping.
     pub rayleigh: Rayleigh,
     /// Loss factor of its material.
     pub loss_factor: f64,
+    /// The viscoelastic law of its material, where there is one.
+    pub law: Option<ViscoelasticLaw>,
 }
 
 /// The matrices of a super-element by where they come from.
@@ -66,6 +72,18 @@ impl MatricesByPart {
             }
         }
         total
+    }
+
+    /// The stiffness of each viscoelastic law: the sum over the parts that have it.
+    pub fn viscoelastic(&self) -> Vec<ViscoelasticTerm> {
+        let mut terms: Vec<ViscoelasticTerm> = Vec::new();
+        for (part, law) in self.parts.iter().filter_map(|part| Some((part, part.law.as_ref()?))) {
+            match terms.iter_mut().find(|term| term.law == *law) {
+                Some(term) => add(&mut term.stiffness, 1.0, &part.stiffness),
+                None => terms.push(ViscoelasticTerm { law: law.clone(), stiffness: part.stiffness.clone() }),
+            }
+        }
+        terms
     }
 }
 
@@ -111,6 +129,7 @@ impl Place<'_> {
             stiffness: own.project(&system.k)?,
             rayleigh: part.rayleigh,
             loss_factor: part.material.loss_factor,
+            law: part.material.viscoelastic.clone(),
         })
     }
 
@@ -173,9 +192,23 @@ impl OwnRows<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::viscoelastic::MaxwellElement;
 
     fn part(mass: f64, stiffness: f64, rayleigh: Rayleigh, loss_factor: f64) -> PartMatrices {
-        PartMatrices { name: String::new(), mass: vec![mass], stiffness: vec![stiffness], rayleigh, loss_factor }
+        let (name, mass, stiffness) = (String::new(), vec![mass], vec![stiffness]);
+        PartMatrices { name, mass, stiffness, rayleigh, loss_factor, law: None }
+    }
+
+    #[test]
+    fn parts_of_one_law_are_one_term() {
+        let law = |ratio: f64| Some(ViscoelasticLaw::Maxwell(vec![MaxwellElement { ratio, relaxation_time: 1e-5 }]));
+        let part = |stiffness: f64, law| PartMatrices { law, ..part(1.0, stiffness, Rayleigh::default(), 0.0) };
+        let parts = vec![part(30.0, law(2.0)), part(7.0, None), part(20.0, law(3.0)), part(12.0, law(2.0))];
+        let rest = Mck::from([vec![0.0], vec![0.0], vec![0.0]]);
+        let terms = MatricesByPart { parts, rest, rest_name: String::new() }.viscoelastic();
+        let found: Vec<(f64, Option<ViscoelasticLaw>)> =
+            terms.iter().map(|term| (term.stiffness[0], Some(term.law.clone()))).collect();
+        assert_eq!(found, [(42.0, law(2.0)), (20.0, law(3.0))]);
     }
 
     #[test]

@@ -16,15 +16,19 @@
 //! correction xi so that at the full model's equilibrium it gives the full model's force: `p(d + xi) = p_full` (Fazio,
 //! Nacivet, Sinou, eq. 11 and 12).
 
-use crate::assembly::{Connectivity, ElementMatrices, Elements, System};
+use nalgebra::DMatrix;
+
+use crate::assembly::{System, ViscoelasticStiffness};
 use crate::contact::interface::ContactPair;
 use crate::contact::{ContactPoint, GapOperator, Interface};
 use crate::mesh::Numbering;
+use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::model::{InstabilityCriterion, NormalLaw, Rayleigh, names};
 use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
 use super::craig_bampton::{Reduced, Structure};
+use super::member::Members;
 use super::parts::{PartMatrices, add};
 
 /// Where a super-element comes from.
@@ -60,6 +64,9 @@ pub struct Origin {
     /// What counts as an unstable mode.
     #[serde(rename = "unstable", default)]
     pub criterion: InstabilityCriterion,
+    /// Friction coefficient of the equilibrium whose geometric stiffness it has, where it has one.
+    #[serde(rename = "prestress_at_friction", default, skip_serializing_if = "Option::is_none")]
+    pub prestress_friction: Option<f64>,
 }
 
 /// A state of the full model at which a Galerkin super-element has its equilibrium and modes.
@@ -100,6 +107,15 @@ pub struct NodeContact {
     pub normal_force: f64,
 }
 
+/// The stiffness of all parts whose materials have the same viscoelastic law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViscoelasticTerm {
+    /// r.
+    pub law: ViscoelasticLaw,
+    /// At rest, N/m, part of the whole stiffness.
+    pub stiffness: Vec<f64>,
+}
+
 /// The reduced brake.
 #[derive(Debug, Clone)]
 pub struct SuperElement {
@@ -113,8 +129,12 @@ pub struct SuperElement {
     pub mass: Vec<f64>,
     /// Damping.
     pub damping: Vec<f64>,
-    /// Stiffness without the contacts.
+    /// Stiffness without the contacts, of viscoelastic materials that at rest.
     pub stiffness: Vec<f64>,
+    /// What of it depends on the frequency: a term for each viscoelastic law.
+    pub viscoelastic: Vec<ViscoelasticTerm>,
+    /// Geometric stiffness of one equilibrium ([`Origin::prestress_friction`]), which modes have and equilibria do not.
+    pub geometric_stiffness: Option<Vec<f64>>,
     /// Structural damping, where a stiffness has a loss factor.
     pub structural_damping: Option<Vec<f64>>,
     /// What each part adds to these matrices.
@@ -166,6 +186,10 @@ impl SuperElement {
             std::array::from_fn(|i| point.position[i] - point.law.gap * point.law.normal[i])
         });
         let points = slaves.chain(masters).chain(loaded.iter().copied()).collect();
+        let term = |(own, matrix): (&ViscoelasticStiffness, &DMatrix<f64>)| ViscoelasticTerm {
+            law: own.law.clone(),
+            stiffness: matrix.as_slice().to_vec(),
+        };
         Ok(SuperElement {
             origin,
             points,
@@ -173,6 +197,8 @@ impl SuperElement {
             mass: reduced.matrices.m.as_slice().to_vec(),
             damping: reduced.matrices.c.transpose().as_slice().to_vec(),
             stiffness: reduced.matrices.k.as_slice().to_vec(),
+            viscoelastic: structure.system.viscoelastic.iter().zip(&reduced.viscoelastic).map(term).collect(),
+            geometric_stiffness: None,
             structural_damping: reduced.matrices.g.as_ref().map(|g| g.as_slice().to_vec()),
             parts,
             rest: Some("joints and other contacts".into()),
@@ -263,11 +289,12 @@ impl SuperElement {
         let mut system = {
             let nodes = Numbering::even(held.len(), comm.rank(), comm.size());
             // The element couples all coordinates already.
-            System::assemble(comm, &nodes, &held, &[&Member::new(self)], &[])?
+            System::assemble(comm, &nodes, &held, &[&Members::new(self)], &[])?
         };
         // Every coordinate couples with every other.
+        let viscoelastic = system.viscoelastic.iter_mut().map(|own| &mut own.stiffness);
         let matrices = [&mut system.k, &mut system.m, &mut system.c].into_iter().chain(&mut system.g);
-        matrices.into_iter().try_for_each(Matrix::store_dense)?;
+        matrices.chain(viscoelastic).try_for_each(Matrix::store_dense)?;
         let force = |i: usize| self.load.get(i).map_or(0.0, |load| factor * load + self.preload[i]);
         let forces: Vec<_> = (0..held.len()).map(|n| (n as u32, [0, 1, 2].map(|i| force(3 * n + i)))).collect();
         system.add_load(&forces)?;
@@ -320,51 +347,5 @@ impl NodeContact {
                 point.law.penetration_under(self.normal_force) - point.law.penetration(self.displacement);
         }
         point
-    }
-}
-
-/// The super-element among the elements of an assembly, as a family of one.
-pub struct Member<'a> {
-    element: &'a SuperElement,
-    nodes: Vec<u32>,
-}
-
-impl<'a> Member<'a> {
-    /// The family.
-    pub fn new(element: &'a SuperElement) -> Self {
-        Member { element, nodes: (0..element.n_coordinates().div_ceil(3) as u32).collect() }
-    }
-}
-
-impl Connectivity for Member<'_> {
-    fn len(&self) -> usize {
-        1
-    }
-
-    fn nodes(&self, _: usize) -> &[u32] {
-        &self.nodes
-    }
-}
-
-impl Elements for Member<'_> {
-    fn has_structural_damping(&self) -> bool {
-        self.element.structural_damping.is_some()
-    }
-
-    fn is_gyroscopic(&self) -> bool {
-        self.element.is_gyroscopic()
-    }
-
-    fn matrices(&self, _: usize, out: &mut ElementMatrices) {
-        let (n, width) = (self.element.n_coordinates(), 3 * self.nodes.len());
-        let SuperElement { mass, damping, stiffness, structural_damping, .. } = self.element;
-        let real = [(&mut out.m, mass), (&mut out.c, damping), (&mut out.k, stiffness)];
-        for (to, from) in real.into_iter().chain(structural_damping.as_ref().map(|from| (&mut out.g, from))) {
-            to.clear();
-            to.resize(width * width, 0.0);
-            for (row, values) in to.chunks_exact_mut(width).zip(from.chunks_exact(n)) {
-                row[..n].copy_from_slice(values);
-            }
-        }
     }
 }

@@ -19,7 +19,7 @@ use super::forms::complex_product;
 use super::mode::backward_errors;
 use super::space::Side;
 use crate::Result;
-use crate::native::Block;
+use crate::native::{Block, Matrix};
 
 /// Eigenpairs of a problem in a subspace, as vectors of the whole: real and imaginary parts side by side.
 pub struct Approximation<'a> {
@@ -53,13 +53,20 @@ pub fn corrections(
     let backward_errors = backward_errors(problem, lambdas, right)?;
     let r_x = residuals(problem, right, lambdas, Side::Right)?;
     let r_y = residuals(problem, left, lambdas, Side::Left)?;
-    let [mass, damping] = [problem.matrices.m, problem.matrices.c].map(|a| Ok(left.gram(&right.multiplied_by(a)?)));
+    let form = |a: &Matrix| Ok(left.gram(&right.multiplied_by(a)?));
+    let [mass, damping] = [problem.matrices.m, problem.matrices.c].map(form);
+    let viscoelastic = problem.viscoelastic.stiffnesses.iter().map(|own| form(&own.stiffness));
     let n = 2 * lambdas.len();
-    let products = [r_y.gram(&answer(&r_x)?), left.gram(&r_x), mass?, damping?].map(|own| DMatrix::from_vec(n, n, own));
+    let square = |own| DMatrix::from_vec(n, n, own);
+    let viscoelastic = viscoelastic.map(|own| Ok(square(own?))).collect::<Result<Vec<_>>>()?;
+    let products = [r_y.gram(&answer(&r_x)?), left.gram(&r_x), mass?, damping?].map(square);
     let of = |(i, (&lambda, backward_error)): (usize, (&Complex64, f64))| {
         let [answered, direct, mass, damping] =
             products.each_ref().map(|own| complex_product(own, (i, false), (i, false)));
-        let slope = 2.0 * lambda * mass + damping;
+        let terms = problem.viscoelastic.slopes(lambda).zip(&viscoelastic);
+        let slope = 2.0 * lambda * mass
+            + damping
+            + terms.map(|(slope, own)| slope * complex_product(own, (i, false), (i, false))).sum::<Complex64>();
         Correction { lambda: lambda + (answered - direct) / slope, backward_error }
     };
     Ok(lambdas.iter().zip(backward_errors).enumerate().map(of).collect())

@@ -52,7 +52,8 @@ impl Viscoelastic<'_> {
         self.stiffnesses.iter().try_for_each(|own| k.axpy(self.rho(own) - 1.0, &own.stiffness))
     }
 
-    fn rho(&self, own: &ViscoelasticStiffness) -> f64 {
+    /// `rho_m`
+    pub fn rho(&self, own: &ViscoelasticStiffness) -> f64 {
         own.law.factor(Complex64::new(0.0, self.reference)).re
     }
 }

@@ -77,16 +77,4 @@ impl FullModel {
         let of = || Ok(Prestress::new(Solids::new(&self.model, &self.mesh)?, &self.prescribed));
         self.model.has_prestress().then(of).transpose()
     }
-
-    /// Refuses a brake whose modes have the geometric stiffness of the equilibrium, which a super-element lacks.
-    ///
-    /// # Errors
-    /// [`crate::Error::Input`].
-    pub fn require_no_prestress(&self) -> Result<()> {
-        if !self.model.has_prestress() {
-            return Ok(());
-        }
-        let what = "a super-element has no geometric stiffness of its equilibrium, and this model asks for it";
-        Err(crate::Error::input(format!("{}: {what}. Set prestress = false in [stability]", self.model.file.display())))
-    }
 }

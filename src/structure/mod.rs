@@ -54,9 +54,6 @@ use crate::native::Comm;
 use crate::results::{About, ContactFaces, Pair};
 use crate::{Error, Result};
 
-/// Why a super-element cannot be made of viscoelastic materials.
-pub const ONE_STIFFNESS: &str = "a super-element has one stiffness whatever the frequency";
-
 /// A brake, full or reduced.
 pub enum Structure {
     /// With all nodes of its mesh.
@@ -181,14 +178,15 @@ impl Structure {
         }
     }
 
-    /// What makes the geometric stiffness of an equilibrium; none where modes have none.
+    /// What makes the geometric stiffness of an equilibrium, of a super-element that of the equilibrium at which it was
+    /// made; none where modes have none.
     ///
     /// # Errors
     /// [`Error::Input`] where a part has no material.
     pub fn prestress(&self) -> Result<Option<Prestress<'_>>> {
         match self {
             Structure::Full(full) => full.prestress(),
-            Structure::Reduced(_) => Ok(None),
+            Structure::Reduced(reduced) => Ok(reduced.element.geometric_stiffness.as_deref().map(Prestress::Frozen)),
         }
     }
 
@@ -281,8 +279,6 @@ impl Structure {
     pub fn reduced_about(&self, system: &System, equilibrium: &Equilibrium) -> Result<Structure> {
         match self {
             Structure::Full(full) => {
-                full.require_no_prestress()?;
-                full.model.require_no_viscoelastic(ONE_STIFFNESS)?;
                 let limit = full.reduction_limit();
                 let (element, surface, _) = full.reduce(system.k.comm(), system, equilibrium, limit, &mut |_| ())?;
                 let reduced = ReducedModel::new(&full.model.file, element, surface);

@@ -112,6 +112,7 @@ impl ReducedModel {
         let file = if comm.is_root() && self.place.is_file() { digest(&self.place) } else { Ok(String::new()) };
         let is_damped = origin.friction_damping
             || self.element.structural_damping.is_some()
+            || !self.element.viscoelastic.is_empty()
             || self.element.damping.iter().any(|c| *c != 0.0);
         Ok(About {
             title: origin.title.clone(),
@@ -123,6 +124,7 @@ impl ReducedModel {
             pairs: pairs(&self.interface),
             undamped: !is_damped,
             structural_damping: self.element.structural_damping.is_some(),
+            viscoelastic: !self.element.viscoelastic.is_empty(),
             ..About::default()
         })
     }

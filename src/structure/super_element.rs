@@ -1,6 +1,9 @@
 //! From a brake at its equilibrium to a super-element.
 
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
+use nalgebra::DMatrix;
 
 use crate::Result;
 use crate::assembly::{Elements, Solids, System};
@@ -30,12 +33,14 @@ impl FullModel {
         progress: &mut dyn FnMut(Event),
     ) -> Result<(SuperElement, OuterSurface, Costs)> {
         let loaded: Vec<_> = self.loaded_names().into_iter().filter_map(|name| self.mesh.node_set(name)).collect();
-        let structure = Structure { system, interface: &self.interface, equilibrium, loaded: &loaded };
+        let reference = TAU * self.model.band[1];
+        let structure = Structure { system, interface: &self.interface, equilibrium, loaded: &loaded, reference };
         let reduced = craig_bampton::reduce(&structure, limit, progress)?;
         let centres: Vec<[f64; 3]> = loaded.iter().map(|nodes| self.centre(nodes)).collect();
         let origin = comm.agree(self.origin(comm, system, equilibrium.friction, limit))?;
         let parts = self.project_parts(&reduced.basis)?;
-        let element = SuperElement::new(origin, &structure, &reduced, parts, &centres)?;
+        let mut element = SuperElement::new(origin, &structure, &reduced, parts, &centres)?;
+        self.freeze_prestress(&mut element, system, equilibrium, &reduced.basis)?;
         let boundary = self.boundary(comm, system);
         let surface = OuterSurface::new(boundary, &self.mesh.parts, system, &reduced.basis)?;
         Ok((element, surface, reduced.costs))
@@ -60,6 +65,27 @@ impl FullModel {
         let element = galerkin::super_element(system, &self.interface, basis, matrices, origin)?;
         let surface = OuterSurface::new(self.boundary(comm, system), &self.mesh.parts, system, basis)?;
         Ok((element, surface))
+    }
+
+    /// Gives a super-element in a basis the geometric stiffness of an equilibrium, where the model has prestress.
+    /// Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn freeze_prestress(
+        &self,
+        element: &mut SuperElement,
+        system: &System,
+        equilibrium: &Equilibrium,
+        basis: &Block,
+    ) -> Result<()> {
+        let Some(prestress) = self.prestress()? else { return Ok(()) };
+        let mut k = system.k.zeros_like()?;
+        prestress.add(system, &equilibrium.u, &mut k)?;
+        let projected = craig_bampton::project(DMatrix::zeros(0, 0), basis, &k)?;
+        element.geometric_stiffness = Some(projected.as_slice().to_vec());
+        element.origin.prestress_friction = Some(equilibrium.friction);
+        Ok(())
     }
 
     /// What each part adds to the matrices of a super-element in a basis. Collective.
@@ -121,6 +147,7 @@ impl FullModel {
             limit,
             friction_damping: self.model.friction_damping,
             criterion: self.model.criterion,
+            prestress_friction: None,
             samples: Vec::new(),
         })
     }

@@ -45,12 +45,16 @@ pub struct DampedPad {
 impl DampedPad {
     /// With these materials "iron", "lining" and "steel", and another line of the connector.
     pub fn new(comm: &Comm, materials: &str, connector: &str) -> DampedPad {
-        let text = format!("{}{materials}{PARTS}{connector}", pressed_pad::SLIDING);
-        let brake = brake(&text, pressed_pad::mesh([2, 2, 1]));
+        let brake = brake(&text(materials, connector), pressed_pad::mesh([2, 2, 1]));
         let system = assembled(comm, &brake);
         let equilibrium = Sweep::new(&system, &brake.interface, false).unwrap().equilibrium(FRICTION, &mut ()).unwrap();
         DampedPad { brake, system, equilibrium }
     }
+}
+
+/// The model's text.
+pub fn text(materials: &str, connector: &str) -> String {
+    format!("{}{materials}{PARTS}{connector}", pressed_pad::SLIDING)
 }
 
 pub fn assembled(comm: &Comm, brake: &FullModel) -> System {

@@ -15,6 +15,7 @@ mod gravity;
 mod joints;
 mod manufactured_solution;
 mod prestress;
+mod reduced_terms;
 mod rotation;
 mod structural_damping;
 mod super_element;

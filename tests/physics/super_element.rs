@@ -98,7 +98,8 @@ impl Full {
     fn reduce(&self, limit: f64) -> (Reduced, SuperElement) {
         let loaded = [self.brake.mesh.node_set("piston_z1").unwrap()];
         let Full { brake, system, equilibrium, .. } = self;
-        let structure = Structure { system, interface: &brake.interface, equilibrium, loaded: &loaded };
+        let interface = &brake.interface;
+        let structure = Structure { system, interface, equilibrium, loaded: &loaded, reference: 0.0 };
         let reduced = craig_bampton::reduce(&structure, limit, &mut |_| ()).unwrap();
         let origin = Origin {
             title: "blocks".into(),
@@ -113,6 +114,7 @@ impl Full {
             friction_damping: brake.model.friction_damping,
             samples: Vec::new(),
             criterion: brake.model.criterion,
+            prestress_friction: None,
         };
         let element = SuperElement::new(origin, &structure, &reduced, Vec::new(), &[[0.0; 3]]).unwrap();
         (reduced, element)
@@ -338,8 +340,8 @@ fn constraint_modes_hold_rigid_motions_with_their_mass_and_inertia() {
     let responses = vec![stuck; brake.interface.points.len()];
     let equilibrium = Equilibrium { u: system.zeros().unwrap(), responses, friction: 0.0, steps: vec![] };
     let loaded = [brake.mesh.node_set("piston_z1").unwrap()];
-    let structure =
-        Structure { system: &system, interface: &brake.interface, equilibrium: &equilibrium, loaded: &loaded };
+    let (system, interface, equilibrium) = (&system, &brake.interface, &equilibrium);
+    let structure = Structure { system, interface, equilibrium, loaded: &loaded, reference: 0.0 };
     let reduced = craig_bampton::reduce(&structure, 50e3, &mut |_| ()).unwrap();
     let n = reduced.load.len();
     let scale = reduced.matrices.k.amax();
