@@ -89,7 +89,7 @@ impl Blocked {
             let margin = if request.attempt == 0 { margins[0] } else { margins[1].powi(request.attempt as i32) };
             return Some(margin * request.end);
         }
-        let suits = problem.symmetric_mc && request.shift == 0.0 && problem.n_dofs() >= self.options.blocked_from;
+        let suits = request.shift == 0.0 && problem.n_dofs() >= self.options.blocked_from;
         margins.get(request.attempt).filter(|_| suits).map(|margin| margin * request.end)
     }
 

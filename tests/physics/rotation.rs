@@ -18,16 +18,18 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use crate::super_element::transposed_errors;
 use crate::support::block;
 use crate::support::{assert_close, brake};
 use nalgebra::DMatrix;
+use num_complex::Complex64;
 use squeal::analysis::Sweep;
 use squeal::element::ElementKind;
 use squeal::equilibrium::LabelledFactor;
 use squeal::mesh::Mesh;
 use squeal::model::Inertia;
 use squeal::native::{Block, Comm, Matrix, Mck, Precision, Session};
-use squeal::stability::{Band, BandSolver, EigenOptions, Mode, QuadraticProblem};
+use squeal::stability::{Band, BandSolver, EigenOptions, Mode, QuadraticProblem, SolverKind};
 use squeal::structure::FullModel;
 
 /// The ring moves in its plane; a spring on its mean motion holds it and no wave of two lengths or more.
@@ -119,6 +121,34 @@ fn a_thin_ring_has_bryans_frequencies_in_both_frames() {
     }
     for band in [turning, fixed] {
         assert!(band.modes.iter().all(|mode| mode.growth_rate().abs() < 1e-6 * mode.lambda.norm()));
+    }
+}
+
+/// The blocked search has the modes of TOAR in both frames: to 1e-9, all of the band, left vectors that solve the
+/// transposed problem to 1e-10.
+#[test]
+fn the_blocked_search_has_gyroscopic_terms() {
+    let comm = Session::start(&[]).unwrap();
+    for inertia in ["rotating_frame", "fixed_frame"] {
+        let brake = ring(inertia);
+        let system = brake.assemble(&comm, &brake.families().unwrap()).unwrap();
+        let prestress = brake.prestress().unwrap();
+        let mut sweep = Sweep::new(&system, &brake.interface, false).unwrap().with_prestress(prestress.as_ref());
+        let equilibrium = sweep.equilibrium(0.0, &mut ()).unwrap();
+        let by_toar = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
+        sweep.search_by(EigenOptions::always_blocked());
+        let blocked = sweep.modes(&equilibrium, brake.model.band, &mut ()).unwrap();
+        assert_eq!([by_toar.report.solver, blocked.report.solver], [SolverKind::Toar, SolverKind::Blocked]);
+        let [exact, found] =
+            [&by_toar, &blocked].map(|band| band.modes.iter().map(|mode| mode.lambda).collect::<Vec<_>>());
+        assert!(found.len() == exact.len() && found.len() > 8, "{found:?} {exact:?}");
+        let nearest = |z: &Complex64| exact.iter().map(|w| (w - z).norm() / z.norm()).fold(f64::INFINITY, f64::min);
+        let error = found.iter().map(nearest).fold(0.0, f64::max);
+        let left = sweep.left_vectors(&blocked.modes, |_| 1e-8).unwrap();
+        let errors = sweep.linearise(&equilibrium, |problem| transposed_errors(problem, &found, &left)).unwrap();
+        let transposed = errors.into_iter().fold(0.0, f64::max);
+        println!("{inertia}: {} modes, largest error {error:.1e}, left {transposed:.1e}", found.len());
+        assert!(error < 1e-9 && transposed < 1e-10, "{error} {transposed}");
     }
 }
 

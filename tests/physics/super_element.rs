@@ -290,7 +290,7 @@ fn modal_coordinates_of_one_friction_serve_the_others() {
 }
 
 /// `|P(lambda)^T v| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |v|)`, `v = conj(y)`, largest components.
-fn transposed_errors(problem: &QuadraticProblem, lambdas: &[Complex64], y: &Columns) -> Result<Vec<f64>> {
+pub fn transposed_errors(problem: &QuadraticProblem, lambdas: &[Complex64], y: &Columns) -> Result<Vec<f64>> {
     let products = [problem.matrices.k, problem.matrices.c, problem.matrices.m].map(|a| y.multiplied_by_transpose(a));
     let norms = [problem.matrices.k.norm_inf()?, problem.matrices.c.norm_inf()?, problem.matrices.m.norm_inf()?];
     let [k, c, m] = products;

@@ -123,7 +123,7 @@ fn solvers_are_chosen_by_size_storage_shift_attempt_and_memory() {
         assert_eq!(choose(limits(0), 0.0, 1), [Blocked, Toar]);
         assert_eq!(choose(limits(0), 0.0, 2), [Toar]);
         let unsymmetric = QuadraticProblem { symmetric_mc: false, ..*problem };
-        assert_eq!(choice(&mut BandSolver::new(limits(0), Vec::new()), &unsymmetric, 0.0, 0), [Toar]);
+        assert_eq!(choice(&mut BandSolver::new(limits(0), Vec::new()), &unsymmetric, 0.0, 0), [Blocked, Toar]);
         let mut short = BandSolver::new(limits(0), Vec::new());
         short.memory.has_mb = Box::new(|_, _| false);
         assert_eq!(choice(&mut short, problem, 0.0, 0), [Toar]);
