@@ -76,10 +76,11 @@ docs: build ## build the manual: target/manual/index.html
 full: setup build meshes/build/brake-full.msh ## complex modes of the demo brake with 179 thousand nodes on $(RANKS) ranks
 	$(MPIRUN) $(BINARY) stability meshes/brake-full.toml --friction 0.1:0.9:0.1 --output results/full --force --verbose
 
-bench: setup meshes/build/brake-medium.msh ## measure time and memory of assembly, factorisation and eigensolution
+bench: setup meshes/build/brake-medium.msh meshes/build/brake-small.msh ## measure time and memory of assembly, factorisation and eigensolution
 	cargo bench --bench element
 	cargo bench --bench assembly
 	cargo bench --bench path
+	cargo bench --bench features
 
 lint: setup ## check formatting, clippy, documentation and the page's scripts; warnings are errors
 	@scripts/setup.sh --lint
