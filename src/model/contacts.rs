@@ -2,6 +2,7 @@
 
 use super::friction::contact_friction;
 use super::gap_field::GapField;
+use super::gap_image::ImageFrame;
 use super::item::{Item, Number, named};
 use super::keys;
 use super::source::ModelText;
@@ -33,7 +34,7 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
         adjust: item.positive_if_given(&raw.adjust, "adjust", "Give a distance in the mesh's unit")?.unwrap_or(0.0)
             * unit,
         clearance: clearance(item, raw, unit)?,
-        gap_field: gap_field(item, raw, &name)?,
+        gap_field: gap_field(item, raw, &name, unit)?,
         wear: wear(item, raw)?,
         name,
         place: item.place(),
@@ -55,13 +56,49 @@ fn clearance(item: &Item, raw: &keys::ContactTable, unit: f64) -> Result<Option<
     Ok(Some(value * unit))
 }
 
-/// The gap field of a file beside the model file.
-fn gap_field(item: &Item, raw: &keys::ContactTable, name: &str) -> Result<Option<GapField>> {
+/// The gap field of a file beside the model file; `unit` is metres per unit of the mesh.
+fn gap_field(item: &Item, raw: &keys::ContactTable, name: &str, unit: f64) -> Result<Option<GapField>> {
+    let is_image = raw.gap.as_ref().is_some_and(|file| file.get_ref().to_ascii_lowercase().ends_with(".png"));
+    if let (Some(frame), false) = (&raw.gap_image, is_image) {
+        let what = "there is gap_image, and gap names no image";
+        return Err(item.error(&frame.span(), what, "Give gap = \"FILE.png\", or leave gap_image out"));
+    }
     let Some(file) = &raw.gap else { return Ok(None) };
     require_separation(item, raw, "gap", &file.span())?;
+    if is_image {
+        let frame = image_frame(item, raw, &file.span(), unit)?;
+        let field = GapField::read_image(&item.beside(file.get_ref()), frame);
+        return field.map(Some).map_err(|what| item.error(&file.span(), &what, "Give a PNG file in grey levels"));
+    }
     GapField::read(&item.beside(file.get_ref()), name).map(Some).map_err(|what| {
         let advice = "Give a table (CSV) with the columns x_mm, y_mm, z_mm (two of them are enough) and gap_um";
         item.error(&file.span(), &what, advice)
+    })
+}
+
+/// Where the image of a gap field lies, and what its grey levels mean.
+fn image_frame(item: &Item, raw: &keys::ContactTable, gap: &Range<usize>, unit: f64) -> Result<ImageFrame> {
+    const EXAMPLE: &str = "Give gap_image = { plane = \"xy\", lower_left = [-40, 60], upper_right = [40, 110], black = 0, \
+                           white = 0.02 } in the mesh's unit, plane the axes to the right and up";
+    let Some(given) = &raw.gap_image else {
+        return Err(item.error(gap, "an image needs its place and the gaps of black and white", EXAMPLE));
+    };
+    let require = |holds: bool, what: &str| item.require_at(&given.span(), holds, what, EXAMPLE);
+    let keys::GapImageTable { plane, lower_left, upper_right, black, white } = given.get_ref();
+    let axes: Vec<usize> = plane.chars().filter_map(|axis| "xyz".find(axis)).collect();
+    let is_plane = plane.len() == 2 && axes.len() == 2 && axes[0] != axes[1];
+    require(is_plane, &format!("gap_image has the plane {plane:?}"))?;
+    let numbers = [lower_left[0], lower_left[1], upper_right[0], upper_right[1], *black, *white];
+    require(numbers.iter().all(|x| x.is_finite()), "gap_image has a number that is not finite")?;
+    let is_wide = lower_left[0] != upper_right[0] && lower_left[1] != upper_right[1];
+    require(is_wide, "the image of gap_image has no area")?;
+    let metres = |corner: &[f64; 2]| corner.map(|x| unit * x);
+    Ok(ImageFrame {
+        plane: [axes[0], axes[1]],
+        lower_left: metres(lower_left),
+        upper_right: metres(upper_right),
+        black: unit * black,
+        white: unit * white,
     })
 }
 

@@ -1,4 +1,5 @@
-//! Gap fields: a measured topography of a contact surface, or what wear has taken off it, from a table.
+//! Gap fields: a measured topography of a contact surface, or what wear has taken off it, from a table or an image
+//! ([`super::gap_image`]).
 //!
 //! ```text
 //! contact,x_mm,y_mm,z_mm,gap_um    a head with units; two coordinates are enough; contact may be missing
@@ -12,6 +13,7 @@ use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use serde::{Deserialize, Serialize};
 
+use super::gap_image::{GapImage, ImageFrame};
 use super::paths;
 use super::read::UNITS;
 use crate::algebra::norm;
@@ -19,9 +21,22 @@ use crate::algebra::norm;
 /// Gaps (m) at points (m) of a contact surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GapField {
-    /// The table.
+    /// The table or the image.
     #[serde(with = "paths::one")]
     pub file: PathBuf,
+    gaps: Gaps,
+}
+
+/// What a file has.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+enum Gaps {
+    Table(Table),
+    Image(GapImage),
+}
+
+/// Rows with places and gaps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Table {
     /// Which coordinates it has.
     axes: [bool; 3],
     /// Points, 0 along the axes that it does not have, and their gaps.
@@ -57,16 +72,45 @@ impl GapField {
         }
         match rows.is_empty() {
             true => Err(format!("{place} has no row of this contact")),
-            false => Ok(GapField { file: file.to_owned(), axes: columns.place.map(|column| column.is_some()), rows }),
+            false => {
+                let table = Table { axes: columns.place.map(|column| column.is_some()), rows };
+                Ok(GapField { file: file.to_owned(), gaps: Gaps::Table(table) })
+            }
         }
     }
 
-    /// The gaps (m) at points (m) of a surface: between the nearest rows with weights `1/r^2`, so that a row's own
-    /// place has its gap.
+    /// Reads an image (PNG) that lies as the frame says.
     ///
     /// # Errors
-    /// What is wrong where the rows lie beside the surface.
+    /// What is wrong.
+    pub fn read_image(file: &Path, frame: ImageFrame) -> Result<GapField, String> {
+        Ok(GapField { file: file.to_owned(), gaps: Gaps::Image(GapImage::read(file, frame)?) })
+    }
+
+    /// Where the image lies; none of a table.
+    pub fn frame(&self) -> Option<ImageFrame> {
+        match &self.gaps {
+            Gaps::Table(_) => None,
+            Gaps::Image(image) => Some(image.frame),
+        }
+    }
+
+    /// The gaps (m) at points (m) of a surface: of a table between the nearest rows with weights `1/r^2`, so that a
+    /// row's own place has its gap; of an image bilinear between its pixels.
+    ///
+    /// # Errors
+    /// What is wrong where rows or image lie beside the surface.
     pub fn at(&self, points: &[[f64; 3]]) -> Result<Vec<f64>, String> {
+        let gaps = match &self.gaps {
+            Gaps::Table(table) => table.at(points),
+            Gaps::Image(image) => points.iter().map(|&x| image.at(x)).collect(),
+        };
+        gaps.map_err(|what| format!("{}: {what}", self.file.display()))
+    }
+}
+
+impl Table {
+    fn at(&self, points: &[[f64; 3]]) -> Result<Vec<f64>, String> {
         let flat = |x: &[f64; 3]| [0, 1, 2].map(|i| if self.axes[i] { x[i] } else { 0.0 });
         let points: Vec<[f64; 3]> = points.iter().map(flat).collect();
         let tree = RTree::bulk_load(self.rows.iter().map(|(x, gap)| Row::new(*x, *gap)).collect());
@@ -81,8 +125,7 @@ impl GapField {
             match distance <= reach.max(SAME_PLACE) {
                 true => Ok(interpolated(&near)),
                 false => Err(format!(
-                    "no row of {} lies within {reach:.1e} m of the contact point at {x:?} m, the nearest is {distance:.1e} m away",
-                    self.file.display()
+                    "no row lies within {reach:.1e} m of the contact point at {x:?} m, the nearest is {distance:.1e} m away"
                 )),
             }
         };
@@ -161,7 +204,8 @@ mod tests {
     fn a_table_has_units_in_its_head_and_rows_by_contact() {
         let text = "gap_um, y_mm, remark, x_cm, contact\n2, 100, a, 1, disc / pad\n9, 0, b, 0, other\n3, 50, c, 2, disc / pad\n";
         let field = field(text).unwrap();
-        assert_eq!((field.axes, field.rows.len()), ([true, true, false], 2));
+        let Gaps::Table(table) = &field.gaps else { panic!("a table") };
+        assert_eq!((table.axes, table.rows.len(), field.frame()), ([true, true, false], 2, None));
         let found = field.at(&[[0.02, 0.05, 7.0], [0.01, 0.1, -1.0]]).unwrap();
         assert!((found[0] - 3e-6).abs() < 1e-20 && (found[1] - 2e-6).abs() < 1e-20, "{found:?}");
     }
@@ -181,7 +225,10 @@ mod tests {
     fn tables_of_another_surface_or_unit_are_refused() {
         let field = field("x_m,y_m,gap_m\n100,0,1\n").unwrap();
         let message = field.at(&[[0.1, 0.0, 0.0], [0.1, 0.05, 0.0]]).unwrap_err();
-        assert!(message.contains("no row of ") && message.contains("the nearest is 1.0e2 m away"), "{message}");
+        assert!(
+            message.contains("gap.csv: no row lies") && message.contains("the nearest is 1.0e2 m away"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -218,7 +218,16 @@ tables! {
         pub adjust: Option<Number>,
         pub clearance: Option<Number>,
         pub gap: Option<Text>,
+        pub gap_image: Option<Spanned<GapImageTable>>,
         pub wear: Option<Number>,
+    }
+
+    pub struct GapImageTable {
+        pub plane: String,
+        pub lower_left: [f64; 2],
+        pub upper_right: [f64; 2],
+        pub black: f64,
+        pub white: f64,
     }
 
     #[derive(Clone, Copy)]

@@ -11,7 +11,7 @@ use super::elasticity::{from_compliance, isotropic_compliance};
 use super::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use super::read::UNITS;
 use super::viscoelastic::{FractionalZener, MaxwellElement, ModulusTable, ViscoelasticLaw};
-use super::{Contact, Inertia, InstabilityCriterion, Material, Model, NormalLaw, ROUGH};
+use super::{Contact, GapField, ImageFrame, Inertia, InstabilityCriterion, Material, Model, NormalLaw, ROUGH};
 use loads::loads;
 
 /// Elasticities are isotropic to this relative difference.
@@ -213,7 +213,20 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
     out.optional("clearance", contact.clearance.map(|gap| gap / unit));
     let gap = contact.gap_field.as_ref().map(|field| std::path::absolute(&field.file).unwrap_or(field.file.clone()));
     gap.into_iter().for_each(|file| out.line("gap", quoted(&file.display().to_string())));
+    let frame = contact.gap_field.as_ref().and_then(GapField::frame);
+    frame.into_iter().for_each(|frame| out.line("gap_image", gap_image(frame, unit)));
     out.optional("wear", contact.wear);
+}
+
+/// The key `gap_image`.
+fn gap_image(frame: ImageFrame, unit: f64) -> String {
+    let ImageFrame { plane, lower_left, upper_right, black, white } = frame;
+    let plane: String = plane.iter().map(|&axis| ['x', 'y', 'z'][axis]).collect();
+    let [lower_left, upper_right] = [lower_left, upper_right].map(|corner| list(&corner.map(|x| x / unit)));
+    let [black, white] = [black, white].map(|gap| number(gap / unit));
+    format!(
+        "{{ plane = \"{plane}\", lower_left = {lower_left}, upper_right = {upper_right}, black = {black}, white = {white} }}"
+    )
 }
 
 /// The key `friction` of a coefficient that depends on other things, its friction value given.

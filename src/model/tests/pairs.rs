@@ -67,6 +67,36 @@ fn wear_and_gap_fields_are_of_pairs_that_may_open() {
 }
 
 #[test]
+fn an_image_needs_its_place_and_its_scale() {
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("topography.PNG");
+    let mut encoder = png::Encoder::new(std::fs::File::create(&file).unwrap(), 2, 1);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(&[0, 255]).unwrap();
+    let with = |gap: &str, image: &str| {
+        let keys = format!("friction = 0.5\ngap = \"{gap}\"\n{image}\n");
+        parsed(&GOOD.replace("friction = 0.5\n", &keys))
+    };
+    let path = file.display().to_string();
+    let frame = |plane: &str, right: f64| {
+        let corners = format!("lower_left = [0, 0], upper_right = [{right}, 10]");
+        format!("gap_image = {{ plane = \"{plane}\", {corners}, black = 0, white = 0.02 }}")
+    };
+    let model = with(&path, &frame("zy", 40.0)).unwrap();
+    let again = parsed(&crate::model::write(&model, "brake.msh")).unwrap();
+    let [field, written] = [&model, &again].map(|model| model.contacts[0].gap_field.clone().unwrap());
+    assert_eq!(field.frame().unwrap().plane, [2, 1]);
+    let at = |field: &crate::model::GapField| field.at(&[[9.0, 5e-3, 20e-3]]).unwrap()[0];
+    assert!((at(&field) - 10e-6).abs() < 1e-15 && (at(&written) - at(&field)).abs() < 1e-15);
+    let message = |gap: &str, image: &str| with(gap, image).unwrap_err();
+    assert!(message(&path, "").contains("an image needs its place and the gaps of black and white"));
+    assert!(message(&path, &frame("xx", 40.0)).contains("gap_image has the plane \"xx\""));
+    assert!(message(&path, &frame("xy", 0.0)).contains("the image of gap_image has no area"));
+    assert!(message("worn.csv", &frame("xy", 40.0)).contains("gap names no image"));
+    assert!(message("no.png", &frame("xy", 40.0)).contains("cannot be read"));
+}
+
+#[test]
 fn contacts_are_checked() {
     let wrong = |to: &str, expected: &str| {
         let said = parsed(&GOOD.replace("law = { linear = 2e13 }", to)).unwrap_err();
