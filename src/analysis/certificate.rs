@@ -10,7 +10,7 @@ use crate::assembly::{Prestress, System};
 use crate::contact::Interface;
 use crate::equilibrium::{Contacts, Equilibrium};
 use crate::native::{Block, Comm, Factor, FactorKind, Vector};
-use crate::reduction::craig_bampton::project;
+use crate::reduction::projection::project;
 use crate::results::{Certificate, CertifiedMode};
 use crate::stability::{Approximation, corrections};
 use crate::structure::Structure;

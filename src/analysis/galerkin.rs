@@ -188,8 +188,7 @@ pub fn reduce_galerkin(
     observer.event(Event::Stage("projecting the matrices"));
     let clock = Instant::now();
     let (mut element, surface) = model.project(comm, &system, basis.vectors(), &options.modes, end)?;
-    let middle = snapshots.equilibrium(options.middle())?;
-    model.freeze_prestress(&mut element, &system, &middle, basis.vectors())?;
+    model.freeze_prestress(&mut element, &system, &snapshots.equilibrium(options.middle())?, basis.vectors())?;
     let kept = options.keep_basis.then(|| nodal_basis::gathered(&system, &model.nodes, basis.vectors()));
     place.write(comm, &element, &surface, kept.as_deref())?;
     drop((surface, kept));
@@ -198,10 +197,8 @@ pub fn reduce_galerkin(
     observer.event(Event::Stage("comparing with the full model between the samples"));
     let clock = Instant::now();
     let reduced = ReducedModel::new(&options.file, element.clone(), OuterSurface::default());
-    let reduced = Structure::Reduced(Box::new(reduced));
-    let (interface, basis) = (&model.interface, basis.vectors());
-    let prestress = model.prestress()?;
-    let prestress = prestress.as_ref();
+    let (reduced, prestress) = (Structure::Reduced(Box::new(reduced)), model.prestress()?);
+    let (interface, basis, prestress) = (&model.interface, basis.vectors(), prestress.as_ref());
     let whole = Whole { system: &system, interface, prestress, basis, factor: &factor, inverse_metric: None };
     let certificates = whole.certify(&reduced, &snapshots.test_values(options), model.model.band)?;
     report.test_seconds = clock.elapsed().as_secs_f64();

@@ -47,13 +47,15 @@ use serde::Serialize;
 use crate::assembly::System;
 use crate::contact::{GapOperator, Interface};
 use crate::equilibrium::Equilibrium;
-use crate::native::{Block, Factor, FactorKind, FactorStats, Matrix, Mck, Noise, Vector, lapack};
+use crate::native::{Block, Factor, FactorKind, FactorStats, Mck, Noise, lapack};
 use crate::stability::Viscoelastic;
 use crate::{Error, Result};
 
 use super::fixed_interface::{self, Modes};
 use super::functionals::{Functionals, retained};
 use super::linear::Linear;
+use super::projection::{Projected, project, project_damping, shadow};
+use super::super_element::ViscoelasticTerm;
 
 /// Right-hand sides in one pass over a factor or matrix.
 const PANEL: usize = 64;
@@ -131,7 +133,7 @@ pub struct Reduced {
     /// `T^T M T`, `T^T C T`, `T^T K T` and `T^T G T`, K without the sliding contacts.
     pub matrices: Mck<DMatrix<f64>>,
     /// `T^T K_m T` at rest of each viscoelastic law, part of the stiffness.
-    pub viscoelastic: Vec<DMatrix<f64>>,
+    pub viscoelastic: Vec<ViscoelasticTerm>,
     /// `T^T F_ext`, N.
     pub load: Vec<f64>,
     /// `T^T (F - F_ext)`: what the other contacts' forces are beside their linear part, N.
@@ -201,36 +203,10 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
     let load = shadow(&basis, &system.load)?;
     let preload = shadow(&basis, &linear.preload)?;
     let frequencies = modes.frequencies;
-    let Projected { mass, stiffness, viscoelastic } = projected;
+    let viscoelastic = projected.viscoelastic_terms(system);
+    let Projected { mass, stiffness, .. } = projected;
     let matrices = Mck { m: mass, c: damping, k: stiffness, g: structural };
     Ok(Reduced { retained, contacts, frequencies, basis, matrices, viscoelastic, load, preload, costs })
-}
-
-/// The projections of the symmetric matrices, which grow with the basis.
-#[derive(Default)]
-struct Projected {
-    mass: DMatrix<f64>,
-    stiffness: DMatrix<f64>,
-    viscoelastic: Vec<DMatrix<f64>>,
-}
-
-impl Projected {
-    /// Those of a basis that begins with the one they have.
-    fn extended(mut self, basis: &Block, system: &System, linear: &Linear) -> Result<Projected> {
-        self.viscoelastic.resize(system.viscoelastic.len(), DMatrix::zeros(0, 0));
-        let laws = self.viscoelastic.into_iter().zip(&system.viscoelastic);
-        Ok(Projected {
-            mass: project(self.mass, basis, &system.m)?,
-            stiffness: project(self.stiffness, basis, &linear.stiffness)?,
-            viscoelastic: laws.map(|(known, own)| project(known, basis, &own.stiffness)).collect::<Result<_>>()?,
-        })
-    }
-
-    /// With the stiffness of viscoelastic materials at the reference frequency.
-    fn stiffness_at_reference(&self, viscoelastic: &Viscoelastic) -> DMatrix<f64> {
-        let terms = viscoelastic.stiffnesses.iter().zip(&self.viscoelastic);
-        terms.fold(self.stiffness.clone(), |sum, (own, matrix)| sum + (viscoelastic.rho(own) - 1.0) * matrix)
-    }
 }
 
 /// The static problem with all retained points held.
@@ -381,44 +357,4 @@ fn motions(
     let mut motions = DMatrix::zeros(mass.nrows(), n_below);
     live.iter().enumerate().for_each(|(row, &i)| motions.row_mut(i).copy_from(&x.row(row)));
     Ok(motions)
-}
-
-/// Extends `known = T^T A T` of the first columns of T to all of them, A symmetric, panel by panel. Collective.
-///
-/// # Errors
-/// PETSc's.
-pub fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix<f64>> {
-    let (n, done) = (basis.n_columns(), known.nrows());
-    let mut product = known.resize(n, n, 0.0);
-    for first in (done..n).step_by(PANEL) {
-        let last = (first + PANEL).min(n);
-        let columns = basis.leading_gram(last, &basis.columns(first..last).multiplied_by(a)?);
-        for (j, column) in (first..last).zip(columns.chunks_exact(last)) {
-            for (i, &value) in column[..=j].iter().enumerate() {
-                (product[(i, j)], product[(j, i)]) = (value, value);
-            }
-        }
-    }
-    Ok(product)
-}
-
-/// `T^T C T`, which gyroscopic terms make unsymmetric.
-pub(super) fn project_damping(basis: &Block, system: &System) -> Result<DMatrix<f64>> {
-    if !system.is_gyroscopic {
-        return project(DMatrix::zeros(0, 0), basis, &system.c);
-    }
-    let n = basis.n_columns();
-    let mut product = Vec::with_capacity(n * n);
-    for first in (0..n).step_by(PANEL) {
-        let last = (first + PANEL).min(n);
-        product.extend(basis.gram(&basis.columns(first..last).multiplied_by(&system.c)?));
-    }
-    Ok(DMatrix::from_vec(n, n, product))
-}
-
-/// `T^T f`
-pub(super) fn shadow(basis: &Block, f: &Vector) -> Result<Vec<f64>> {
-    let mut column = Block::zeros(f.comm(), f.n_local(), 1);
-    f.local(|values| column.column_mut(0).copy_from_slice(values))?;
-    Ok(basis.gram(&column))
 }

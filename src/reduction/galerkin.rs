@@ -28,10 +28,10 @@ use crate::assembly::System;
 use crate::contact::{Interface, Response, Status, Tangential};
 use crate::native::{Block, Matrix, Mck};
 
-use super::craig_bampton::shadow;
 use super::fixed_interface::make_orthonormal;
 use super::functionals::Functionals;
 use super::parts::MatricesByPart;
+use super::projection::shadow;
 use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
 
 /// A basis V with `V^T K_ref V = I`, which grows.
@@ -173,7 +173,7 @@ mod tests {
     use crate::equilibrium::testing::{ALONG_X, blocks_on_belt};
     use crate::equilibrium::{Equilibrium, Path};
     use crate::native::{Comm, Session};
-    use crate::reduction::craig_bampton::project;
+    use crate::reduction::projection::project;
     use crate::reduction::super_element::Sample;
 
     const N: usize = 4;

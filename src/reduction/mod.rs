@@ -17,5 +17,6 @@ mod linear;
 mod member;
 mod pair_text;
 pub mod parts;
+pub mod projection;
 pub mod recovery;
 pub mod super_element;

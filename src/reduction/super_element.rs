@@ -16,9 +16,7 @@
 //! correction xi so that at the full model's equilibrium it gives the full model's force: `p(d + xi) = p_full` (Fazio,
 //! Nacivet, Sinou, eq. 11 and 12).
 
-use nalgebra::DMatrix;
-
-use crate::assembly::{System, ViscoelasticStiffness};
+use crate::assembly::System;
 use crate::contact::interface::ContactPair;
 use crate::contact::{ContactPoint, GapOperator, Interface};
 use crate::mesh::Numbering;
@@ -168,8 +166,7 @@ impl SuperElement {
     ) -> Result<SuperElement> {
         let interface = structure.interface;
         let gaps = crate::equilibrium::Contacts::new(interface, structure.system)?.gaps(&structure.equilibrium.u)?;
-        let mut pairs: Vec<ContactPair> = Vec::new();
-        let mut contacts: Vec<NodeContact> = Vec::new();
+        let (mut pairs, mut contacts): (Vec<ContactPair>, Vec<NodeContact>) = (Vec::new(), Vec::new());
         for pair in interface.pairs.iter().filter(|pair| pair.is_sliding()) {
             let first = contacts.len();
             for a in pair.points.clone() {
@@ -186,10 +183,6 @@ impl SuperElement {
             std::array::from_fn(|i| point.position[i] - point.law.gap * point.law.normal[i])
         });
         let points = slaves.chain(masters).chain(loaded.iter().copied()).collect();
-        let term = |(own, matrix): (&ViscoelasticStiffness, &DMatrix<f64>)| ViscoelasticTerm {
-            law: own.law.clone(),
-            stiffness: matrix.as_slice().to_vec(),
-        };
         Ok(SuperElement {
             origin,
             points,
@@ -197,7 +190,7 @@ impl SuperElement {
             mass: reduced.matrices.m.as_slice().to_vec(),
             damping: reduced.matrices.c.transpose().as_slice().to_vec(),
             stiffness: reduced.matrices.k.as_slice().to_vec(),
-            viscoelastic: structure.system.viscoelastic.iter().zip(&reduced.viscoelastic).map(term).collect(),
+            viscoelastic: reduced.viscoelastic.clone(),
             geometric_stiffness: None,
             structural_damping: reduced.matrices.g.as_ref().map(|g| g.as_slice().to_vec()),
             parts,

@@ -13,6 +13,7 @@ use crate::native::{Block, Comm, Mck};
 use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::galerkin;
 use crate::reduction::parts::{MatricesByPart, PartMatrices, Place};
+use crate::reduction::projection;
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{Origin, Sample, SuperElement};
 
@@ -82,7 +83,7 @@ impl FullModel {
         let Some(prestress) = self.prestress()? else { return Ok(()) };
         let mut k = system.k.zeros_like()?;
         prestress.add(system, &equilibrium.u, &mut k)?;
-        let projected = craig_bampton::project(DMatrix::zeros(0, 0), basis, &k)?;
+        let projected = projection::project(DMatrix::zeros(0, 0), basis, &k)?;
         element.geometric_stiffness = Some(projected.as_slice().to_vec());
         element.origin.prestress_friction = Some(equilibrium.friction);
         Ok(())
