@@ -6,7 +6,7 @@ import numpy as np
 
 from ._file import opened, table
 
-FORMAT, VERSION = "squeal super-element", 5
+FORMAT, VERSION = "squeal super-element", 6
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,13 @@ class SuperElement:
     damping: np.ndarray
     """n x n."""
     stiffness: np.ndarray
-    """n x n, without contact."""
+    """n x n, without contact, of viscoelastic materials that at rest."""
+    structural_damping: np.ndarray | None
+    """n x n, N/m; None where no stiffness has a loss factor."""
+    viscoelastic_stiffnesses: np.ndarray | None
+    """n_v x n x n, of each law in about["viscoelastic"] at rest, part of stiffness; None where there is no law."""
+    geometric_stiffness: np.ndarray | None
+    """n x n, of the equilibrium at about["origin"]["prestress_at_friction"]; None without prestress."""
     load: np.ndarray
     """Generalised forces of the loads, n."""
     preload: np.ndarray
@@ -54,9 +60,16 @@ def read_super_element(path) -> SuperElement:
         surface = file["surface"]
         n, nodes = file["mass"].shape[0], surface["nodes"][...]
         names = ("points", "frequencies", "mass", "damping", "stiffness", "load", "preload")
+        optional = {
+            name: file[name][...].reshape(-1, n, n) if name in file else None
+            for name in ("structural_damping", "viscoelastic_stiffnesses", "geometric_stiffness")
+        }
+        for name in ("structural_damping", "geometric_stiffness"):
+            optional[name] = None if optional[name] is None else optional[name][0]
         return SuperElement(
             about=table(file, "about"),
             **{name: file[name][...] for name in names},
+            **optional,
             contacts={name: rows[...] for name, rows in file["contacts"].items()},
             nodes=nodes,
             triangles=surface["triangles"][...],

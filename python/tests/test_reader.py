@@ -73,6 +73,7 @@ def test_a_super_element_has_its_modes_on_the_diagonal(tmp_path):
     np.testing.assert_allclose(np.diag(element.stiffness)[modes], (2 * np.pi * element.frequencies) ** 2, rtol=1e-6)
     np.testing.assert_allclose(element.stiffness, element.stiffness.T, atol=1e-6 * np.abs(element.stiffness).max())
     assert element.motion(element.load).shape == element.nodes.shape
+    assert element.viscoelastic_stiffnesses is None and element.geometric_stiffness is None
 
 
 def test_a_study_is_that_of_its_tables(tmp_path):

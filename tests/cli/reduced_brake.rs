@@ -90,7 +90,7 @@ fn a_file_that_is_no_super_element_is_refused() {
     file.close().unwrap();
     assert_refused(
         &stability("new.se.h5"),
-        &["is of version 7, this program reads version 5", "again with `squeal reduce`"],
+        &["is of version 7, this program reads version 6", "again with `squeal reduce`"],
     );
 
     std::fs::copy(place.path("brake.se.h5"), place.path("nan.se.h5")).unwrap();
