@@ -2,7 +2,8 @@
 //!
 //! The program sweeps three friction values of the small demo brake, in rounds: each variant of the model once, then
 //! all again. What counts is the ratio of CPU times within a round to that of the model as it stands. With
-//! `SQUEAL_OLDER=FILE` an older program takes part, with the model as it stands; `SQUEAL_ROUNDS` is the number of rounds.
+//! `SQUEAL_OLDER=FILE` an older program takes part, with the model as it stands; `SQUEAL_ROUNDS` is the number of
+//! rounds.
 //!
 //! Not a timed test: it prints figures and judges nothing.
 

@@ -29,10 +29,10 @@
 //! modes* `E = A M Psi Y`, one for each. They take the error of a frequency at half the limit from some 1e-3 to some
 //! 1e-5.
 //!
-//! Viscoelastic materials have their stiffness at a reference frequency in `K_s`, that at rest in the reduced stiffness,
-//! and a reduced stiffness `T^T K_m T` for each law. What the interior does as the stiffness changes is to first order
-//! `A K_m T Y`, one for each law and each of these modes; and the equilibrium, at rest, adds `(I - Psi B) u`. Both join
-//! the basis.
+//! Viscoelastic materials have their stiffness at a reference frequency in `K_s`, that at rest in the reduced
+//! stiffness, and a reduced stiffness `T^T K_m T` for each law. What the interior does as the stiffness changes is to
+//! first order `A K_m T Y`, one for each law and each of these modes; and the equilibrium, at rest, adds `(I - Psi B)
+//! u`. Both join the basis.
 //!
 //! Sources: R. R. Craig, M. C. C. Bampton, *Coupling of substructures for dynamic analyses*, AIAA Journal 6 (1968), eq.
 //! 5-14; J.-G. Kim, P.-S. Lee, *An enhanced Craig-Bampton method*, Int. J. Numer. Meth. Engng 103 (2015) (the residual

@@ -64,7 +64,8 @@ fn with_contacts(folder: &TempDir, text: &str) -> Structure {
 }
 
 /// A Maxwell lining in a super-element, with all modes kept: its model's eigenvalues to 1e-9 [3e-11], at any friction
-/// value; with those below 130 kHz to 1e-4 [6e-6]. Shares and sensitivities of the parts in the first mode, all modes kept, to 1e-6.
+/// value; with those below 130 kHz to 1e-4 [6e-6]. Shares and sensitivities of the parts in the first mode, all modes
+/// kept, to 1e-6.
 #[test]
 fn a_maxwell_lining_is_in_the_super_element() {
     let (comm, folder) = (Session::start(&[]).unwrap(), TempDir::new().unwrap());
