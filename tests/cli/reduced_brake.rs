@@ -1,7 +1,7 @@
 //! `squeal reduce` and what is done with its file, as a user meets them.
 
 use crate::support::pad_on_disc::PadOnDisc;
-use crate::support::program::{Place, assert_refused};
+use crate::support::program::{Place, assert_refused, swap};
 
 /// The small pad on its disc, reduced to four contacts and the fixed-interface modes up to four times the band.
 const REDUCE: [&str; 8] = ["reduce", "brake.toml", "--contacts", "4", "--limit", "240000", "--output", "brake.se.h5"];
@@ -104,6 +104,33 @@ fn a_file_that_is_no_super_element_is_refused() {
     hdf5::File::create(place.path("other.h5")).unwrap().close().unwrap();
     assert_refused(&stability("other.h5"), &["not of the kind \"squeal super-element\""]);
     assert!(!place.path("none").exists());
+}
+
+/// `reduce` prints at which equilibrium the geometric stiffness is frozen, both kinds of super-element have it in their
+/// file, and each the modes of its model there.
+#[test]
+fn prestress_is_frozen_and_said_to_be() {
+    let change = |text: String| {
+        let text = swap(&text, "[stability]", "[stability]\nprestress = true");
+        swap(&text, "[0, 0, -1000]", "[0, 0, -100000]") + "[reduction]\ncontacts = 4\nband = [0, 240000]\n"
+    };
+    let place = Place::with_blocks(change, &PadOnDisc::default());
+    let line = "prestress is frozen: its modes have the geometric stiffness of the equilibrium at friction 0.4\n";
+    let galerkin = ["reduce", "brake.toml", "--galerkin", "--samples", "0.4", "--output", "galerkin.se.h5"];
+    for (arguments, file, model, tolerance) in [
+        (&REDUCE[..], "brake.se.h5", &["brake.toml", "--contacts", "4"][..], 1e-5),
+        (&galerkin, "galerkin.se.h5", &["brake.toml"], 1e-5),
+    ] {
+        let finished = place.run(arguments);
+        assert_eq!(finished.code, 0, "{}", finished.err);
+        assert!(finished.out.contains(line), "{}", finished.out);
+        let options = ["--friction", "0.4", "--force", "--output"];
+        for (structure, folder) in [(model, "full"), (&[file], "reduced")] {
+            let finished = place.run(&[&["stability"], structure, &options, &[folder]].concat());
+            assert_eq!(finished.code, 0, "{}", finished.err);
+        }
+        assert_same(&modes(&place, "reduced"), &modes(&place, "full"), tolerance);
+    }
 }
 
 #[test]
