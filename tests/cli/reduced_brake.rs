@@ -111,7 +111,7 @@ fn a_file_that_is_no_super_element_is_refused() {
 #[test]
 fn prestress_is_frozen_and_said_to_be() {
     let change = |text: String| {
-        let text = swap(&text, "[stability]", "[stability]\nprestress = true");
+        let text = swap(&text, "[stability]\nband = [0, 20000]", "[stability]\nprestress = true\nband = [0, 60000]");
         swap(&text, "[0, 0, -1000]", "[0, 0, -100000]") + "[reduction]\ncontacts = 4\nband = [0, 240000]\n"
     };
     let place = Place::with_blocks(change, &PadOnDisc::default());
