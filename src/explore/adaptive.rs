@@ -7,9 +7,10 @@
 //!   120 degrees. A point that has failed separates others, too. With 90 degrees that is the Gabriel graph (Gabriel and
 //!   Sokal, Systematic Zoology 18 (1969)), which leaves gaps along the boundary: of two tight pairs, the stable point
 //!   of the one and the unstable point of the other are seen under 90 degrees.
-//! - Between neighbours of opposite verdict lies the boundary. A round bisects the [`ROUND`] widest of such pairs that
-//!   are wider than the resolution, but none whose middle is nearer to one of the same round than half its width.
-//! - Where all points have one verdict, a round has the next points of the sequence.
+//! - Between neighbours of opposite verdict lies the boundary. A round bisects the seven widest of such pairs that are
+//!   wider than the resolution, but none whose middle is nearer to one of the same round than half its width; and it
+//!   has the next point of the sequence, which may meet another part of the boundary.
+//! - Where all points have one verdict, a round has the next [`ROUND`] points of the sequence.
 //!
 //! A round depends on the verdicts before it and on nothing else: neither on the number of ranks nor on interruptions.
 
@@ -82,14 +83,17 @@ impl Refinement {
         let n = ROUND.min(self.rule.n_points - self.coordinates.len());
         let verdicts: Vec<Option<bool>> = points.iter().map(verdict).collect();
         let has = |own: bool| verdicts.contains(&Some(own));
-        let added = if has(true) && has(false) {
-            self.middles(&verdicts, n)
-        } else {
-            let all = self.design.sobol(self.n_of_sequence + n, self.distributions.len())?;
-            let added = all[self.n_of_sequence..].to_vec();
-            self.n_of_sequence = all.len();
-            added
-        };
+        let mut added = Vec::new();
+        if has(true) && has(false) {
+            added = self.middles(&verdicts, n.saturating_sub(1));
+            if added.is_empty() {
+                return Ok(added);
+            }
+        }
+        let n_more = if added.is_empty() { n } else { 1 };
+        let all = self.design.sobol(self.n_of_sequence + n_more, self.distributions.len())?;
+        added.extend_from_slice(&all[self.n_of_sequence..]);
+        self.n_of_sequence = all.len();
         self.coordinates.extend(added.iter().cloned());
         Ok(added.iter().map(|point| self.values(point)).collect())
     }
@@ -248,8 +252,19 @@ mod tests {
         let boundary = study.boundary(&points);
         assert_eq!(boundary.len(), 1);
         assert!(boundary[0].distance <= 1e-3 && (boundary[0].middle[0] - 0.337).abs() <= 5e-4, "{boundary:?}");
-        assert!(points.len() <= 4 + 9, "{}", points.len());
+        assert!(points.len() <= 4 + 2 * 9, "{}", points.len());
         assert!(!points[boundary[0].stable - 1].is_unstable() && points[boundary[0].unstable - 1].is_unstable());
+    }
+
+    #[test]
+    fn a_round_bisects_and_has_the_next_point_of_the_sequence() {
+        let study = study(RULE, 2);
+        let mut refinement = Refinement::new(&study).unwrap().unwrap();
+        let start: Vec<Vec<f64>> = refinement.coordinates.iter().map(|point| refinement.values(point)).collect();
+        let points: Vec<PointResult> = start.iter().map(|values| point(values, Some(values[0] - 0.5))).collect();
+        let added = refinement.next(&points).unwrap();
+        assert!((2..=ROUND).contains(&added.len()));
+        assert_eq!(refinement.coordinates.last(), study.design.sobol(17, 2).unwrap().last());
     }
 
     #[test]
