@@ -99,7 +99,8 @@ pub(super) fn design(table: &DesignTable, parameters: &[Parameter], path: &Path)
 fn adaptive(table: &DesignTable, n_points: usize, parameters: &[Parameter]) -> Result<DesignKind> {
     let n_start = table.start.unwrap_or((n_points / START_SHARE).max(MIN_START).min(n_points));
     let resolution = table.resolution.unwrap_or(RESOLUTION);
-    if !(1..=n_points).contains(&n_start) || !(resolution > 0.0 && resolution < 1.0) {
+    let is_valid = (1..=n_points).contains(&n_start) && resolution > 0.0 && resolution < 1.0;
+    if !is_valid {
         let what = "kind \"adaptive\" has start from 1 to points, and a resolution between 0 and 1";
         return Err(Error::input(what));
     }
