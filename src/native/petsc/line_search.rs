@@ -18,11 +18,14 @@ const WHOLE_STEP: f64 = 0.5;
 const ZERO: f64 = 0.1;
 /// Values of phi at most.
 const MAX_VALUES: usize = 12;
+/// The length of a step along which phi grows.
+const GROWING: f64 = 0.5;
 /// The next length keeps away from the ends by this share of what is between them.
 const MARGIN: f64 = 0.1;
 
-/// The length of a step, given `phi(0)`: 1 where phi has one sign or is small at 1, else near its zero. phi is
-/// evaluated last at the length that is returned.
+/// The length of a step, given `phi(0)`: 1 where phi falls and keeps its sign or is small at 1; half where it grows, so
+/// that two steps that lead to and fro do not repeat each other; else near its zero. phi is evaluated last at the length
+/// that is returned.
 ///
 /// # Errors
 /// Those of phi.
@@ -30,7 +33,14 @@ pub(super) fn critical_length(at_zero: f64, mut phi: impl FnMut(f64) -> Result<f
     // The ends between which the zero lies.
     let (mut low, mut high) = ((0.0, at_zero), (1.0, phi(1.0)?));
     let is_beyond = |value: f64| !value.is_finite() || value * at_zero < 0.0;
-    if !at_zero.is_finite() || !is_beyond(high.1) || high.1.abs() <= WHOLE_STEP * at_zero.abs() {
+    if !at_zero.is_finite() {
+        return Ok(1.0);
+    }
+    if !is_beyond(high.1) {
+        let is_growing = high.1.abs() > at_zero.abs();
+        return if is_growing { phi(GROWING).map(|_| GROWING) } else { Ok(1.0) };
+    }
+    if high.1.abs() <= WHOLE_STEP * at_zero.abs() {
         return Ok(1.0);
     }
     let mut length = 1.0;
@@ -67,11 +77,17 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_leaves_half_or_keeps_the_sign_is_taken_whole() {
-        for at_one in [0.0, -0.5, 0.5, 3.0] {
+    fn a_step_that_leaves_half_or_falls_with_one_sign_is_taken_whole() {
+        for at_one in [0.0, -0.5, 0.5, 1.0] {
             assert_eq!(search(|length| 1.0 + (at_one - 1.0) * length), (1.0, vec![1.0]), "{at_one}");
             assert_eq!(search(|length| -1.0 - (at_one - 1.0) * length), (1.0, vec![1.0]), "{at_one}");
         }
+    }
+
+    #[test]
+    fn a_step_along_which_phi_grows_is_halved() {
+        assert_eq!(search(|length| 1.0 + 0.1 * length), (0.5, vec![1.0, 0.5]));
+        assert_eq!(search(|length| -1.0 - 0.1 * length), (0.5, vec![1.0, 0.5]));
     }
 
     #[test]

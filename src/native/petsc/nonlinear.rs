@@ -56,6 +56,8 @@ struct Context<'a> {
     trap: Trap,
     /// What the problem said of the last iterate.
     verdict: Verdict,
+    /// The number of the last iterate.
+    iteration: usize,
 }
 
 /// Owns a SNES for the length of a solve.
@@ -80,7 +82,8 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -
     let comm = u.comm().clone();
     let residual = Vector::zeros(&comm, u.n_local())?;
     let jacobian = problem.jacobian().raw();
-    let mut context = Context { problem, comm: comm.clone(), trap: Trap::default(), verdict: Verdict::Continue };
+    let mut context =
+        Context { problem, comm: comm.clone(), trap: Trap::default(), verdict: Verdict::Continue, iteration: 0 };
     let pointer = ptr::from_mut(&mut context).cast::<c_void>();
     let mut snes = Snes(ptr::null_mut());
     // SAFETY: `context` outlives the solver, and is reached through `pointer` only while SNESSolve runs.
@@ -172,7 +175,9 @@ unsafe extern "C" fn correct(pc: sys::PC, r: sys::Vec, du: sys::Vec) -> sys::Pet
     }
 }
 
-/// `w = x - l y` with the step y and the length l of [`line_search`]; SNES comes with l = 1.
+/// `w = x - l y` with the step y and the length l of [`line_search`]; SNES comes with l = 1. The first step is taken
+/// whole: it leads from the start, which may belong to another stiffness, to where the points that are closed there
+/// carry the loads.
 unsafe extern "C" fn shorten(
     line: sys::SNESLineSearch,
     x: sys::Vec,
@@ -203,7 +208,12 @@ unsafe extern "C" fn shorten(
         Ok(())
     };
     // SAFETY: see `with_context`.
-    unsafe { with_context(pointer, c"shorten", body) }
+    unsafe {
+        if (*pointer.cast::<Context>()).iteration == 0 {
+            return 0;
+        }
+        with_context(pointer, c"shorten", body)
+    }
 }
 
 unsafe extern "C" fn judge(
@@ -230,7 +240,64 @@ unsafe extern "C" fn judge(
     // SAFETY: see `with_context`.
     unsafe {
         let code = with_context(pointer, c"judge", body);
-        (*pointer.cast::<Context>()).verdict = verdict;
+        let context = &mut *pointer.cast::<Context>();
+        (context.verdict, context.iteration) = (verdict, iteration as usize);
         code
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::native::Session;
+
+    /// `arctan u = 0` on one rank, whose whole steps grow from 1.4 on.
+    struct ArcTangent {
+        jacobian: Matrix,
+        /// Where it was evaluated last, and the slope there.
+        u: f64,
+        slope: f64,
+        iterates: Vec<f64>,
+    }
+
+    impl Problem for ArcTangent {
+        fn residual(&mut self, u: &Vector, r: &mut Vector) -> Result<()> {
+            self.u = u.to_vec()?[0];
+            r.local_mut(|r| r[0] = self.u.atan())
+        }
+
+        fn linearise(&mut self, u: &Vector) -> Result<()> {
+            let u = u.to_vec()?[0];
+            self.slope = 1.0 / (1.0 + u * u);
+            Ok(())
+        }
+
+        fn jacobian(&self) -> &Matrix {
+            &self.jacobian
+        }
+
+        fn correct(&mut self, r: &Vector, du: &mut Vector) -> Result<()> {
+            let r = r.to_vec()?[0];
+            du.local_mut(|du| du[0] = r / self.slope)
+        }
+
+        fn judge(&mut self, _: usize, residual: f64, _: f64) -> Verdict {
+            self.iterates.push(self.u);
+            if residual < 1e-12 { Verdict::Converged } else { Verdict::Continue }
+        }
+    }
+
+    #[test]
+    fn the_first_step_is_whole_and_later_ones_are_shortened() {
+        let comm = Session::start(&[]).unwrap();
+        let jacobian = Matrix::dense(&comm, 1, &[1.0]).unwrap();
+        let mut problem = ArcTangent { jacobian, u: 0.0, slope: 1.0, iterates: Vec::new() };
+        let mut u = Vector::from_local(&comm, &[2.0]).unwrap();
+        assert!(solve(&mut problem, &mut u, 20).unwrap());
+        let whole = |u: f64| u - u.atan() * (1.0 + u * u);
+        let found = &problem.iterates;
+        assert!((found[1] - whole(2.0)).abs() < 1e-12 && found[1].abs() > 2.0, "{found:?}");
+        assert!(found[2].abs() < found[1].abs() && whole(found[1]).abs() > 10.0, "{found:?}");
+        assert!(found.len() < 8, "{found:?}");
     }
 }
