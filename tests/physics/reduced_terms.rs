@@ -122,8 +122,8 @@ fn prestress_is_frozen_in_the_super_element() {
     }
 }
 
-/// The Maxwell lining in a Galerkin super-element of all contact points: eigenvalues at the samples to 1e-8
-/// [7e-11], between them to 2e-3 [1e-3], of which the correction of its own test takes a part [a fifth]: it answers with the
+/// The Maxwell lining in a Galerkin super-element of all contact points: eigenvalues at the samples to 1e-8 [7e-11],
+/// between them to 2e-3 [1e-3], of which the correction of its own test takes a part [a fifth]: it answers with the
 /// stiffness at rest.
 #[test]
 fn a_galerkin_super_element_has_the_maxwell_lining() {

@@ -23,9 +23,9 @@ const GROWING: f64 = 0.5;
 /// The next length keeps away from the ends by this share of what is between them.
 const MARGIN: f64 = 0.1;
 
-/// The length of a step, given `phi(0)`: 1 where phi falls and keeps its sign or is small at 1; half where it grows, so
-/// that two steps that lead to and fro do not repeat each other; else near its zero. phi is evaluated last at the length
-/// that is returned.
+/// The length of a step, given `phi(0)`: 1 where phi falls and keeps its sign or is small at 1; half where it grows,
+/// so that two steps that lead to and fro do not repeat each other; else near its zero. phi is evaluated last at the
+/// length that is returned.
 ///
 /// # Errors
 /// Those of phi.
