@@ -80,6 +80,7 @@ bench: setup meshes/build/brake-medium.msh meshes/build/brake-small.msh ## measu
 	cargo bench --bench element
 	cargo bench --bench assembly
 	cargo bench --bench path
+	cargo bench --bench equilibria
 	cargo bench --bench features
 
 lint: setup ## check formatting, clippy, documentation and the page's scripts; warnings are errors

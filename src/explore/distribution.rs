@@ -14,6 +14,13 @@ pub enum Distribution {
         /// The largest.
         to: f64,
     },
+    /// All values between two, which are above 0, their logarithms equally probable.
+    LogUniform {
+        /// The smallest.
+        from: f64,
+        /// The largest.
+        to: f64,
+    },
     /// The normal distribution, cut off at bounds where these are finite.
     Normal {
         /// Mean of the distribution that is not cut off.
@@ -53,6 +60,8 @@ impl Distribution {
             Distribution::Values(values) => values[((u * values.len() as f64) as usize).min(values.len() - 1)],
             // F^-1(u) = (1 - u) a + u b
             Distribution::Uniform { from, to } => (1.0 - u) * from + u * to,
+            // F^-1(u) = a (b / a)^u
+            Distribution::LogUniform { from, to } => from * (to / from).powf(u),
             // F^-1(u) = m + s Phi^-1(Phi_a + u (Phi_b - Phi_a)),  Phi_a = Phi((a - m) / s)
             Distribution::Normal { mean, deviation, from, to } => {
                 let [low, high] = [from, to].map(|bound| standard().cdf((bound - mean) / deviation));
@@ -73,7 +82,7 @@ impl Distribution {
             return values.clone();
         }
         let [low, high] = match self {
-            Distribution::Uniform { .. } => [0.0, 1.0],
+            Distribution::Uniform { .. } | Distribution::LogUniform { .. } => [0.0, 1.0],
             _ => TAILS,
         };
         let at = |i: usize| if n == 1 { 0.5 } else { low + (high - low) * i as f64 / (n - 1) as f64 };
@@ -93,6 +102,7 @@ fn inverse(u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::E;
 
     /// Mean and standard deviation by the midpoint rule over probabilities.
     fn moments(distribution: &Distribution) -> [f64; 2] {
@@ -113,6 +123,8 @@ mod tests {
             (half, 2.0 * ratio.sqrt(), 2.0 * (1.0 - ratio).sqrt()),
             (Distribution::LogNormal { mean: 2.0, deviation: 0.4 }, 2.0, 0.4),
             (Distribution::Uniform { from: 1.0, to: 4.0 }, 2.5, 3.0 / 12.0_f64.sqrt()),
+            // Mean (b - a) / ln(b / a), variance (b^2 - a^2) / (2 ln(b / a)) - mean^2.
+            (Distribution::LogUniform { from: 1.0, to: E }, E - 1.0, (0.5 * (E * E - 1.0) - (E - 1.0).powi(2)).sqrt()),
         ] {
             let found = moments(&distribution);
             assert!((found[0] - mean).abs() < 1e-3 * mean, "{distribution:?}: mean {found:?}");
@@ -138,6 +150,7 @@ mod tests {
     #[test]
     fn levels_reach_from_end_to_end() {
         assert_eq!(Distribution::Uniform { from: 1.0, to: 3.0 }.levels(3), [1.0, 2.0, 3.0]);
+        assert_eq!(Distribution::LogUniform { from: 1.0, to: 4.0 }.levels(3), [1.0, 2.0, 4.0]);
         assert_eq!(Distribution::Values(vec![4.0, 7.0]).levels(9), [4.0, 7.0]);
         let free = Distribution::Normal { mean: 0.0, deviation: 1.0, from: f64::NEG_INFINITY, to: f64::INFINITY };
         let levels = free.levels(3);

@@ -92,6 +92,7 @@ struct ParameterTable {
     factor: bool,
     values: Option<Vec<f64>>,
     uniform: Option<[f64; 2]>,
+    loguniform: Option<[f64; 2]>,
     normal: Option<NormalTable>,
     lognormal: Option<LogNormalTable>,
 }
@@ -137,8 +138,8 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
     let line = |offset: usize| 1 + text[..offset.min(text.len())].matches('\n').count();
     let at = |offset: usize, what: String| Error::input(located(path, line(offset), what));
     let keys: Keys = toml::from_str(text).map_err(|error| {
-        let advice = "A study has model, [design] with kind, and [parameter.NAME] with key and values, uniform, normal \
-                      or lognormal";
+        let advice = "A study has model, [design] with kind, and [parameter.NAME] with key and values, uniform, \
+                      loguniform, normal or lognormal";
         at(error.span().map_or(0, |span| span.start), format!("{}. {advice}", error.message().trim_end()))
     })?;
     let mut tables: Vec<(Spanned<String>, ParameterTable)> = keys.parameter.into_iter().collect();
@@ -194,26 +195,34 @@ fn parameter(name: &str, table: &ParameterTable) -> std::result::Result<Paramete
 }
 
 fn distribution(table: &ParameterTable) -> std::result::Result<Distribution, String> {
-    let found = match (&table.values, &table.uniform, &table.normal, &table.lognormal) {
-        (Some(values), None, None, None) => Distribution::Values(values.clone()),
-        (None, Some([from, to]), None, None) => Distribution::Uniform { from: *from, to: *to },
-        (None, None, Some(own), None) => Distribution::Normal {
-            mean: own.mean,
-            deviation: own.deviation,
-            from: own.from.unwrap_or(f64::NEG_INFINITY),
-            to: own.to.unwrap_or(f64::INFINITY),
-        },
-        (None, None, None, Some(own)) => Distribution::LogNormal { mean: own.mean, deviation: own.deviation },
-        _ => return Err("give one of values, uniform, normal and lognormal".into()),
+    let normal = |own: &NormalTable| Distribution::Normal {
+        mean: own.mean,
+        deviation: own.deviation,
+        from: own.from.unwrap_or(f64::NEG_INFINITY),
+        to: own.to.unwrap_or(f64::INFINITY),
+    };
+    let lognormal = |own: &LogNormalTable| Distribution::LogNormal { mean: own.mean, deviation: own.deviation };
+    let given = [
+        table.values.clone().map(Distribution::Values),
+        table.uniform.map(|[from, to]| Distribution::Uniform { from, to }),
+        table.loguniform.map(|[from, to]| Distribution::LogUniform { from, to }),
+        table.normal.as_ref().map(normal),
+        table.lognormal.as_ref().map(lognormal),
+    ];
+    let mut given = given.into_iter().flatten();
+    let (Some(found), None) = (given.next(), given.next()) else {
+        return Err("give one of values, uniform, loguniform, normal and lognormal".into());
     };
     let is_valid = match &found {
         Distribution::Values(values) => !values.is_empty() && values.iter().all(|value| value.is_finite()),
         Distribution::Uniform { from, to } => from < to && from.is_finite() && to.is_finite(),
+        Distribution::LogUniform { from, to } => 0.0 < *from && from < to && to.is_finite(),
         Distribution::Normal { deviation, from, to, mean } => *deviation > 0.0 && from < to && mean.is_finite(),
         Distribution::LogNormal { mean, deviation } => *mean > 0.0 && *deviation > 0.0,
     };
-    let advice = "Give values = [0.3, 0.4], uniform = [from, to] with from < to, normal = { mean, deviation, from, to } \
-                  (from and to may be missing), or lognormal = { mean, deviation }; deviations are above 0";
+    let advice = "Give values = [0.3, 0.4], uniform = [from, to] with from < to, loguniform = [from, to] with \
+                  0 < from < to, normal = { mean, deviation, from, to } (from and to may be missing), or lognormal = \
+                  { mean, deviation }; deviations are above 0";
     is_valid.then_some(found).ok_or_else(|| format!("no values can be like this. {advice}"))
 }
 
