@@ -21,7 +21,7 @@ pub(super) fn warnings(full: &FullModel, comm: &Comm) -> Vec<String> {
         let nodes: HashSet<u32> = full.mesh.node_set(&load.on)?.into_iter().collect();
         on_held(&load.name, full.loads.iter().filter(|(node, _)| nodes.contains(node)), &full.held)
     });
-    held.chain(pulled(full, &bodies)).collect()
+    held.chain(pulled(full, &bodies, comm)).collect()
 }
 
 /// A load most of whose nodal forces (N) act on fixed dofs.
@@ -42,8 +42,8 @@ fn on_held<'l>(load: &str, forces: impl Iterator<Item = &'l (u32, [f64; 3])>, he
     })
 }
 
-/// Pads that the loads pull off the disc: nothing but contacts with the disc holds them along the load.
-fn pulled(full: &FullModel, bodies: &Bodies) -> Vec<String> {
+/// Pads that the loads pull off the disc: nothing but contacts with the disc holds them along the load. Collective.
+fn pulled(full: &FullModel, bodies: &Bodies, comm: &Comm) -> Vec<String> {
     let body = |surface: &str| {
         let node = full.mesh.surfaces.get(surface)?.facets.first()?.nodes().first()?;
         Some(bodies.of_node[*node as usize])
@@ -53,12 +53,14 @@ fn pulled(full: &FullModel, bodies: &Bodies) -> Vec<String> {
     let masters: Vec<usize> = pairs.iter().filter_map(|pair| body(&pair.master)).collect();
     let alone = |own: usize| slaves.iter().filter(|(_, body)| *body == own).count() == 1 && !masters.contains(&own);
     let of_pads = slaves.iter().filter(|(pair, own)| pair.is_sliding() && pair.separation && alone(*own));
-    of_pads.filter_map(|(pair, own)| pulled_off(pair, normal(full, pair), &Body::of(full, bodies, *own))).collect()
+    of_pads
+        .filter_map(|(pair, own)| pulled_off(pair, normal(full, pair), &Body::of(full, bodies, *own, comm)))
+        .collect()
 }
 
 /// What acts on a body.
 struct Body {
-    /// Sum of the loads, N.
+    /// Sum of the loads and the weight, N.
     force: [f64; 3],
     /// Whether a support holds it along each axis.
     is_held: [bool; 3],
@@ -67,12 +69,17 @@ struct Body {
 }
 
 impl Body {
-    fn of(full: &FullModel, bodies: &Bodies, own: usize) -> Body {
+    /// Collective.
+    fn of(full: &FullModel, bodies: &Bodies, own: usize, comm: &Comm) -> Body {
         let is_of = |node: usize| bodies.of_node[node] == own;
-        let mut force = [0.0; 3];
-        for (_, f) in full.loads.iter().filter(|(node, _)| is_of(*node as usize)) {
-            (0..3).for_each(|i| force[i] += f[i]);
-        }
+        let sum = |forces: &[(u32, [f64; 3])]| {
+            let on_body = forces.iter().filter(|(node, _)| is_of(*node as usize));
+            on_body.fold([0.0; 3], |sum, (_, f)| [0, 1, 2].map(|i| sum[i] + f[i]))
+        };
+        // Each rank has all loads, and the weights of its own nodes.
+        let (loads, mut weight) = (sum(&full.loads), sum(&full.weights));
+        comm.sum_all(&mut weight);
+        let force = [0, 1, 2].map(|i| loads[i] + weight[i]);
         let is_held = [0, 1, 2].map(|i| full.held.iter().enumerate().any(|(node, held)| held[i] && is_of(node)));
         let mut joined = full.joints.elements.iter().flat_map(|element| &element.nodes);
         Body { force, is_held, has_joints: joined.any(|&node| is_of(node as usize)) }
@@ -103,6 +110,8 @@ fn pulled_off(pair: &ContactPair, normal: [f64; 3], body: &Body) -> Option<Strin
 mod tests {
     use super::*;
     use crate::equilibrium::testing::{ALONG_X, belt};
+    use crate::native::Session;
+    use crate::structure::ModelVariants;
 
     #[test]
     fn a_load_on_fixed_nodes_is_said() {
@@ -114,6 +123,24 @@ mod tests {
         assert!(said([fixed, guided]).unwrap().starts_with("60 % of load \"back\""));
         assert!(said([fixed, fixed]).unwrap().starts_with("100 % of load \"back\""));
         assert_eq!(on_held("nothing", [].iter(), &[]), None);
+    }
+
+    /// The inner pad is pulled off by 1 N, the outer one pressed by 1 N; gravity along z does the opposite.
+    #[test]
+    fn weights_count_as_loads_do() {
+        let comm = Session::start(&[]).unwrap();
+        let variants = ModelVariants::read(&comm, "tests/data/pads_on_disc.toml".as_ref()).unwrap();
+        let text = variants.text.replace("[0, 0, 4000]", "[0, 0, -1]").replace("[0, 0, -4000]", "[0, 0, -1]");
+        let pulled = |gravity: f64| {
+            let load = format!("[[load]]\ngravity = [0, 0, {gravity}]\n[stability]");
+            let brake = variants.brake(&comm, &text.replace("[stability]", &load), None).unwrap();
+            let pads = ["lining_inner_face", "lining_outer_face"];
+            let said = warnings(&brake, &comm);
+            pads.map(|pad| said.iter().any(|warning| warning.starts_with(&format!("the loads pull {pad} off"))))
+        };
+        assert_eq!(pulled(0.0), [true, false]);
+        assert_eq!(pulled(1e4), [false, true]);
+        assert_eq!(pulled(-1e4), [true, false]);
     }
 
     #[test]
