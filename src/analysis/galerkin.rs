@@ -37,7 +37,8 @@ const NEGLIGIBLE_OF_MODES: f64 = 1e-3;
 const NEGLIGIBLE_OF_ANSWERS: f64 = 0.03;
 
 /// Equilibria of some samples without those that are multiples of another sample's equilibrium: where contact is
-/// homogeneous ([`crate::contact::Interface::is_homogeneous`]), equilibria are proportional to the loads.
+/// homogeneous ([`crate::contact::Interface::is_homogeneous`]) and no load is constant, equilibria are proportional to
+/// the loads.
 fn independent(equilibria: &[Sample], modes: &[Sample], is_homogeneous: bool) -> Vec<Sample> {
     let is_multiple = |a: &Sample, b: &Sample| Sample { pressure: b.pressure, ..*a } == *b;
     let mut independent: Vec<Sample> = Vec::new();
@@ -216,7 +217,8 @@ impl Snapshots {
         observer: &mut dyn Observer,
     ) -> Result<Snapshots> {
         let modes = options.modes.iter().map(|&sample| (sample, Some(end)));
-        let equilibria = independent(&options.equilibria, &options.modes, model.interface.is_homogeneous());
+        let is_homogeneous = model.interface.is_homogeneous() && system.constant_load.norm()? == 0.0;
+        let equilibria = independent(&options.equilibria, &options.modes, is_homogeneous);
         let mut all: Vec<(Sample, Option<f64>)> =
             modes.chain(equilibria.into_iter().map(|sample| (sample, None))).collect();
         let rank = |s: &Sample| (!is_own(s), s.pressure, s.contact_stiffness, s.friction);
@@ -226,9 +228,9 @@ impl Snapshots {
             |a: &Sample, b: &Sample| (a.pressure, a.contact_stiffness) == (b.pressure, b.contact_stiffness);
         for path in all.chunk_by(|(a, _), (b, _)| is_one_path(a, b)) {
             let pressure = path[0].0.pressure;
-            system.load.scale(pressure)?;
+            system.scale_load(pressure)?;
             snapshots.follow(model, system, path, options.vector_accuracy(), observer)?;
-            system.load.scale(1.0 / pressure)?;
+            system.scale_load(1.0 / pressure)?;
         }
         Ok(snapshots)
     }

@@ -17,6 +17,7 @@ mod boundary;
 mod dofs;
 mod gravity;
 pub mod joints;
+mod load_vector;
 mod loads;
 mod pattern;
 mod rotation;

@@ -104,6 +104,8 @@ pub struct System {
     pub viscoelastic: Vec<ViscoelasticStiffness>,
     /// External forces, N.
     pub load: Vector,
+    /// Those of them that no load factor multiplies, N.
+    pub constant_load: Vector,
     /// What it took to find which entries there are, s; the rest went into their values.
     pub pattern_seconds: f64,
 }
@@ -151,26 +153,9 @@ impl System {
         let [k, m, c] = sum([k, m, c], mass, &scatter, families)?;
         let g = structural_damping(&k, &scatter, families)?;
         let viscoelastic = viscoelastic(&k, &scatter, families)?;
-        let load = Vector::zeros(comm, dofs.n_local())?;
+        let [load, constant_load] = [Vector::zeros(comm, dofs.n_local())?, Vector::zeros(comm, dofs.n_local())?];
         let is_gyroscopic = families.iter().any(|family| family.is_gyroscopic());
-        Ok(System { dofs, k, m, c, is_gyroscopic, g, viscoelastic, load, pattern_seconds })
-    }
-
-    /// Adds forces (N) at nodes to the load; those at constrained dofs go into the support.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn add_load(&mut self, forces: &[(u32, [f64; 3])]) -> Result<()> {
-        let (owned, dofs) = (self.dofs.owned(), &self.dofs);
-        self.load.local_mut(|load| {
-            for (node, force) in forces {
-                for (dof, f) in dofs.node_dofs(*node).into_iter().zip(force) {
-                    if owned.contains(&dof) {
-                        load[(dof - owned.start) as usize] += f;
-                    }
-                }
-            }
-        })
+        Ok(System { dofs, k, m, c, is_gyroscopic, g, viscoelastic, load, constant_load, pattern_seconds })
     }
 
     /// M, C, K and G.

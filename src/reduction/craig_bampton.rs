@@ -54,11 +54,8 @@ use crate::{Error, Result};
 use super::fixed_interface::{self, Modes};
 use super::functionals::{Functionals, retained};
 use super::linear::Linear;
-use super::projection::{Projected, project, project_damping, shadow};
+use super::projection::{PANEL, Projected, ProjectedLoad, project, project_damping, shadow};
 use super::super_element::ViscoelasticTerm;
-
-/// Right-hand sides in one pass over a factor or matrix.
-const PANEL: usize = 64;
 
 /// Motions up to this part of the limit get residual modes: half of it, up to which a super-element is meant to be
 /// used, and a margin, as the brake without residual modes is too stiff.
@@ -134,9 +131,9 @@ pub struct Reduced {
     pub matrices: Mck<DMatrix<f64>>,
     /// `T^T K_m T` at rest of each viscoelastic law, part of the stiffness.
     pub viscoelastic: Vec<ViscoelasticTerm>,
-    /// `T^T F_ext`, N.
+    /// `T^T F_ext` without the constant part, N.
     pub load: Vec<f64>,
-    /// `T^T (F - F_ext)`: what the other contacts' forces are beside their linear part, N.
+    /// `T^T` times what the other contacts' forces are beside their linear part and the constant part of `F_ext`, N.
     pub preload: Vec<f64>,
     /// What it cost.
     pub costs: Costs,
@@ -200,8 +197,8 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
     let damping = project_damping(&basis, system)?;
     let structural = system.g.as_ref().map(|g| project(DMatrix::zeros(0, 0), &basis, g)).transpose()?;
     costs.projection_seconds = start.elapsed().as_secs_f64();
-    let load = shadow(&basis, &system.load)?;
-    let preload = shadow(&basis, &linear.preload)?;
+    let ProjectedLoad { variable: load, constant } = ProjectedLoad::new(&basis, system)?;
+    let preload = shadow(&basis, &linear.preload)?.iter().zip(constant).map(|(own, constant)| own + constant).collect();
     let frequencies = modes.frequencies;
     let viscoelastic = projected.viscoelastic_terms(system);
     let Projected { mass, stiffness, .. } = projected;

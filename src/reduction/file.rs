@@ -17,7 +17,7 @@
 //!                               where the model has prestress
 //! part_masses, part_stiffnesses n_p x n^2: what each part adds to mass and stiffness; to damping it adds alpha and
 //!                   beta times these, to structural_damping its loss factor times its stiffness
-//! load, preload     n           generalised forces, N
+//! load, preload     n           generalised forces, N: those that a load factor multiplies; all others
 //! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:
 //!                   frictionless), weight (m2), gap (m), touching (0 or 1), displacement (m) and normal_force (N) at
 //!                   the equilibrium that it was made about

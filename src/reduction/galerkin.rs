@@ -31,7 +31,7 @@ use crate::native::{Block, Matrix, Mck};
 use super::fixed_interface::make_orthonormal;
 use super::functionals::Functionals;
 use super::parts::MatricesByPart;
-use super::projection::shadow;
+use super::projection::ProjectedLoad;
 use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
 
 /// A basis V with `V^T K_ref V = I`, which grows.
@@ -139,7 +139,7 @@ pub fn super_element(
         point.nodes = vec![a as u32];
         NodeContact { point, displacement: [0.0; 3], normal_force: 0.0 }
     };
-    let load = shadow(basis, &system.load)?;
+    let ProjectedLoad { variable, constant } = ProjectedLoad::new(basis, system)?;
     let Mck { m, c, k, g } = matrices.total();
     Ok(SuperElement {
         origin,
@@ -153,8 +153,8 @@ pub fn super_element(
         structural_damping: g,
         rest: matrices.has_rest().then_some(matrices.rest_name),
         parts: matrices.parts,
-        preload: vec![0.0; load.len()],
-        load,
+        preload: constant,
+        load: variable,
         pairs: interface.pairs.clone(),
         contacts: interface.points.iter().enumerate().map(contact).collect(),
         motion: ContactMotion::Rows(by_rows(Functionals::new(&interface.gap_operator, system).apply(basis), basis)),

@@ -18,10 +18,8 @@ use crate::model::Rayleigh;
 use crate::model::viscoelastic::ViscoelasticLaw;
 use crate::native::{Block, Matrix, Mck};
 
+use super::projection::PANEL;
 use super::super_element::ViscoelasticTerm;
-
-/// Columns multiplied at a time.
-const PANEL: usize = 64;
 
 /// What a part adds to the matrices of a super-element.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,8 +9,8 @@ use crate::assembly::{System, ViscoelasticStiffness};
 use crate::native::{Block, Matrix, Vector};
 use crate::stability::Viscoelastic;
 
-/// Columns that are multiplied at a time.
-const PANEL: usize = 64;
+/// Columns in one pass over a matrix or factor.
+pub(super) const PANEL: usize = 64;
 
 /// The projections of the symmetric matrices, which grow with the basis.
 #[derive(Default)]
@@ -79,6 +79,21 @@ pub(super) fn project_damping(basis: &Block, system: &System) -> Result<DMatrix<
         product.extend(basis.gram(&basis.columns(first..last).multiplied_by(&system.c)?));
     }
     Ok(DMatrix::from_vec(n, n, product))
+}
+
+/// The load in a basis.
+pub(super) struct ProjectedLoad {
+    /// What load factors multiply, N.
+    pub variable: Vec<f64>,
+    /// What they do not, N.
+    pub constant: Vec<f64>,
+}
+
+impl ProjectedLoad {
+    pub fn new(basis: &Block, system: &System) -> Result<ProjectedLoad> {
+        let (all, constant) = (shadow(basis, &system.load)?, shadow(basis, &system.constant_load)?);
+        Ok(ProjectedLoad { variable: all.iter().zip(&constant).map(|(all, own)| all - own).collect(), constant })
+    }
 }
 
 /// `T^T f`

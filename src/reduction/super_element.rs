@@ -139,9 +139,9 @@ pub struct SuperElement {
     pub parts: Vec<PartMatrices>,
     /// What else adds to them, in words; none where there is nothing else.
     pub rest: Option<String>,
-    /// Generalised forces of the loads.
+    /// Generalised forces of the loads that a load factor multiplies.
     pub load: Vec<f64>,
-    /// Generalised forces of the contacts that were linearised.
+    /// Generalised forces of all other loads, and of the contacts that were linearised.
     pub preload: Vec<f64>,
     /// The pairs whose contacts are kept: the sliding ones, or all.
     pub pairs: Vec<ContactPair>,
@@ -270,7 +270,7 @@ impl SuperElement {
         gap_operator
     }
 
-    /// The assembled system under `factor` times the loads. Collective.
+    /// The assembled system under `factor` times those loads that a load factor multiplies. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] where a friction law is missing; METIS's and PETSc's.

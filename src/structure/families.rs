@@ -52,7 +52,7 @@ impl FullModel {
         let turning = Some(&families.turning as &dyn Elements).filter(|_| !families.turning.is_none());
         let all: Vec<&dyn Elements> = families.list().into_iter().chain(turning).collect();
         let mut system = self.assemble_families(comm, &all)?;
-        system.add_load(&families.turning.centrifugal_forces())?;
+        system.add_constant_load(&families.turning.centrifugal_forces())?;
         Ok(system)
     }
 
@@ -64,8 +64,8 @@ impl FullModel {
         let contacts: [&dyn Connectivity; 1] = [&self.interface.gap_operator];
         let mut system = System::assemble(comm, &self.nodes, &self.held, families, &contacts)?;
         system.add_load(&self.loads)?;
-        system.add_load(&self.weights)?;
-        system.add_load(&assembly::forces_of_prescribed(families, &self.prescribed))?;
+        system.add_constant_load(&self.weights)?;
+        system.add_constant_load(&assembly::forces_of_prescribed(families, &self.prescribed))?;
         Ok(system)
     }
 

@@ -101,7 +101,7 @@ impl ReducedModel {
             full.model.parts.iter_mut().filter(|own| own.name == *part).for_each(|own| own.rayleigh = *rayleigh);
         }
         let mut system = full.assemble(comm, &full.families()?)?;
-        system.load.scale(self.options.load_factor)?;
+        system.scale_load(self.options.load_factor)?;
         let columns = comm.agree(if comm.is_root() { file::read_basis(&self.place) } else { Ok(Vec::new()) })?;
         let basis = nodal_basis::distributed(&system, &full.nodes, &columns, self.element.n_coordinates())?;
         Ok((full, system, basis))

@@ -4,7 +4,7 @@
 //! Goal and, in brackets, measured: see each test.
 
 use crate::damped_pad::{FRICTION, solved, text};
-use crate::support::{brake, pressed_pad};
+use crate::support::{assert_close, brake, pressed_pad};
 use crate::viscoelastic::MATERIALS;
 use num_complex::Complex64;
 use squeal::Structure;
@@ -120,6 +120,31 @@ fn prestress_is_frozen_in_the_super_element() {
             assert!(errors[1] > 1e-6 && errors[1] < 0.5 * effect, "{errors:?}");
         }
     }
+}
+
+/// A load factor multiplies the piston's force, and not gravity (here of 1e5 m/s2): the contact force of both kinds of
+/// super-element under 1.5 times the loads is that of the model with 1.5 times the force.
+#[test]
+fn a_load_factor_leaves_gravity_as_it_is() {
+    let (comm, folder) = (Session::start(&[]).unwrap(), TempDir::new().unwrap());
+    let heavy = text(MATERIALS, "").replace("[stability]", "[[load]]\ngravity = [0, 0, -1e5]\n[stability]");
+    let pressed = heavy.replace("-1000]", "-1500]");
+    let force = |structure: &Structure| {
+        let system = structure.assemble(&comm).unwrap();
+        let equilibrium = Sweep::of(structure, &system, None).unwrap().equilibrium(FRICTION, &mut ()).unwrap();
+        equilibrium.responses.iter().map(|response| response.normal_force).sum::<f64>()
+    };
+    let path = folder.path().join("pad.se.h5");
+    let scaled = || {
+        let options = StructureOptions { load_factor: 1.5, ..StructureOptions::default() };
+        Structure::read(&comm, &path, &options).unwrap()
+    };
+    reduced(&comm, &folder, &with_contacts(&folder, &heavy), f64::INFINITY);
+    assert_close("retained contacts", force(&scaled()), force(&with_contacts(&folder, &pressed)), 1e-6);
+    let options = GalerkinOptions { force: true, ..GalerkinOptions::over(&[FRICTION], path.clone()) };
+    reduce_galerkin(&comm, &model(&folder, &heavy), &options, &mut ()).unwrap();
+    let full = Structure::Full(Box::new(model(&folder, &pressed)));
+    assert_close("all contacts", force(&scaled()), force(&full), 1e-6);
 }
 
 /// The Maxwell lining in a Galerkin super-element of all contact points: eigenvalues at the samples to 1e-8 [7e-11],
