@@ -99,7 +99,7 @@ impl GapField {
     /// row's own place has its gap; of an image bilinear between its pixels.
     ///
     /// # Errors
-    /// What is wrong where rows or image lie beside the surface.
+    /// What is wrong where rows or image do not cover the surface.
     pub fn at(&self, points: &[[f64; 3]]) -> Result<Vec<f64>, String> {
         let gaps = match &self.gaps {
             Gaps::Table(table) => table.at(points),

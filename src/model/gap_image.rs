@@ -49,6 +49,8 @@ impl GapImage {
         let input = BufReader::new(File::open(file).map_err(|reason| fail(&reason))?);
         let mut decoder = Decoder::new(input);
         decoder.set_transformations(Transformations::EXPAND);
+        let header = decoder.read_header_info().map_err(|reason| fail(&reason))?;
+        require_size(header.width, header.height).map_err(|what| format!("the image {place} {what}"))?;
         let mut reader = decoder.read_info().map_err(|reason| fail(&reason))?;
         let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| fail(&"it is too large"))?];
         let info = reader.next_frame(&mut bytes).map_err(|reason| fail(&reason))?;
@@ -80,6 +82,20 @@ impl GapImage {
             |row: usize| (1.0 - columns.weight) * pixel(row, columns.first) + columns.weight * pixel(row, columns.last);
         Ok((1.0 - rows.weight) * along(rows.first) + rows.weight * along(rows.last))
     }
+}
+
+/// The largest image that is read, in pixels.
+const MAX_PIXELS: u64 = 16_000_000;
+
+/// Refuses a size by the header alone, before there is memory for the pixels.
+fn require_size(n_columns: u32, n_rows: u32) -> Result<(), String> {
+    if u64::from(n_columns) * u64::from(n_rows) <= MAX_PIXELS {
+        return Ok(());
+    }
+    let most = MAX_PIXELS / 1_000_000;
+    Err(format!(
+        "has {n_columns} x {n_rows} pixels, more than {most} million. Scale it down, or cut out the contact surface"
+    ))
 }
 
 /// A point this far outside of an image, as a share of that, is on its edge.
@@ -176,6 +192,22 @@ mod tests {
         assert!(red.contains("has colours. Save it in grey levels"), "{red}");
         let clear = read(1, ColorType::GrayscaleAlpha, BitDepth::Eight, &[200, 9]).unwrap_err();
         assert!(clear.contains("without an alpha channel"), "{clear}");
+    }
+
+    #[test]
+    fn an_image_that_is_too_large_is_refused_by_its_header() {
+        assert!(require_size(4000, 4000).is_ok() && require_size(u32::MAX, u32::MAX).is_err());
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("topography.png");
+        let writer = |n_columns: u32| {
+            let mut encoder = png::Encoder::new(File::create(&file).unwrap(), n_columns, 4000);
+            encoder.set_color(ColorType::Grayscale);
+            drop(encoder.write_header().unwrap());
+            GapImage::read(&file, FRAME).unwrap_err()
+        };
+        let large = writer(4001);
+        assert!(large.contains("has 4001 x 4000 pixels, more than 16 million. Scale it down"), "{large}");
+        assert!(writer(4000).contains("cannot be read"), "there are no pixels");
     }
 
     #[test]

@@ -132,6 +132,14 @@ fn gap_fields() {
 }
 
 #[test]
+fn gap_images() {
+    let frame =
+        model::ImageFrame { plane: [0, 1], lower_left: [0.0; 2], upper_right: [1.0; 2], black: 0.0, white: 1e-5 };
+    let read = |path: &Path| model::GapField::read_image(path, frame).and_then(|field| field.at(&[[0.4, 0.6, 0.0]]));
+    fuzz("image", "png", seeds::gap_images(), |path| read(path).is_ok());
+}
+
+#[test]
 fn measured_modes() {
     fuzz("measured", "csv", seeds::measured(), |path| analysis::read_measured(path).is_ok());
 }

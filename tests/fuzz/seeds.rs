@@ -134,6 +134,20 @@ pub fn gap_fields() -> Vec<Vec<u8>> {
     [whole, plane].map(|text| text.as_bytes().to_vec()).into()
 }
 
+/// Of three columns and two rows, in 8 and 16 bits.
+pub fn gap_images() -> Vec<Vec<u8>> {
+    let image = |depth: png::BitDepth, n_bytes: u8| {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, 3, 2);
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.set_depth(depth);
+        let levels: Vec<u8> = (0..n_bytes).collect();
+        encoder.write_header().unwrap().write_image_data(&levels).unwrap();
+        file
+    };
+    vec![image(png::BitDepth::Eight, 6), image(png::BitDepth::Sixteen, 12)]
+}
+
 pub fn measured() -> Vec<Vec<u8>> {
     let rows = "x,y,z,direction,812.5,1930\n0,0,10,z,0.5,-1e-3\n12.5,-3,10,-y,1,0.25\n1,2,3,0.6 0 0.8,-0.5,2\n";
     vec![rows.as_bytes().to_vec()]
