@@ -28,6 +28,11 @@ pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>], unit: f64) -> 
     named(source, "load", raw, called, |item, name, raw| {
         let on = match (&raw.on, &raw.gravity) {
             (None, Some(_)) => String::new(),
+            (Some(on), Some(gravity)) => {
+                let advice = "Name a part or [[mass]], or leave `on` out: gravity then acts on all of them";
+                item.require_at(&gravity.span(), !on.is_empty(), "on is empty", advice)?;
+                on.clone()
+            }
             (on, _) => item.required(on, "on", "Name a physical surface, curve or point")?.clone(),
         };
         Ok(Load { name, on, kind: kind(item, raw, unit)?, place: item.place() })
@@ -37,7 +42,7 @@ pub fn loads(source: ModelText, raw: &[Spanned<keys::LoadTable>], unit: f64) -> 
 fn kind(item: &Item, raw: &keys::LoadTable, unit: f64) -> Result<LoadKind> {
     if let Some(gravity) = &raw.gravity {
         let is_alone = raw.force.is_none() && raw.moment.is_none() && raw.at.is_none() && raw.pressure.is_none();
-        let what = "gravity acts on all of a part, and there is something else";
+        let what = "a load with gravity has no force, moment, at, spread or pressure";
         item.require_at(&gravity.span(), is_alone && raw.spread.is_none(), what, "Write two [[load]] tables")?;
         return Ok(LoadKind::Gravity(item.finite(gravity, "gravity")?));
     }

@@ -116,6 +116,11 @@ impl ModelCheck<'_> {
             let what = format!("the material of the part {:?} has no density, so that it has no weight", part.name);
             self.complain(load.place, format!("{what} ({item}). Give its density"));
         }
+        let is_part = model.parts.iter().any(|part| part.name == load.on);
+        if is_part && model.masses.iter().any(|mass| mass.name == load.on) {
+            let what = format!("{:?} is a part and a [[mass]] ({item})", load.on);
+            self.complain(load.place, format!("{what}. Give the mass another name"));
+        }
         let names = || {
             let masses = model.masses.iter().map(|mass| mass.name.as_str());
             model.parts.iter().map(|part| part.name.as_str()).chain(masses)

@@ -182,6 +182,11 @@ fn gravity_acts_on_a_part_or_a_mass() {
     let said_of = said(&load("on = \"disk\"\ngravity = [0, 0, -9.81]"), &mesh);
     let expected = "brake.toml:49: there is no part or [[mass]] \"disk\" (load \"disk\"). Did you mean \"disc\"?";
     assert!(said_of.starts_with(expected), "{said_of}");
+    let mass = "[[mass]]\nname = \"disc\"\nnodes = \"hub\"\nmass = 1\n";
+    let text = load("on = \"disc\"\ngravity = [0, 0, -9.81]").replacen("[[load]]", &format!("{mass}[[load]]"), 1);
+    let said_of = said(&text, &mesh);
+    let expected = "\"disc\" is a part and a [[mass]] (load \"disc\"). Give the mass another name";
+    assert!(said_of.contains(expected), "{said_of}");
 }
 
 #[test]

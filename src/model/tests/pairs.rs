@@ -217,7 +217,17 @@ fn loads_are_one_force_or_one_pressure() {
     let both = load("force = [1, 0, 0]\npressure = 5").unwrap_err();
     assert!(both.contains(":45: there are a force and a pressure (load \"back\")"), "{both}");
     let both = load("gravity = [0, 0, -9.81]\npressure = 5").unwrap_err();
-    assert!(both.contains(":44: gravity acts on all of a part, and there is something else (load \"back\")"), "{both}");
+    assert!(
+        both.contains(":44: a load with gravity has no force, moment, at, spread or pressure (load \"back\")"),
+        "{both}"
+    );
+    let empty =
+        parsed(&GOOD.replace("on = \"back\"", "on = \"\"").replace("force = [0, 0, 4000]", "gravity = [0, 0, -9.81]"));
+    let empty = empty.unwrap_err();
+    assert!(
+        empty.contains("on is empty (load") && empty.contains("Name a part or [[mass]], or leave `on` out"),
+        "{empty}"
+    );
     let nowhere = parsed(&GOOD.replace("on = \"back\"\n", "")).unwrap_err();
     assert!(nowhere.contains("on is missing (load \"unnamed\"). Name a physical surface"), "{nowhere}");
     let spread = load("pressure = 5\nspread = \"area\"").unwrap_err();
