@@ -18,15 +18,15 @@ use crate::contact::search::{Alone, FoundPoint, Options, find_nodes};
 use crate::deck::sets::Kind;
 use crate::deck::types::{Adjust, ContactPair, Entry};
 
-/// A node lies beside the master where its projection is off its normal by more than this share of a facet.
-const BESIDE: f64 = 1e-6;
+/// Largest lateral offset between a node and its projection, over the facet's size: beyond it the node stays.
+const MAX_LATERAL_OFFSET: f64 = 1e-6;
 
-/// The way of a node onto the master.
-struct Way {
+/// The motion of a node onto the master.
+struct NodeShift {
     /// The node, in the mesh.
     node: u32,
     /// `-g n`, m.
-    shift: [f64; 3],
+    vector: [f64; 3],
     /// |g|, m.
     length: f64,
 }
@@ -41,14 +41,14 @@ impl Conversion<'_> {
         for pair in &self.deck.contact_pairs {
             let Some(Adjust::Nodes(set)) = &pair.adjust else { continue };
             let nodes = self.nodes_of_slave(pair, set)?;
-            let ways = self.ways(pair, &nodes)?;
-            self.move_nodes(&ways);
+            let shifts = self.shifts(pair, &nodes)?;
+            self.move_nodes(&shifts);
             check_inverted(&self.assembly, &self.regions.mesh).map_err(|_| {
                 let master = self.deck.spelled(&pair.master);
                 let what = format_args!("ADJUST moves nodes onto {master} so far that elements turn inside out");
                 self.assembly.error(pair.place, format_args!("{what}. Move the part in place of its nodes"))
             })?;
-            self.note_adjusted(pair, set, nodes.len(), &ways);
+            self.note_adjusted(pair, set, nodes.len(), &shifts);
         }
         Ok(())
     }
@@ -67,41 +67,41 @@ impl Conversion<'_> {
         Ok(both)
     }
 
-    /// The ways of those nodes that do not lie beside the master.
-    fn ways(&mut self, pair: &ContactPair, nodes: &[u32]) -> Result<Vec<Way>> {
+    /// The shifts of those nodes that do not lie beside the master.
+    fn shifts(&mut self, pair: &ContactPair, nodes: &[u32]) -> Result<Vec<NodeShift>> {
         let [slave, master] =
             [self.surface_name(&pair.slave, pair.place)?, self.surface_name(&pair.master, pair.place)?];
         let mesh = &self.regions.mesh;
         let everywhere = Options { search_distance: Some(f64::INFINITY) };
         let found = find_nodes(&mesh.surfaces[&slave], &mesh.surfaces[&master], &mesh.nodes, &everywhere, &Alone);
-        let way = |point: FoundPoint| {
+        let shift = |point: FoundPoint| {
             let (node, length) = (point.slave.nodes[0], point.gap.abs());
             let beside = (point.distance * point.distance - length * length).max(0.0).sqrt();
-            let is_moved = beside <= BESIDE * point.size && nodes.binary_search(&node).is_ok();
-            is_moved.then(|| Way { node, shift: point.normal.map(|n| -point.gap * n), length })
+            let is_moved = beside <= MAX_LATERAL_OFFSET * point.size && nodes.binary_search(&node).is_ok();
+            is_moved.then(|| NodeShift { node, vector: point.normal.map(|n| -point.gap * n), length })
         };
-        Ok(found.points.into_iter().filter_map(way).collect())
+        Ok(found.points.into_iter().filter_map(shift).collect())
     }
 
     /// Moves nodes in the mesh and in the deck.
-    fn move_nodes(&mut self, ways: &[Way]) {
-        let shifts: HashMap<u32, [f64; 3]> = ways.iter().map(|way| (way.node, way.shift)).collect();
+    fn move_nodes(&mut self, shifts: &[NodeShift]) {
+        let vectors: HashMap<u32, [f64; 3]> = shifts.iter().map(|shift| (shift.node, shift.vector)).collect();
         let nodes = &mut self.regions.mesh.nodes;
         for (at, node) in self.assembly.coordinates.iter_mut().zip(&self.bodies.node_of) {
-            let Some(shift) = shifts.get(node) else { continue };
-            nodes[*node as usize].iter_mut().zip(shift).for_each(|(x, shift)| *x += shift);
-            at.iter_mut().zip(shift).for_each(|(x, shift)| *x += shift / self.units.length);
+            let Some(vector) = vectors.get(node) else { continue };
+            nodes[*node as usize].iter_mut().zip(vector).for_each(|(x, shift)| *x += shift);
+            at.iter_mut().zip(vector).for_each(|(x, shift)| *x += shift / self.units.length);
         }
     }
 
-    fn note_adjusted(&mut self, pair: &ContactPair, set: &str, n_nodes: usize, ways: &[Way]) {
+    fn note_adjusted(&mut self, pair: &ContactPair, set: &str, n_nodes: usize, shifts: &[NodeShift]) {
         let (set, master) = (self.deck.spelled(set), self.deck.spelled(&pair.master));
-        let farthest = ways.iter().map(|way| way.length).fold(0.0, f64::max) / self.units.length;
-        let beside = match n_nodes - ways.len() {
+        let farthest = shifts.iter().map(|shift| shift.length).fold(0.0, f64::max) / self.units.length;
+        let beside = match n_nodes - shifts.len() {
             0 => String::new(),
             n => format!("; {n} lie beside it and stay"),
         };
-        let n = ways.len();
+        let n = shifts.len();
         self.notes
             .push(format!("ADJUST: {n} nodes of {set} are moved onto {master}, by {farthest:.2e} at most{beside}"));
     }

@@ -38,6 +38,27 @@ fn slave_nodes_of_a_set_are_moved_onto_the_master_from_a_gap_and_from_an_overlap
     }
 }
 
+/// As in CalculiX.
+#[test]
+fn nodes_of_a_tied_pair_are_moved_too_but_not_by_a_distance() {
+    let tied = |value: &str| {
+        let pad = [[0.0, 0.0, 0.5], [10.0, 0.0, 0.5], [0.0, 10.0, 0.5], [0.0, 0.0, 10.5]];
+        let low = [[0.0; 3], [10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0]];
+        let text = good().replace(&nodes(11, low), &nodes(11, pad));
+        let pair = format!("*CONTACT PAIR, INTERACTION=I, TIED, ADJUST={value}\n");
+        let text = text.replace("*CONTACT PAIR, INTERACTION=I\n", &pair);
+        let set = format!("*NSET, NSET=Near\n{FACE}\n*MATERIAL, NAME=Steel\n");
+        read(&text.replace("*MATERIAL, NAME=Steel\n", &set)).unwrap()
+    };
+    let by_set = tied("Near");
+    assert_eq!((by_set.model.ties.len(), heights(&by_set)[0]), (1, 0.0));
+    assert!(!by_set.summary.notes.iter().any(|note| note.contains("not applied")), "{:?}", by_set.summary.notes);
+    let by_distance = tied("1.");
+    assert_eq!(heights(&by_distance)[0], 0.5);
+    let is_noted = |note: &String| note.starts_with("ADJUST of the tied pair") && note.contains("is not applied");
+    assert!(by_distance.summary.notes.iter().any(is_noted), "{:?}", by_distance.summary.notes);
+}
+
 #[test]
 fn nodes_of_no_slave_and_nodes_outside_the_set_stay() {
     let found = adjusted([0.0, 0.0, 0.5], "11, 16, 18, 3").unwrap();
