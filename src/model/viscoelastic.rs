@@ -114,7 +114,8 @@ impl ViscoelasticLaw {
                 elements.iter().all(|own| is_positive(&own.ratio) && is_positive(&own.relaxation_time))
             }
             ViscoelasticLaw::FractionalZener(own) => {
-                [own.unrelaxed_ratio, own.relaxation_time, own.order].iter().all(is_positive)
+                let numbers = [own.unrelaxed_ratio, own.relaxation_time, own.order];
+                numbers.iter().all(is_positive) && own.unrelaxed_ratio > 1.0 && own.order <= 1.0
             }
             ViscoelasticLaw::Table(ModulusTable { frequencies, ratios, loss_factors }) => {
                 let rises = frequencies.is_sorted_by(|a, b| a < b) && frequencies.iter().chain(ratios).all(is_positive);
@@ -310,7 +311,14 @@ mod tests {
         let [maxwell, zener, table] = laws();
         let ViscoelasticLaw::Table(table) = table else { panic!("a table") };
         let ViscoelasticLaw::FractionalZener(zener) = zener else { panic!("a fractional law") };
-        assert!(!ViscoelasticLaw::FractionalZener(FractionalZener { order: f64::NAN, ..zener }).is_sound());
+        for wrong in [
+            FractionalZener { order: f64::NAN, ..zener },
+            FractionalZener { order: 1.1, ..zener },
+            FractionalZener { unrelaxed_ratio: 1.0, ..zener },
+        ] {
+            assert!(!ViscoelasticLaw::FractionalZener(wrong).is_sound(), "{wrong:?}");
+        }
+        assert!(ViscoelasticLaw::FractionalZener(FractionalZener { order: 1.0, ..zener }).is_sound());
         let ViscoelasticLaw::Maxwell(mut elements) = maxwell else { panic!("Maxwell's law") };
         elements[1].relaxation_time = 0.0;
         assert!(!ViscoelasticLaw::Maxwell(elements).is_sound());
