@@ -229,28 +229,21 @@ fn force(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {
 
 fn distributed(row: &Row, found: &mut Vec<ActionKind>) -> Result<()> {
     let label = row.field(1).to_uppercase();
-    if label == "GRAV" && row.field(0).is_empty() {
-        found.push(ActionKind::Gravity(None, gravity(row)?));
-        return Ok(());
-    }
-    let of: Entry = target(row, 0)?;
-    match label.as_str() {
-        "CENTRIF" => {
-            found.push(ActionKind::Centrifugal(of, centrifugal(row)?));
-            return Ok(());
-        }
+    let of = || target(row, 0);
+    found.push(match label.as_str() {
         "GRAV" => {
-            found.push(ActionKind::Gravity(Some(of), gravity(row)?));
-            return Ok(());
+            let of: Option<Entry> = if row.field(0).is_empty() { None } else { Some(of()?) };
+            ActionKind::Gravity(of, gravity(row)?)
         }
-        _ => {}
-    }
-    if !label.starts_with('P') {
-        let known = "On solids: P1 to P6, a pressure on a face, GRAV, gravity, and CENTRIF, the centrifugal force";
-        return Err(row.error(format_args!("the load {:?} is not supported. {known}", row.field(1))));
-    }
-    let face = face(row, &label, 'P')?;
-    found.push(ActionKind::FacePressure(of, face, row.real(2, "the pressure")?));
+        "CENTRIF" => ActionKind::Centrifugal(of()?, centrifugal(row)?),
+        _ if label.starts_with('P') => {
+            ActionKind::FacePressure(of()?, face(row, &label, 'P')?, row.real(2, "the pressure")?)
+        }
+        _ => {
+            let known = "On solids: P1 to P6, a pressure on a face, GRAV, gravity, and CENTRIF, the centrifugal force";
+            return Err(row.error(format_args!("the load {:?} is not supported. {known}", row.field(1))));
+        }
+    });
     Ok(())
 }
 
