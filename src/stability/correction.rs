@@ -5,17 +5,15 @@
 //! whole problem is, to first order,
 //!
 //! ```text
-//! lambda + (r_y^H A r_x - y^H r_x) / (y^H (2 lambda M + C) x)
+//! lambda + (r_y^H A r_x - y^H r_x) / (y^H P'(lambda) x)
 //! ```
 //!
 //! that of the Schur complement of `P(lambda)` on V (Stewart and Sun, *Matrix Perturbation Theory*, 1990, section V.2).
 //! What lies outside of V is stiff beside `lambda^2 M`, so that A is a static answer.
 
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::QuadraticProblem;
-use super::forms::complex_product;
 use super::mode::backward_errors;
 use super::space::Side;
 use crate::Result;
@@ -53,23 +51,42 @@ pub fn corrections(
     let backward_errors = backward_errors(problem, lambdas, right)?;
     let r_x = residuals(problem, right, lambdas, Side::Right)?;
     let r_y = residuals(problem, left, lambdas, Side::Left)?;
-    let form = |a: &Matrix| Ok(left.gram(&right.multiplied_by(a)?));
-    let [mass, damping] = [problem.matrices.m, problem.matrices.c].map(form);
-    let viscoelastic = problem.viscoelastic.stiffnesses.iter().map(|own| form(&own.stiffness));
-    let n = 2 * lambdas.len();
-    let square = |own| DMatrix::from_vec(n, n, own);
-    let viscoelastic = viscoelastic.map(|own| Ok(square(own?))).collect::<Result<Vec<_>>>()?;
-    let products = [r_y.gram(&answer(&r_x)?), left.gram(&r_x), mass?, damping?].map(square);
-    let of = |(i, (&lambda, backward_error)): (usize, (&Complex64, f64))| {
-        let [answered, direct, mass, damping] =
-            products.each_ref().map(|own| complex_product(own, (i, false), (i, false)));
-        let terms = problem.viscoelastic.slopes(lambda).zip(&viscoelastic);
-        let slope = 2.0 * lambda * mass
-            + damping
-            + terms.map(|(slope, own)| slope * complex_product(own, (i, false), (i, false))).sum::<Complex64>();
-        Correction { lambda: lambda + (answered - direct) / slope, backward_error }
+    let slopes = approximation.forms(problem, &|lambda| problem.slopes(lambda))?;
+    let (answered, direct) = (products(&r_y, &answer(&r_x)?), products(left, &r_x));
+    let of = |(i, (&lambda, backward_error)): (usize, (&Complex64, f64))| Correction {
+        lambda: lambda + (answered[i] - direct[i]) / slopes[i],
+        backward_error,
     };
     Ok(lambdas.iter().zip(backward_errors).enumerate().map(of).collect())
+}
+
+impl Approximation<'_> {
+    /// `sum_b c_b(lambda_i) y_i^H A_b x_i` over the matrices of a problem: with its coefficients `y^H P(lambda) x`,
+    /// with its slopes `y^H P'(lambda) x`. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn forms(
+        &self,
+        problem: &QuadraticProblem,
+        coefficients: &dyn Fn(Complex64) -> Vec<Complex64>,
+    ) -> Result<Vec<Complex64>> {
+        let form = |matrix: &Matrix| Ok(products(self.left, &self.right.multiplied_by(matrix)?));
+        let of_matrices: Vec<Vec<Complex64>> = problem.all_matrices().into_iter().map(form).collect::<Result<_>>()?;
+        let sum = |(i, lambda): (usize, &Complex64)| {
+            coefficients(*lambda).iter().zip(&of_matrices).map(|(factor, own)| factor * own[i]).sum()
+        };
+        Ok(self.lambdas.iter().enumerate().map(sum).collect())
+    }
+}
+
+/// `y_i^H x_i`. Collective.
+fn products(y: &Block, x: &Block) -> Vec<Complex64> {
+    let dot = |i: usize, j: usize| -> f64 { y.column(i).iter().zip(x.column(j)).map(|(a, b)| a * b).sum() };
+    let product = |(re, im): (usize, usize)| [dot(re, re) + dot(im, im), dot(re, im) - dot(im, re)];
+    let mut parts: Vec<f64> = (0..y.n_columns() / 2).flat_map(|i| product((2 * i, 2 * i + 1))).collect();
+    y.comm().sum_all(&mut parts);
+    parts.as_chunks().0.iter().map(|&[re, im]| Complex64::new(re, im)).collect()
 }
 
 /// `P(lambda_i) x_i`, or `P(lambda_i)^H y_i` of left vectors.
@@ -91,7 +108,7 @@ fn residuals(problem: &QuadraticProblem, x: &Block, lambdas: &[Complex64], side:
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DVector;
+    use nalgebra::{DMatrix, DVector};
 
     use super::*;
     use crate::native::{Mck, Session};

@@ -13,8 +13,8 @@ use num_complex::Complex64;
 
 use crate::analysis::observer::{Event, Observer};
 use crate::explore::{Difference, Gradient};
-use crate::native::{Block, Comm, Matrix};
-use crate::stability::QuadraticProblem;
+use crate::native::{Block, Comm};
+use crate::stability::{Approximation, QuadraticProblem};
 use crate::{Error, Result};
 
 use super::Run;
@@ -45,7 +45,7 @@ impl NominalVectors {
         [left, right]: [Block; 2],
     ) -> Result<NominalVectors> {
         let mut own = NominalVectors { lambdas, left, right, products: Vec::new(), forms: Vec::new() };
-        own.products = own.forms_with(problem, &|lambda| problem.slopes(lambda))?;
+        own.products = own.approximation().forms(problem, &|lambda| problem.slopes(lambda))?;
         own.forms = own.forms_of(problem)?;
         Ok(own)
     }
@@ -55,35 +55,11 @@ impl NominalVectors {
         if problem.comm().max(usize::from(problem.n_local() != self.right.n_local())) > 0 {
             return Err(Error::input("the parameter changes the dofs, so that there is no derivative"));
         }
-        self.forms_with(problem, &|lambda| problem.coefficients(lambda))
+        self.approximation().forms(problem, &|lambda| problem.coefficients(lambda))
     }
 
-    /// `sum_b c_b(lambda) y^H A_b x` over the matrices of a problem.
-    fn forms_with(
-        &self,
-        problem: &QuadraticProblem,
-        coefficients: &dyn Fn(Complex64) -> Vec<Complex64>,
-    ) -> Result<Vec<Complex64>> {
-        let products: Vec<Vec<Complex64>> =
-            problem.all_matrices().iter().map(|matrix| self.products_with(matrix)).collect::<Result<_>>()?;
-        let sum = |(i, lambda): (usize, &Complex64)| {
-            coefficients(*lambda).iter().zip(&products).map(|(factor, own)| factor * own[i]).sum()
-        };
-        Ok(self.lambdas.iter().enumerate().map(sum).collect())
-    }
-
-    /// `y_i^H A x_i`
-    fn products_with(&self, matrix: &Matrix) -> Result<Vec<Complex64>> {
-        let images = self.right.multiplied_by(matrix)?;
-        let dot =
-            |y: usize, x: usize| -> f64 { self.left.column(y).iter().zip(images.column(x)).map(|(a, b)| a * b).sum() };
-        let product = |i: usize| {
-            let (re, im) = (2 * i, 2 * i + 1);
-            [dot(re, re) + dot(im, im), dot(re, im) - dot(im, re)]
-        };
-        let mut parts: Vec<f64> = (0..self.lambdas.len()).flat_map(product).collect();
-        matrix.comm().sum_all(&mut parts);
-        Ok(parts.as_chunks().0.iter().map(|&[re, im]| Complex64::new(re, im)).collect())
+    fn approximation(&self) -> Approximation<'_> {
+        Approximation { lambdas: &self.lambdas, right: &self.right, left: &self.left }
     }
 
     /// The derivative from the forms `step` below and above the nominal value, of which one may have failed.
@@ -148,7 +124,7 @@ fn unless_fatal<T>(comm: &Comm, found: Result<T>) -> Result<Result<T>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::native::{Mck, Session};
+    use crate::native::{Matrix, Mck, Session};
 
     /// One mass on a spring: `lambda^2 m + k = 0`, `d lambda / dk = -1 / (2 lambda m)`.
     #[test]
