@@ -23,7 +23,7 @@ use crate::output::model_summary::{
 use crate::structure::{FullModel, Ranked, plausibility};
 
 /// What gravity without a name acts on.
-const ALL: &str = "all parts and masses";
+const ON_EVERYTHING: &str = "all parts and masses";
 
 /// Masses, contact pairs, mesh quality, constraints and loads of a model; with reference contacts their cells, too. The
 /// matrix is left open. Collective.
@@ -35,7 +35,7 @@ pub fn model_summary(comm: &Comm, full: &FullModel, with_layouts: bool) -> Model
     let mass_kg = parts.iter().map(|row| row.mass_kg).chain(masses.iter().map(|own| own.mass)).sum();
     let load = |load: &Load| LoadRow {
         load: load.name.clone(),
-        on: if load.on.is_empty() { ALL.to_owned() } else { load.on.clone() },
+        on: if load.on.is_empty() { ON_EVERYTHING.to_owned() } else { load.on.clone() },
         what: amount(full, &parts, load),
     };
     let loads: Vec<LoadRow> = full.model.loads.iter().map(load).collect();

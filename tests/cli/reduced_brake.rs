@@ -109,7 +109,7 @@ fn a_file_that_is_no_super_element_is_refused() {
 /// `reduce` prints at which equilibrium the geometric stiffness is frozen, both kinds of super-element have it in their
 /// file, and each the modes of its model there.
 #[test]
-fn prestress_is_frozen_and_said_to_be() {
+fn prestress_is_frozen_and_printed() {
     let change = |text: String| {
         let text = swap(&text, "[stability]\nband = [0, 20000]", "[stability]\nprestress = true\nband = [0, 60000]");
         swap(&text, "[0, 0, -1000]", "[0, 0, -100000]") + "[reduction]\ncontacts = 4\nband = [0, 240000]\n"
