@@ -3,10 +3,10 @@
 //! A point has the coordinates `u_i`, the probability that parameter i has a smaller value; so the unit cube is the
 //! space of the parameters, scaled. The first points are those of a Sobol sequence. Then rounds follow:
 //!
-//! - Two points are *neighbours* where no other point lies between them: none sees the two under an angle of more than
-//!   120 degrees. A point that has failed separates others, too. With 90 degrees that is the Gabriel graph (Gabriel and
-//!   Sokal, Systematic Zoology 18 (1969)), which leaves gaps along the boundary: of two tight pairs, the stable point
-//!   of the one and the unstable point of the other are seen under 90 degrees.
+//! - Two points are *neighbours* where no other point lies between them: no other point forms an angle above 120
+//!   degrees with the two. A point that has failed separates others, too. With 90 degrees that is the Gabriel graph
+//!   (Gabriel and Sokal, Systematic Zoology 18 (1969)), which leaves gaps along the boundary: of two tight pairs, the
+//!   stable point of the one and the unstable point of the other form 90 degrees with a third.
 //! - Between neighbours of opposite verdict lies the boundary. A round bisects the seven widest of such pairs that are
 //!   wider than the resolution, but none whose middle is nearer to one of the same round than half its width; and it
 //!   has the next point of the sequence, which may meet another part of the boundary.

@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_that_fails_is_no_end_and_a_full_disc_is() {
+    fn an_error_of_a_point_continues_and_a_full_disk_ends_the_study() {
         let comm = Session::start(&[]).unwrap();
         assert!(unless_fatal::<()>(&comm, Err(Error::input("density"))).unwrap().is_err());
         assert!(unless_fatal(&comm, Ok(1)).unwrap().is_ok());

@@ -93,7 +93,7 @@ pub fn solve(
     })
 }
 
-/// Lends the sweep of a structure to `look`, with the equilibrium at a friction coefficient, which is sought as
+/// Calls `look` with the sweep of a structure and the equilibrium at a friction coefficient, which is sought as
 /// [`solve`] does. Collective.
 ///
 /// # Errors
@@ -113,9 +113,9 @@ pub fn at_equilibrium<T>(
 }
 
 /// Accuracy of the left vectors that recognise modes.
-const RECOGNISES: f64 = 1e-4;
+const LINK_ACCURACY: f64 = 1e-4;
 /// The same of those that make derivatives: a growth rate changes by a thousandth of what the frequency does.
-const DIFFERENTIATES: f64 = 1e-7;
+const DERIVATIVE_ACCURACY: f64 = 1e-7;
 
 impl PointSolution {
     /// Recognises the modes, or keeps what recognises those of other points where this is the nominal one. Collective.
@@ -128,7 +128,7 @@ impl PointSolution {
         nominal: Option<&NominalModes>,
     ) -> Result<()> {
         let differentiates = request.gradients && nominal.is_none();
-        let accuracy = if differentiates { DIFFERENTIATES } else { RECOGNISES };
+        let accuracy = if differentiates { DERIVATIVE_ACCURACY } else { LINK_ACCURACY };
         let vectors = Vectors { left: sweep.left_vectors(found, |_| accuracy)?, right: sweep.right_vectors(found)? };
         let weighted = vectors.weighted(&sweep.system.m)?;
         if let Some(nominal) = nominal {
