@@ -135,7 +135,7 @@ impl Design {
             DesignKind::List(points) => points.len(),
             DesignKind::LatinHypercube { n_points } | DesignKind::Sobol { n_points } => *n_points,
             DesignKind::Saltelli { n_base } => n_base.saturating_mul(parameters.len() + 2),
-            DesignKind::Adaptive(rule) => rule.n_start,
+            DesignKind::Adaptive(rule) => rule.n_points,
         }
     }
 
@@ -269,6 +269,14 @@ mod tests {
         assert!(!design.is_sample());
         let error = design.points(&[&UNIT; 20], &[0.5; 20]).unwrap_err().to_string();
         assert!(error.contains("65536"), "{error}");
+    }
+
+    #[test]
+    fn the_points_of_an_adaptive_design_are_limited_and_the_first_are_those_of_its_start() {
+        let rule = |n_points: usize| DesignKind::Adaptive(AdaptiveRule { n_points, n_start: 4, resolution: 0.1 });
+        assert_eq!(points(rule(MAX_POINTS), 2), points(DesignKind::Sobol { n_points: 4 }, 2));
+        let too_many = Design { kind: rule(MAX_POINTS + 1), seed: 7, correlation: None };
+        assert!(too_many.points(&[&UNIT], &[0.5]).unwrap_err().to_string().contains("65537"));
     }
 
     #[test]

@@ -40,6 +40,8 @@ const GRID_LEVELS: usize = 5;
 const START_SHARE: usize = 4;
 /// and with no fewer than these.
 const MIN_START: usize = 8;
+/// It has no more points than these: each round compares all pairs of opposite verdict.
+const MAX_ADAPTIVE: usize = 4096;
 /// Its resolution where none is given.
 const RESOLUTION: f64 = 0.01;
 
@@ -97,6 +99,10 @@ pub(super) fn design(table: &DesignTable, parameters: &[Parameter], path: &Path)
 
 /// An adaptive design of at most so many points.
 fn adaptive(table: &DesignTable, n_points: usize, parameters: &[Parameter]) -> Result<DesignKind> {
+    if n_points > MAX_ADAPTIVE {
+        let what = format!("kind \"adaptive\" has at most {MAX_ADAPTIVE} points, not {n_points}");
+        return Err(Error::input(format!("{what}. Give fewer points, or kind = \"sobol\"")));
+    }
     let n_start = table.start.unwrap_or((n_points / START_SHARE).max(MIN_START).min(n_points));
     let resolution = table.resolution.unwrap_or(RESOLUTION);
     let is_valid = (1..=n_points).contains(&n_start) && resolution > 0.0 && resolution < 1.0;

@@ -260,6 +260,7 @@ mod tests {
             ("points = 8", "points = 8\nstart = 4", ["explore.toml:4", "start does not go with"]),
             ("sobol\"\npoints = 8", "adaptive\"\npoints = 8\nstart = 9", ["explore.toml:4", "start from 1 to points"]),
             ("sobol", "adaptive\"\nresolution = 2 #", ["explore.toml:4", "resolution between 0 and 1"]),
+            ("sobol\"\npoints = 8", "adaptive\"\npoints = 4097", ["at most 4096 points", "Give fewer points"]),
             ("points = 8", "", ["explore.toml:4", "needs points"]),
             ("[0.3, 0.6]", "[0.6, 0.3]", ["explore.toml:7", "from < to"]),
             ("uniform = [0.3, 0.6]", "", ["parameter \"mu\"", "give one of values"]),
