@@ -9,7 +9,7 @@
 //!   stable point of the one and the unstable point of the other form 90 degrees with a third.
 //! - Between neighbours of opposite verdict lies the boundary. A round bisects the seven widest of such pairs that are
 //!   wider than the resolution, but none whose middle is nearer to one of the same round than half its width; and it
-//!   has the next point of the sequence, which may meet another part of the boundary.
+//!   has the next point of the sequence, which may meet another part of the boundary. A single last point bisects.
 //! - Where all points have one verdict, a round has the next [`ROUND`] points of the sequence.
 //!
 //! A round depends on the verdicts before it and on nothing else: neither on the number of ranks nor on interruptions.
@@ -81,16 +81,19 @@ impl Refinement {
     /// Where there are fewer points than were given.
     pub fn next(&mut self, points: &[PointResult]) -> Result<Vec<Vec<f64>>> {
         let n = ROUND.min(self.rule.n_points - self.coordinates.len());
+        if n == 0 {
+            return Ok(Vec::new());
+        }
         let verdicts: Vec<Option<bool>> = points.iter().map(verdict).collect();
         let has = |own: bool| verdicts.contains(&Some(own));
         let mut added = Vec::new();
         if has(true) && has(false) {
-            added = self.middles(&verdicts, n.saturating_sub(1));
+            added = self.middles(&verdicts, (n - 1).max(1));
             if added.is_empty() {
                 return Ok(added);
             }
         }
-        let n_more = if added.is_empty() { n } else { 1 };
+        let n_more = if added.is_empty() { n } else { (n - added.len()).min(1) };
         let all = self.design.sobol(self.n_of_sequence + n_more, self.distributions.len())?;
         added.extend_from_slice(&all[self.n_of_sequence..]);
         self.n_of_sequence = all.len();
@@ -268,6 +271,17 @@ mod tests {
     }
 
     #[test]
+    fn a_single_last_point_bisects() {
+        let study = study(AdaptiveRule { n_points: 5, n_start: 4, resolution: 1e-3 }, 1);
+        let points = run(&study, |p| Some(p[0] - 0.337));
+        let mut start: Vec<f64> = points[..4].iter().map(|point| point.values[0]).collect();
+        start.sort_by(f64::total_cmp);
+        let above = start.iter().position(|p| *p > 0.337).unwrap();
+        let middle = 0.5 * (start[above - 1] + start[above]);
+        assert!(points.len() == 5 && (points[4].values[0] - middle).abs() < 1e-12, "{start:?} {points:?}");
+    }
+
+    #[test]
     fn where_all_is_stable_the_sequence_goes_on_to_the_last_point() {
         let study = study(AdaptiveRule { n_points: 37, ..RULE }, 2);
         let points = run(&study, |_| Some(-1.0));
@@ -289,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn the_boundary_of_interrupted_studies_is_that_of_their_points() {
+    fn a_circle_is_found_and_the_same_points_have_the_same_boundary() {
         let study = study(RULE, 2);
         let circle = |p: &[f64]| Some((p[0] - 0.5).hypot(p[1] - 1.5) - 0.3);
         let points = run(&study, circle);
