@@ -127,6 +127,14 @@ impl Design {
         !matches!(self.kind, DesignKind::Grid { .. } | DesignKind::OneAtATime { .. })
     }
 
+    /// Points that an adaptive design starts with, and that its probabilities are of; none of another design.
+    pub fn n_start(&self) -> Option<usize> {
+        match self.kind {
+            DesignKind::Adaptive(rule) => Some(rule.n_start),
+            _ => None,
+        }
+    }
+
     fn n_points(&self, parameters: &[&Distribution]) -> usize {
         let levels = |n: usize| parameters.iter().map(move |parameter| parameter.levels(n).len());
         match &self.kind {
@@ -275,6 +283,7 @@ mod tests {
     fn the_points_of_an_adaptive_design_are_limited_and_the_first_are_those_of_its_start() {
         let rule = |n_points: usize| DesignKind::Adaptive(AdaptiveRule { n_points, n_start: 4, resolution: 0.1 });
         assert_eq!(points(rule(MAX_POINTS), 2), points(DesignKind::Sobol { n_points: 4 }, 2));
+        assert_eq!(Design { kind: rule(9), seed: 7, correlation: None }.n_start(), Some(4));
         let too_many = Design { kind: rule(MAX_POINTS + 1), seed: 7, correlation: None };
         assert!(too_many.points(&[&UNIT], &[0.5]).unwrap_err().to_string().contains("65537"));
     }

@@ -32,6 +32,9 @@ pub struct Document<'a> {
     worst_point: Option<PointDocument<'a>>,
     failures: Vec<FailureDocument<'a>>,
     folder: String,
+    /// Points that an adaptive design starts with.
+    #[serde(skip)]
+    n_start: Option<usize>,
 }
 
 #[derive(Debug, Serialize)]
@@ -91,6 +94,7 @@ impl<'a> Document<'a> {
             worst_point: worst,
             failures: points.iter().enumerate().filter_map(failure).collect(),
             folder: folder.display().to_string(),
+            n_start: study.design.n_start(),
         }
     }
 
@@ -148,14 +152,15 @@ impl<'a> Document<'a> {
 
     /// The boundary of an adaptive design, and which of its points the probabilities are of.
     fn boundary(&self) -> String {
-        let Some(widest) = self.answers.boundary.first() else { return String::new() };
+        let Some(n_start) = self.n_start else { return String::new() };
+        let start = format!("probabilities are of the first {n_start} points, with which the design starts\n");
         let n = self.answers.boundary.len();
-        format!(
-            "probabilities are of the points that the design starts with; the others are nearer to the boundary\n\
-             boundary between stable and unstable: {n} pair{} of neighbours, the widest {:.2e} apart (boundary.csv)\n",
-            plural(n),
-            widest.distance
-        )
+        let pairs = self.answers.boundary.first().map_or_else(String::new, |widest| {
+            let (s, distance) = (plural(n), widest.distance);
+            format!("boundary between stable and unstable: {n} pair{s} of neighbours, the widest {distance:.2e} apart \
+                (boundary.csv)\n")
+        });
+        start + &pairs
     }
 
     fn growth_rates(&self) -> String {

@@ -121,7 +121,7 @@ fn answer(study: &Study, found: &Exploration) -> Markup {
     html! {
         section aria-label="Answer" {
             p.verdict.(style) { (headline(found)) }
-            (cautions(found))
+            (cautions(study, found))
             div.charts {
                 (figure(plots::frequencies(&answers.bins, answers.is_sample)))
                 (figure(plots::distributions(study, found)))
@@ -144,17 +144,20 @@ fn headline(found: &Exploration) -> String {
     format!("Squeals with a probability of {value:.1} % (95 % confidence: {low:.1} to {high:.1} %)")
 }
 
-fn cautions(found: &Exploration) -> Markup {
+fn cautions(study: &Study, found: &Exploration) -> Markup {
     let answers = &found.answers;
     let n_failed = answers.n_failed;
     html! {
         @if !answers.is_sample {
             p.hint { "The points of this design represent no distribution: their fractions are no probabilities." }
         }
-        @if let Some(widest) = answers.boundary.first() {
+        @if let Some(n_start) = study.design.n_start() {
             p.hint {
-                "Probabilities are of the first " (answers.unstable.n_points) " points; those that follow lie near the boundary, of which "
-                (answers.boundary.len()) " pairs of neighbours are known, at most " (format!("{:.1e}", widest.distance)) " apart."
+                "Probabilities are of the first " (n_start) " points, with which the design starts."
+                @if let Some(widest) = answers.boundary.first() {
+                    " Most of the others lie near the boundary, of which " (answers.boundary.len())
+                    " pairs of neighbours are known, at most " (format!("{:.1e}", widest.distance)) " apart."
+                }
             }
         }
         @if n_failed + answers.n_doubtful > 0 {
