@@ -17,7 +17,7 @@ const SCRIPT: [&str; 3] =
 /// Name of the page in the folder of a study.
 pub const NAME: &str = "explore.html";
 
-/// Modes of all points are on the page up to so many; else unstable ones alone.
+/// The modes of all points are on the page where they are no more than these; else the unstable ones alone.
 const MAX_MODES: usize = 100_000;
 /// Tornados on the page.
 const MAX_TORNADOS: usize = 8;
@@ -41,26 +41,20 @@ struct PointData<'a> {
     modes: Vec<ModeDatum>,
 }
 
-/// Frequency, growth rate, whether it is unstable, number of the nominal mode, whether that is doubtful.
-#[derive(Serialize)]
-struct ModeDatum(f64, f64, bool, Option<usize>, bool);
+/// Number from 1, frequency, growth rate, whether it is unstable, number of the nominal mode, whether that is doubtful.
+#[derive(Debug, PartialEq, Serialize)]
+struct ModeDatum(usize, f64, f64, bool, Option<usize>, bool);
 
 impl<'a> Data<'a> {
     fn new(study: &'a Study, found: &'a Exploration) -> Data<'a> {
-        let n_modes: usize = found.points.iter().filter_map(PointResult::modes).map(<[PointMode]>::len).sum();
-        let is_shown = |mode: &&PointMode| mode.unstable || n_modes <= MAX_MODES;
-        let datum = |mode: &PointMode| {
-            let link = mode.link;
-            let doubtful = link.is_some_and(|link| link.doubtful);
-            ModeDatum(mode.frequency(), mode.growth_rate(), mode.unstable, link.map(|link| link.nominal), doubtful)
-        };
+        let is_shortened = is_shortened(&found.points, MAX_MODES);
         let point = |point: &'a PointResult| PointData {
             values: &point.values,
             growth: point.critical().map(PointMode::growth_rate),
             frequency: point.critical().map(PointMode::frequency),
             unstable: point.is_unstable(),
             failure: reason(point),
-            modes: point.modes().unwrap_or_default().iter().filter(is_shown).map(datum).collect(),
+            modes: mode_data(point, is_shortened),
         };
         Data {
             parameters: study.parameters.iter().map(|own| own.name.as_str()).collect(),
@@ -68,6 +62,21 @@ impl<'a> Data<'a> {
             grid: study.plane(),
         }
     }
+}
+
+/// Whether the points have more modes than `most`, so that stable ones are left out.
+fn is_shortened(points: &[PointResult], most: usize) -> bool {
+    points.iter().filter_map(PointResult::modes).map(<[PointMode]>::len).sum::<usize>() > most
+}
+
+/// The modes of a point, or the unstable ones alone, with their numbers in modes.csv.
+fn mode_data(point: &PointResult, is_shortened: bool) -> Vec<ModeDatum> {
+    let datum = |(number, mode): (usize, &PointMode)| {
+        let (nominal, doubtful) = (mode.link.map(|link| link.nominal), mode.link.is_some_and(|link| link.doubtful));
+        ModeDatum(number, mode.frequency(), mode.growth_rate(), mode.unstable, nominal, doubtful)
+    };
+    let modes = (1..).zip(point.modes().unwrap_or_default());
+    modes.filter(|(_, mode)| mode.unstable || !is_shortened).map(datum).collect()
 }
 
 fn reason(point: &PointResult) -> Option<&str> {
@@ -292,6 +301,9 @@ fn points_hint(study: &Study, found: &Exploration) -> Markup {
                 ", the darker the faster they grow (up to " (format!("{:.1}", mode.growth_rate())) " 1/s)"
             }
             ". The cross is the nominal point."
+            @if is_shortened(&found.points, MAX_MODES) {
+                " There are more than " (MAX_MODES) " modes: only the unstable ones are listed here, and all of them in modes.csv."
+            }
             @if study.plane().is_some() { " The line is where the largest growth rate is 0, between the points." }
         }
     }
@@ -342,7 +354,26 @@ fn shown(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use num_complex::Complex64;
+
     use super::*;
+
+    #[test]
+    fn above_the_limit_stable_modes_are_left_out_and_the_others_keep_their_numbers() {
+        let mode = |growth: f64| PointMode {
+            lambda: Complex64::new(growth, 1e3),
+            unstable: growth > 0.0,
+            backward_error: 0.0,
+            link: None,
+        };
+        let modes = Outcome::Modes([-1.0, 2.0, -3.0, 4.0].map(mode).into());
+        let point = PointResult { values: Vec::new(), outcome: modes };
+        let numbers = |most: usize| -> Vec<usize> {
+            let is_shortened = is_shortened(&[point.clone(), point.clone()], most);
+            mode_data(&point, is_shortened).iter().map(|datum| datum.0).collect()
+        };
+        assert_eq!((numbers(8), numbers(7)), (vec![1, 2, 3, 4], vec![2, 4]));
+    }
 
     #[test]
     fn numbers_of_any_size_have_their_digits() {

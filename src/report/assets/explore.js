@@ -184,9 +184,9 @@ function modesOf(point) {
   ["mode", "frequency, Hz", "growth rate, 1/s", "nominal mode"].forEach((name) =>
     head.append(make("th", { scope: "col" }, name)),
   );
-  const rows = point.modes.map(([frequency, growth, unstable, nominal, doubtful], i) => {
+  const rows = point.modes.map(([number, frequency, growth, unstable, nominal, doubtful]) => {
     const link = nominal === null ? "\u2013" : `${nominal}${doubtful ? " ?" : ""}`;
-    const cells = [i + 1, frequency.toFixed(2), signed(growth, 3), link];
+    const cells = [number, frequency.toFixed(2), signed(growth, 3), link];
     return make("tr", { class: unstable ? "unstable" : "" }, ...cells.map((cell) => make("td", {}, cell)));
   });
   const table = make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows));
