@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::adaptive::BoundaryPair;
 use super::design::DesignKind;
-use super::gradient::{Gradient, Tornado, tornados};
+use super::gradient::{Gradient, MissingDerivative, Tornado, missing_derivatives, tornados};
 use super::result::{PointMode, PointResult};
 use super::sensitivity::{Bar, Indices, sobol_indices, tornado};
 use super::statistics::{Probability, quantile};
@@ -36,6 +36,8 @@ pub struct Answers {
     pub tornado: Option<Vec<Bar>>,
     /// First-order changes of the nominal modes that may squeal over the range of each parameter, by left vectors.
     pub gradients: Vec<Tornado>,
+    /// Parameters without a derivative.
+    pub missing_derivatives: Vec<MissingDerivative>,
     /// Neighbours with opposite verdicts of an adaptive design, the widest apart first.
     pub boundary: Vec<BoundaryPair>,
     /// The point with the largest growth rate.
@@ -122,6 +124,7 @@ impl Answers {
             indices: indices(study, own),
             tornado: bars(study, nominal, &solved),
             gradients: may_squeal(study, gradients, points),
+            missing_derivatives: missing_derivatives(&study.parameters, gradients),
             boundary: study.boundary(own),
             worst: worst.map(|(number, _)| number),
         }
@@ -227,10 +230,10 @@ fn bars(study: &Study, nominal: &PointResult, solved: &[(usize, &PointResult)]) 
     Some(tornado(&study.names(), &nominal.values, &points))
 }
 
-/// The tornados of the nominal modes that may squeal.
+/// The tornados of the nominal modes that may squeal, where a parameter has a derivative.
 fn may_squeal(study: &Study, gradients: &[Gradient], points: &[PointResult]) -> Vec<Tornado> {
     let all = tornados(&study.parameters, gradients, points);
-    all.into_iter().filter(|own| own.may_squeal(&study.names(), &points[0].values, points)).collect()
+    all.into_iter().filter(|own| !own.bars.is_empty() && own.may_squeal(points)).collect()
 }
 
 #[cfg(test)]

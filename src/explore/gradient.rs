@@ -54,7 +54,7 @@ pub struct Tornado {
     /// Share of the variance of its growth rate over the points that the derivatives explain, at most 1; none with
     /// fewer than three points.
     pub linear_share: Option<f64>,
-    /// The parameters, that with the largest change of growth first.
+    /// The parameters that have a derivative, that with the largest change of growth first.
     pub bars: Vec<Influence>,
 }
 
@@ -63,6 +63,8 @@ pub struct Tornado {
 pub struct Influence {
     /// The parameter.
     pub parameter: String,
+    /// Its nominal value.
+    pub nominal: f64,
     /// Its quantile 5 %.
     pub from: f64,
     /// Its quantile 95 %.
@@ -75,11 +77,22 @@ pub struct Influence {
     pub growth_rate_change_per_s: f64,
     /// The same of the frequency, Hz.
     pub frequency_change_hz: f64,
+    /// The difference that the derivative is: central, forward or backward.
+    pub difference: String,
+}
+
+/// A parameter by which there is no derivative.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MissingDerivative {
+    /// The parameter.
+    pub parameter: String,
+    /// Why there is none.
+    pub reason: String,
 }
 
 /// Distance of the evaluated points from the nominal one, relative to the range of a parameter.
 const STEP: f64 = 0.01;
-/// The same relative to the nominal value, of a parameter that has one value only.
+/// The same relative to the larger of its nominal and its one value, of a parameter that has one value only.
 const STEP_OF_CONSTANT: f64 = 1e-3;
 
 impl Parameter {
@@ -89,37 +102,57 @@ impl Parameter {
     }
 
     /// How far from its nominal value the matrices are evaluated: far enough that some contact points change their
-    /// status, as they do over the range.
-    pub fn step(&self, nominal: f64) -> f64 {
+    /// status, as they do over the range. There is no step for a parameter that is 0 everywhere.
+    pub fn step(&self, nominal: f64) -> Option<f64> {
         let [from, to] = self.range();
-        if to > from { STEP * (to - from) } else { STEP_OF_CONSTANT * nominal.abs().max(f64::MIN_POSITIVE) }
+        let step = if to > from { STEP * (to - from) } else { STEP_OF_CONSTANT * nominal.abs().max(from.abs()) };
+        (step > 0.0).then_some(step)
     }
 }
 
 impl Influence {
     /// Of a parameter on the mode with the number `mode`, from 0.
-    fn new(parameter: &Parameter, gradient: &Gradient, mode: usize) -> Option<Influence> {
+    fn new(parameter: &Parameter, nominal: f64, gradient: &Gradient, mode: usize) -> Option<Influence> {
         let [from, to] = parameter.range();
         let slope = gradient.slopes.get(mode)?;
         let (growth_rate_slope, frequency_slope) = (slope.re, slope.im / TAU);
         Some(Influence {
             parameter: parameter.name.clone(),
+            nominal,
             from,
             to,
             growth_rate_slope,
             frequency_slope,
             growth_rate_change_per_s: growth_rate_slope * (to - from),
             frequency_change_hz: frequency_slope * (to - from),
+            difference: gradient.difference.text().to_owned(),
         })
+    }
+
+    /// The growth rate of first order at its 5 % and 95 % quantiles, from that of the nominal point, 1/s.
+    pub fn ends(&self, growth_rate: f64) -> [f64; 2] {
+        [self.from, self.to].map(|end| growth_rate + self.growth_rate_slope * (end - self.nominal))
     }
 }
 
-/// The tornado of each nominal mode, `points[0]` being the nominal point.
+/// The parameters without a derivative.
+pub fn missing_derivatives(parameters: &[Parameter], gradients: &[Gradient]) -> Vec<MissingDerivative> {
+    let missing = |(parameter, gradient): (&Parameter, &Gradient)| match &gradient.difference {
+        Difference::None(reason) => {
+            Some(MissingDerivative { parameter: parameter.name.clone(), reason: reason.clone() })
+        }
+        _ => None,
+    };
+    parameters.iter().zip(gradients).filter_map(missing).collect()
+}
+
+/// The tornado of each nominal mode, `points[0]` being the nominal point; none without derivatives.
 pub fn tornados(parameters: &[Parameter], gradients: &[Gradient], points: &[PointResult]) -> Vec<Tornado> {
-    let Some((nominal, own)) = points.split_first() else { return Vec::new() };
+    let Some((nominal, own)) = points.split_first().filter(|_| !gradients.is_empty()) else { return Vec::new() };
     let tornado = |(i, mode): (usize, &PointMode)| {
-        let influence = |(parameter, gradient)| Influence::new(parameter, gradient, i);
-        let mut bars: Vec<Influence> = parameters.iter().zip(gradients).filter_map(influence).collect();
+        let own_values = nominal.values.iter().copied();
+        let influence = |((parameter, gradient), value)| Influence::new(parameter, value, gradient, i);
+        let mut bars: Vec<Influence> = parameters.iter().zip(gradients).zip(own_values).filter_map(influence).collect();
         let size = |bar: &Influence| bar.growth_rate_change_per_s.abs();
         bars.sort_by(|a, b| size(b).total_cmp(&size(a)));
         Tornado {
@@ -130,24 +163,17 @@ pub fn tornados(parameters: &[Parameter], gradients: &[Gradient], points: &[Poin
             bars,
         }
     };
-    let all = nominal.modes().unwrap_or_default().iter().enumerate().map(tornado);
-    all.filter(|tornado| !tornado.bars.is_empty()).collect()
+    nominal.modes().unwrap_or_default().iter().enumerate().map(tornado).collect()
 }
 
 impl Tornado {
     /// Whether the mode is unstable at a point, or one parameter alone makes it so to first order: its bar reaches
-    /// above a growth rate of 0, by more than rounding. `nominal` are the values of the parameters `names` at the
-    /// nominal point.
-    pub fn may_squeal(&self, names: &[&str], nominal: &[f64], points: &[PointResult]) -> bool {
+    /// above a growth rate of 0, by more than rounding.
+    pub fn may_squeal(&self, points: &[PointResult]) -> bool {
         let is_own = |mode: &PointMode| mode.unstable && mode.link.is_some_and(|link| link.nominal == self.nominal);
         let lambda = Complex64::new(0.0, TAU * self.frequency_hz);
         let rounding = InstabilityCriterion::default().limit(lambda, 0.0);
-        let reaches = |bar: &Influence| {
-            let at = names.iter().position(|name| *name == bar.parameter).map_or(f64::NAN, |i| nominal[i]);
-            [bar.from, bar.to]
-                .into_iter()
-                .any(|end| self.growth_rate_per_s + bar.growth_rate_slope * (end - at) > rounding)
-        };
+        let reaches = |bar: &Influence| bar.ends(self.growth_rate_per_s).iter().any(|end| *end > rounding);
         points.iter().flat_map(PointResult::modes).flatten().any(is_own) || self.bars.iter().any(reaches)
     }
 }
@@ -221,6 +247,7 @@ mod tests {
             (bars[0].growth_rate_change_per_s + 18.0).abs() < 1e-12
                 && (bars[1].frequency_change_hz - 1.8).abs() < 1e-12
         );
+        assert_eq!((bars[0].nominal, bars[1].nominal, bars[0].difference.as_str()), (20.0, 1.0, "central"));
         assert!((bars[0].from - 11.0).abs() < 1e-12 && (bars[0].to - 29.0).abs() < 1e-12);
     }
 
@@ -240,7 +267,7 @@ mod tests {
         let parameters = [parameter("p", 0.5, 1.5), parameter("q", 10.0, 30.0)];
         let may = |slope: f64, points: &[PointResult]| {
             let gradients = [gradient(&[[slope, 0.0]]), gradient(&[[0.0, 0.0]])];
-            tornados(&parameters, &gradients, points)[0].may_squeal(&["p", "q"], &[1.0, 20.0], points)
+            tornados(&parameters, &gradients, points)[0].may_squeal(points)
         };
         let quiet = &points()[..1];
         // From 1 to the quantile 1.45: -3 + 0.45 slope.
@@ -251,8 +278,24 @@ mod tests {
 
     #[test]
     fn a_step_is_a_part_of_the_range_and_none_is_zero() {
-        assert!((parameter("p", 0.0, 10.0).step(3.0) - 0.09).abs() < 1e-12);
-        let constant = Parameter { distribution: Distribution::Values(vec![4.0]), ..parameter("p", 0.0, 1.0) };
-        assert!((constant.step(4.0) - 0.004).abs() < 1e-12 && constant.step(0.0) > 0.0);
+        let is_near = |step: Option<f64>, expected: f64| (step.unwrap() - expected).abs() < 1e-12;
+        assert!(is_near(parameter("p", 0.0, 10.0).step(3.0), 0.09));
+        let constant =
+            |value: f64| Parameter { distribution: Distribution::Values(vec![value]), ..parameter("p", 0.0, 1.0) };
+        assert!(is_near(constant(4.0).step(4.0), 0.004) && is_near(constant(1.0).step(-4.0), 0.004));
+        assert!(is_near(constant(-4.0).step(0.0), 0.004), "nominally 0");
+        assert_eq!(constant(0.0).step(0.0), None);
+    }
+
+    #[test]
+    fn a_parameter_without_a_derivative_has_its_reason_and_no_bar() {
+        let parameters = [parameter("p", 0.5, 1.5), parameter("q", 10.0, 30.0)];
+        let none = Gradient { slopes: Vec::new(), difference: Difference::None("lost".into()) };
+        let all = tornados(&parameters, &[gradient(&[[1.0, 0.0], [0.0, 0.0]]), none.clone()], &points());
+        assert!(all.iter().all(|own| own.bars.len() == 1 && own.bars[0].parameter == "p"));
+        let missing = missing_derivatives(&parameters, &[gradient(&[]), none.clone()]);
+        assert_eq!(missing, [MissingDerivative { parameter: "q".into(), reason: "lost".into() }]);
+        assert_eq!(tornados(&parameters, &[none.clone(), none], &points()).len(), 2, "modes of gradients.csv");
+        assert_eq!(tornados(&parameters, &[], &points()), []);
     }
 }

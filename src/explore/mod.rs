@@ -31,7 +31,7 @@ pub use answers::{Answers, Bin, Instability, quantity};
 pub use correlation::Correlation;
 pub use design::{AdaptiveRule, Design, DesignKind};
 pub use distribution::Distribution;
-pub use gradient::{Difference, Gradient, Influence, Tornado, tornados};
+pub use gradient::{Difference, Gradient, Influence, MissingDerivative, Tornado, missing_derivatives, tornados};
 pub use key::KeyPath;
 pub use linking::{ModeProducts, link};
 pub use result::{Link, Outcome, PointMode, PointResult};

@@ -124,7 +124,7 @@ impl<'a> Document<'a> {
         let indices = answers.indices.as_deref().map_or_else(String::new, indices);
         text += &section("Sobol indices of the largest growth rate, with intervals of 95 %", &indices);
         text += &section("largest growth rate, one parameter at a time", &tornado(answers.tornado.as_deref()));
-        let gradients: String = answers.gradients.iter().map(influences).collect();
+        let gradients: String = answers.gradients.iter().map(influences).chain(self.missing_derivatives()).collect();
         text +=
             &section("first-order changes of the growth rate, 1/s, by left vectors at the nominal point", &gradients);
         text += &self.worst();
@@ -157,10 +157,17 @@ impl<'a> Document<'a> {
         let n = self.answers.boundary.len();
         let pairs = self.answers.boundary.first().map_or_else(String::new, |widest| {
             let (s, distance) = (plural(n), widest.distance);
-            format!("boundary between stable and unstable: {n} pair{s} of neighbours, the widest {distance:.2e} apart \
-                (boundary.csv)\n")
+            format!(
+                "boundary between stable and unstable: {n} pair{s} of neighbours, the widest {distance:.2e} apart \
+                (boundary.csv)\n"
+            )
         });
         start + &pairs
+    }
+
+    fn missing_derivatives(&self) -> impl Iterator<Item = String> {
+        let missing = self.answers.missing_derivatives.iter();
+        missing.map(|own| format!("no derivative by {}: {}\n", own.parameter, own.reason))
     }
 
     fn growth_rates(&self) -> String {

@@ -2,7 +2,9 @@
 
 use std::io::{Result as IoResult, Write};
 
-use crate::explore::{BoundaryPair, Gradient, Link, Outcome, Parameter, PointMode, PointResult, Tornado, tornados};
+use crate::explore::{
+    BoundaryPair, Gradient, Link, Outcome, Parameter, PointMode, PointResult, Tornado, missing_derivatives, tornados,
+};
 
 /// A row for each point: values, largest growth rate, and why it has failed where it has.
 pub(super) fn write_points(out: &mut dyn Write, names: &[&str], points: &[PointResult]) -> IoResult<()> {
@@ -78,7 +80,8 @@ pub(super) fn write_boundary(out: &mut dyn Write, names: &[&str], pairs: &[Bound
     table.flush()
 }
 
-/// A row for each nominal mode and parameter.
+/// A row for each nominal mode and parameter; without a derivative the numbers are empty, and the reason is the last
+/// entry.
 pub(super) fn write_gradients(
     out: &mut dyn Write,
     parameters: &[Parameter],
@@ -97,10 +100,7 @@ pub(super) fn write_gradients(
         "frequency_change_hz",
         "difference",
     ])?;
-    let difference = |name: &str| {
-        let place = parameters.iter().position(|own| own.name == name);
-        place.map_or("", |i| gradients[i].difference.text())
-    };
+    let missing = missing_derivatives(parameters, gradients);
     for Tornado { nominal, bars, .. } in &tornados(parameters, gradients, points) {
         for bar in bars {
             let numbers = [
@@ -112,8 +112,11 @@ pub(super) fn write_gradients(
                 bar.frequency_change_hz,
             ];
             let head = [nominal.to_string(), bar.parameter.clone()];
-            let row = head.into_iter().chain(numbers.map(shown)).chain([difference(&bar.parameter).to_owned()]);
-            table.write_record(row)?;
+            table.write_record(head.into_iter().chain(numbers.map(shown)).chain([bar.difference.clone()]))?;
+        }
+        for own in &missing {
+            let head = [nominal.to_string(), own.parameter.clone()];
+            table.write_record(head.into_iter().chain([""; 6].map(str::to_owned)).chain([own.reason.clone()]))?;
         }
     }
     table.flush()
@@ -122,4 +125,31 @@ pub(super) fn write_gradients(
 /// A number to its last digit.
 fn shown(number: f64) -> String {
     serde_json::Value::from(number).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use num_complex::Complex64;
+
+    use super::*;
+    use crate::explore::{Difference, Distribution, KeyPath};
+
+    #[test]
+    fn a_parameter_without_a_derivative_has_a_row_with_the_reason() {
+        let parameter = |name: &str| Parameter {
+            name: name.into(),
+            keys: vec![KeyPath::parse("friction").unwrap()],
+            is_factor: false,
+            distribution: Distribution::Values(vec![0.0]),
+        };
+        let mode = PointMode { lambda: Complex64::new(-1.0, 1e3), unstable: false, backward_error: 0.0, link: None };
+        let nominal = PointResult { values: vec![0.0, 0.0], outcome: Outcome::Modes(vec![mode]) };
+        let known = Gradient { slopes: vec![Complex64::new(2.0, 0.0)], difference: Difference::Forward };
+        let none = Gradient { slopes: Vec::new(), difference: Difference::None("lost".into()) };
+        let mut text = Vec::new();
+        write_gradients(&mut text, &[parameter("p"), parameter("q")], &[none, known], &[nominal]).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        let rows: Vec<&str> = text.lines().skip(1).collect();
+        assert_eq!(rows, ["1,q,2.0,0.0,0.0,0.0,0.0,0.0,forward", "1,p,,,,,,,lost"]);
+    }
 }

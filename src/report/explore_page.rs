@@ -107,7 +107,7 @@ pub fn page(study: &Study, found: &Exploration) -> Result<String> {
         }
         main {
             (answer(study, found))
-            (influences(study, found))
+            (influences(found))
             (points_section(study, found))
             (failures(study, &found.points))
         }
@@ -220,9 +220,8 @@ fn instability(own: &Instability, found: &Exploration) -> Markup {
     }
 }
 
-fn influences(study: &Study, found: &Exploration) -> Markup {
+fn influences(found: &Exploration) -> Markup {
     let answers = &found.answers;
-    let nominal = &found.points[0].values;
     let shares = answers.gradients.iter().filter_map(|own| own.linear_share);
     let is_rough = shares.fold(1.0, f64::min) < 0.8;
     html! {
@@ -232,7 +231,7 @@ fn influences(study: &Study, found: &Exploration) -> Markup {
                 @if let Some(all) = &answers.indices { (figure(plots::indices(all))) }
                 @if let Some(bars) = &answers.tornado { (figure(plots::swings(bars))) }
                 @for own in answers.gradients.iter().take(MAX_TORNADOS) {
-                    (figure(plots::tornado(own, study, nominal)))
+                    (figure(plots::tornado(own)))
                 }
             }
             @if !answers.gradients.is_empty() {
@@ -241,6 +240,9 @@ fn influences(study: &Study, found: &Exploration) -> Markup {
                     "parameter. They show the modes that are unstable at a point or that one parameter makes unstable"
                     @if answers.gradients.len() > MAX_TORNADOS { ", the first " (MAX_TORNADOS) " of " (answers.gradients.len()) } "."
                 }
+            }
+            @for own in &answers.missing_derivatives {
+                p.hint { "No derivative by " (own.parameter) ": " (own.reason) }
             }
             @if is_rough { (agreement(found)) }
         }

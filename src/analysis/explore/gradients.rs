@@ -91,7 +91,11 @@ impl Run<'_> {
         let nominal = &self.values[0];
         let mut gradients = Vec::new();
         for (i, parameter) in self.study.parameters.iter().enumerate() {
-            let step = parameter.step(nominal[i]);
+            let Some(step) = parameter.step(nominal[i]) else {
+                let difference = Difference::None("the parameter is 0 everywhere".to_owned());
+                gradients.push(Gradient { slopes: Vec::new(), difference });
+                continue;
+            };
             let mut forms = |sign: f64| {
                 observer.event(Event::Stage(&format!("derivatives by {}", parameter.name)));
                 let mut values = nominal.clone();
