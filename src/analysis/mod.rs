@@ -50,7 +50,7 @@ mod wear;
 
 pub use check::{matrix_summary, model_summary};
 pub use explain::{explain, explain_full};
-pub use explore::explore;
+pub use explore::{ExploreOutput, explore};
 pub use export::{ExportOptions, Exported, MatrixFormat, export};
 pub use external::{ExternalOptions, external_modes};
 pub use external_sweep::{ExternalModes, ExternalSweep};

@@ -5,11 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::Result;
-use crate::analysis::{self, Output};
+use crate::analysis::{self, ExploreOutput, Output};
 use crate::explore::{self, Study};
 use crate::output::explore::Document;
-use crate::output::files::write_whole;
-use crate::output::folder::add_to_listed;
 use crate::report::explore_page;
 
 use super::watch::Watch;
@@ -33,14 +31,15 @@ pub struct Explore {
 }
 
 impl Explore {
-    fn output(&self, shell: &Shell, study: &Study) -> Output {
+    fn output(&self, shell: &Shell, study: &Study) -> ExploreOutput {
         let stem = study.model.file_stem().unwrap_or_default().to_string_lossy();
-        Output {
+        let output = Output {
             folder: self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-explore"))),
             force: self.force,
             command: command_line(),
             identity: vec![("options for PETSc", shell.petsc.join(" "))],
-        }
+        };
+        ExploreOutput { output, page: explore_page::page }
     }
 }
 
@@ -51,10 +50,6 @@ pub fn run(shell: &Shell, arguments: &Explore) -> Result<()> {
     let found = analysis::explore(shell.comm, &study, Some(&output), &mut watch);
     watch.finish();
     let Some(found) = found? else { return Ok(()) };
-    let html = explore_page::page(&study, &found)?;
-    let path = output.folder.join(explore_page::NAME);
-    write_whole(&path, |out| out.write_all(html.as_bytes()))?;
-    add_to_listed(&output.folder, &[path])?;
-    let document = Document::new(&study, &found, &output.folder);
+    let document = Document::new(&study, &found, &output.output.folder);
     shell.print(&document.text(), &document)
 }

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::{Shell, compare, values};
 use crate::model::InstabilityCriterion;
+use crate::output::explore::PAGE;
 use crate::output::files::write_whole;
 use crate::output::folder::add_to_listed;
 use crate::output::json::Reported;
@@ -15,7 +16,7 @@ use crate::output::results_folder::RESULTS;
 use crate::output::vtu;
 use crate::report::findings::Findings;
 use crate::report::raster::{self, Painter};
-use crate::report::{explore_page, page, paraview, plots, words};
+use crate::report::{page, paraview, plots, words};
 use crate::results::exploration_file;
 use crate::{Error, Result};
 
@@ -61,8 +62,7 @@ fn write(report: &Report) -> Result<(String, Vec<PathBuf>)> {
     may_write_file(&html, &page::KIND, report.force)?;
     [&report.plots, &report.paraview].into_iter().flatten().try_for_each(|folder| may_fill(folder, report.force))?;
     if exploration_file::is_one(&source) {
-        let what = format!("{} is of squeal explore, which has written its page", source.display());
-        return Err(Error::input(format!("{what}: {}. Open that", home.join(explore_page::NAME).display())));
+        return Err(of_explore(&source, &home.join(PAGE)));
     }
     let results = compare::read(&report.results)?;
     let criterion = report.unstable.unwrap_or(results.about.criterion);
@@ -89,6 +89,16 @@ fn may_fill(folder: &Path, force: bool) -> Result<()> {
             Err(Error::input(format!("{place} exists. Use --force to replace files in it, or choose another")))
         }
     }
+}
+
+/// Why there is no report of the results of a study of many parameters.
+fn of_explore(source: &Path, page: &Path) -> Error {
+    let (source, shown) = (source.display(), page.display());
+    Error::input(if page.exists() {
+        format!("{source} is of squeal explore, which has written its page: {shown}. Open that")
+    } else {
+        format!("{source} is of squeal explore, whose page {shown} is missing. Run squeal explore again to write it")
+    })
 }
 
 /// Writes files, each in place of its like at most.
@@ -133,5 +143,20 @@ impl Writer {
             collections.push(path);
         }
         Ok(collections)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_of_a_study_is_named_where_it_is_and_missed_where_it_is_not() {
+        let place = tempfile::tempdir().unwrap();
+        let page = place.path().join(PAGE);
+        let message = || of_explore("run/results.h5".as_ref(), &page).to_string();
+        assert!(message().contains("is missing. Run squeal explore again"), "{}", message());
+        std::fs::write(&page, "").unwrap();
+        assert!(message().contains("explore.html. Open that"), "{}", message());
     }
 }

@@ -14,6 +14,8 @@ use crate::explore::{
 };
 use crate::results::{About, Exploration, exploration_file};
 
+/// Name of the page in the folder of a study.
+pub const PAGE: &str = "explore.html";
 /// Name of the model file of the worst point.
 pub const WORST: &str = "worst.toml";
 /// Bars of the squeal probability have so many signs at 100 %.
@@ -193,6 +195,7 @@ impl<'a> Document<'a> {
 
     fn files(&self) -> String {
         let mut list = vec![
+            (PAGE, "the page to look at"),
             ("points.csv", "parameters, and the largest growth rate at each point"),
             ("modes.csv", "modes at each point, with those of the nominal point that they are"),
             ("gradients.csv", "derivatives of the nominal modes by each parameter"),
@@ -200,7 +203,6 @@ impl<'a> Document<'a> {
             ("summary.json", "the answers, for programs"),
             ("summary.txt", "this text"),
         ];
-        list.insert(0, ("explore.html", "the page to look at"));
         if !self.answers.boundary.is_empty() {
             list.push(("boundary.csv", "points between stable and unstable neighbours"));
         }

@@ -14,9 +14,6 @@ use crate::{Error, Result};
 const SCRIPT: [&str; 3] =
     [include_str!("assets/numbers.js"), include_str!("assets/base.js"), include_str!("assets/explore.js")];
 
-/// Name of the page in the folder of a study.
-pub const NAME: &str = "explore.html";
-
 /// The modes of all points are on the page where they are no more than these; else the unstable ones alone.
 const MAX_MODES: usize = 100_000;
 /// Tornados on the page.

@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 use crate::explore::{Answers, Distribution, Outcome, PointResult, Refinement, Study, standing_alone};
 use crate::hdf::is_hdf5;
 use crate::native::Comm;
-use crate::output::explore::{Document, WORST, write};
+use crate::output::explore::{Document, PAGE, WORST, write};
 use crate::output::folder::Folder;
 use crate::results::{About, Exploration};
 use crate::{Error, Result};
@@ -27,6 +27,15 @@ use super::start::{Output, about, announce, identity};
 use checkpoint::Points;
 use point::{NominalModes, Request, is_of_point, solve};
 use subject::Subject;
+
+/// A folder that a study writes, with its page.
+#[derive(Debug, Clone)]
+pub struct ExploreOutput {
+    /// The folder.
+    pub output: Output,
+    /// The text of the page, which is written before the folder gets its name.
+    pub page: fn(&Study, &Exploration) -> Result<String>,
+}
 
 /// Finds the modes at the points of a study, follows them to the nominal point, and computes the probability of squeal
 /// and the influence of each parameter. A point that fails is recorded with its reason. With `output` the study is
@@ -47,10 +56,10 @@ use subject::Subject;
 pub fn explore(
     comm: &Comm,
     study: &Study,
-    output: Option<&Output>,
+    output: Option<&ExploreOutput>,
     observer: &mut dyn Observer,
 ) -> Result<Option<Exploration>> {
-    let found = Run::new(comm, study, output)?.run(output, observer)?;
+    let found = Run::new(comm, study, output.map(|own| &own.output))?.run(output, observer)?;
     Ok(comm.is_root().then_some(found))
 }
 
@@ -107,9 +116,9 @@ impl<'s> Run<'s> {
     }
 
     /// Solves the points, and writes the folder. Collective.
-    fn run(mut self, output: Option<&Output>, observer: &mut dyn Observer) -> Result<Exploration> {
-        let place = output.map(|output| output.folder.as_path());
-        let (mut points, mut nominal) = self.open(output)?;
+    fn run(mut self, output: Option<&ExploreOutput>, observer: &mut dyn Observer) -> Result<Exploration> {
+        let place = output.map(|own| own.output.folder.as_path());
+        let (mut points, mut nominal) = self.open(output.map(|own| &own.output))?;
         self.announce(&points, place, observer);
         while self.has_next(&points, observer)? {
             for (point, state) in self.next(&mut points, &mut nominal, observer)? {
@@ -128,7 +137,7 @@ impl<'s> Run<'s> {
         let Points { done, gradients, .. } = points;
         let found = Exploration { about: self.about, points: done, gradients, answers, worst };
         self.world.agree(match (self.folder.take(), output) {
-            (Some(folder), Some(output)) => finish(folder, self.study, &found, &output.folder),
+            (Some(folder), Some(output)) => finish(folder, self.study, &found, output),
             _ => Ok(()),
         })?;
         Ok(found)
@@ -254,9 +263,12 @@ impl<'s> Run<'s> {
 }
 
 /// Writes the files of the folder, and gives it its name. Not collective.
-fn finish(folder: Folder, study: &Study, found: &Exploration, place: &Path) -> Result<()> {
+fn finish(folder: Folder, study: &Study, found: &Exploration, output: &ExploreOutput) -> Result<()> {
+    let place = output.output.folder.as_path();
     let document = Document::new(study, found, place);
     write(&folder, study, &document, found)?;
+    let page = (output.page)(study, found)?;
+    folder.write(PAGE, |out| out.write_all(page.as_bytes()))?;
     if let Some(worst) = &found.worst {
         let text = document.worst_head()
             + &standing_alone(worst, &study.model, &mesh_from(place, &found.about.mesh), found.about.band)?;
