@@ -58,14 +58,12 @@ pub(super) struct Continuation<S> {
     before: Option<Point<S>>,
     /// Whether the last state is that of settling, no equilibrium of the true laws.
     is_settled_only: bool,
-    /// The longest step that may be tried.
-    longest: f64,
 }
 
 impl<S> Continuation<S> {
     /// At rest.
     pub fn new() -> Continuation<S> {
-        Continuation { last: None, before: None, is_settled_only: false, longest: f64::INFINITY }
+        Continuation { last: None, before: None, is_settled_only: false }
     }
 
     /// The last states, each with its friction value, the last one last.
@@ -83,7 +81,6 @@ impl<S> Continuation<S> {
         self.last = states.pop();
         self.before = states.pop();
         self.is_settled_only = false;
-        self.longest = f64::INFINITY;
     }
 
     /// Goes to a friction value.
@@ -91,9 +88,11 @@ impl<S> Continuation<S> {
         if self.last.is_none() && !self.start(Laws::Settling, solver)? {
             return Ok(Reached::Failed(0.0));
         }
+        // Of this advance alone: a path that was restored goes on as it would have.
+        let mut longest = f64::INFINITY;
         loop {
             let reached = self.last.as_ref().expect("settled above").0;
-            match self.rise(next_goal(reached, friction, self.longest), solver)? {
+            match self.rise(next_goal(reached, friction, longest), &mut longest, solver)? {
                 Err(failed) => return Ok(Reached::Failed(failed)),
                 Ok(goal) if goal == friction => return Ok(Reached::Goal),
                 Ok(_) => {}
@@ -114,10 +113,12 @@ impl<S> Continuation<S> {
         Ok(converged)
     }
 
-    /// One step towards `goal`, halved until it converges. Gives the value reached, or that of the step that failed.
+    /// One step towards `goal`, halved until it converges, with the longest step that the next one may take. Gives the
+    /// value reached, or that of the step that failed.
     fn rise(
         &mut self,
         mut goal: f64,
+        longest: &mut f64,
         solver: &mut impl StepSolver<State = S>,
     ) -> Result<std::result::Result<f64, f64>> {
         loop {
@@ -125,7 +126,7 @@ impl<S> Continuation<S> {
             if solver.solve(Laws::Friction(goal), &mut trial)? {
                 // A settled state is no equilibrium of the true laws: nothing to extrapolate from.
                 let is_settled_only = std::mem::take(&mut self.is_settled_only);
-                self.longest *= 2.0;
+                *longest *= 2.0;
                 self.before = self.last.replace((goal, trial)).filter(|_| !is_settled_only);
                 return Ok(Ok(goal));
             }
@@ -137,8 +138,8 @@ impl<S> Continuation<S> {
             } else if (goal - reached).abs() <= MIN_RISE {
                 return Ok(Err(goal));
             } else {
-                self.longest = 0.5 * (goal - reached).abs();
-                goal = next_goal(reached, goal, self.longest);
+                *longest = 0.5 * (goal - reached).abs();
+                goal = next_goal(reached, goal, *longest);
             }
         }
     }
@@ -249,10 +250,9 @@ mod tests {
         let Reached::Failed(value) = path.advance(0.3, &mut line).unwrap() else { panic!("it cannot get there") };
         assert!(value - 0.1 <= MIN_RISE && value - 0.1 > 0.5 * MIN_RISE, "{value}");
         assert!(is_near(path.last().unwrap().0, 0.1), "the last equilibrium stays");
-        path.restore(vec![(0.1, 10.0)]);
         line.steps.clear();
         path.advance(0.05, &mut line).unwrap();
-        assert_eq!(values(&line.steps), [0.05], "a path put back has forgotten its short steps");
+        assert_eq!(values(&line.steps), [0.05], "as a path that is restored there goes on");
     }
 
     #[test]

@@ -13,13 +13,13 @@
 use crate::Result;
 
 /// The whole step is taken where it leaves no more than this of `phi(0)`.
-const WHOLE_STEP: f64 = 0.5;
+const WHOLE_STEP_SHARE: f64 = 0.5;
 /// The search ends where no more than this of `phi(0)` is left.
-const ZERO: f64 = 0.1;
+const ZERO_SHARE: f64 = 0.1;
 /// Values of phi at most.
 const MAX_VALUES: usize = 12;
 /// The length of a step along which phi grows.
-const GROWING: f64 = 0.5;
+const GROWING_STEP_LENGTH: f64 = 0.5;
 /// The next length keeps away from the ends by this share of what is between them.
 const MARGIN: f64 = 0.1;
 
@@ -38,21 +38,25 @@ pub(super) fn critical_length(at_zero: f64, mut phi: impl FnMut(f64) -> Result<f
     }
     if !is_beyond(high.1) {
         let is_growing = high.1.abs() > at_zero.abs();
-        return if is_growing { phi(GROWING).map(|_| GROWING) } else { Ok(1.0) };
+        return if is_growing { phi(GROWING_STEP_LENGTH).map(|_| GROWING_STEP_LENGTH) } else { Ok(1.0) };
     }
-    if high.1.abs() <= WHOLE_STEP * at_zero.abs() {
+    if high.1.abs() <= WHOLE_STEP_SHARE * at_zero.abs() {
         return Ok(1.0);
     }
-    let mut length = 1.0;
+    let mut last = high;
     for _ in 1..MAX_VALUES {
-        length = between(low, high);
-        let value = phi(length)?;
-        if value.abs() <= ZERO * at_zero.abs() {
+        let length = between(low, high);
+        last = (length, phi(length)?);
+        if last.1.abs() <= ZERO_SHARE * at_zero.abs() {
             break;
         }
-        *(if is_beyond(value) { &mut high } else { &mut low }) = (length, value);
+        *(if is_beyond(last.1) { &mut high } else { &mut low }) = last;
     }
-    Ok(length)
+    if !last.1.is_finite() {
+        phi(low.0)?;
+        return Ok(low.0);
+    }
+    Ok(last.0)
 }
 
 /// The zero of the line through two points, not too near to either; the middle where one of them has no value.
@@ -102,7 +106,7 @@ mod tests {
         // Contact closes at 0.3, a thousand times as stiff: the zero is at 0.3008.
         let phi = |length: f64| 1.0 - 0.5 * length - 1000.0 * (length - 0.3).max(0.0);
         let (length, lengths) = search(phi);
-        assert!((length - 0.3008).abs() < 1e-3 && phi(length).abs() <= ZERO, "{length} {lengths:?}");
+        assert!((length - 0.3008).abs() < 1e-3 && phi(length).abs() <= ZERO_SHARE, "{length} {lengths:?}");
         assert!(lengths.iter().all(|length| (0.0..=1.0).contains(length)));
         assert_eq!(lengths.last(), Some(&length), "the last value is that of the step");
     }
@@ -119,5 +123,8 @@ mod tests {
         let (length, lengths) = search(|length| if length > 0.6 { f64::NAN } else { 0.05 - length });
         assert!(length <= 0.6 && lengths[..2] == [1.0, 0.5], "{lengths:?}");
         assert_eq!(search(|_| f64::NAN), (1.0, vec![1.0]));
+        // No value near the end: the search ends where there is one.
+        let (length, lengths) = search(|length| if length > 0.3 { f64::NAN } else { 1.0 });
+        assert!(length <= 0.3 && lengths.last() == Some(&length), "{lengths:?}");
     }
 }

@@ -96,8 +96,8 @@ pub fn solve(problem: &mut dyn Problem, u: &mut Vector, max_iterations: usize) -
         check(sys::SNESSetConvergenceTest(snes.0, Some(judge), pointer, None))?;
         check(sys::SNESSetTolerances(snes.0, 0.0, 0.0, 0.0, max_iterations as Int, Int::MAX))?;
         use_corrections(snes.0, pointer)?;
-        use_critical_lengths(snes.0, pointer)?;
         check(sys::SNESSetFromOptions(snes.0))?;
+        use_critical_lengths(snes.0, pointer)?;
         let code = sys::SNESSolve(snes.0, ptr::null_mut(), u.raw());
         (*pointer.cast::<Context>()).trap.release(code)?;
     }
@@ -118,7 +118,7 @@ unsafe fn use_corrections(snes: sys::SNES, context: *mut c_void) -> Result<()> {
     }
 }
 
-/// Each step is shortened by [`shorten`].
+/// Each step is shortened by [`shorten`], whatever line search the options name.
 unsafe fn use_critical_lengths(snes: sys::SNES, context: *mut c_void) -> Result<()> {
     let mut line = ptr::null_mut();
     // SAFETY: the solver is alive; the string is static.
