@@ -34,7 +34,7 @@ fn pulled() -> Place {
 const PULLED: [&str; 5] = [
     "no equilibrium at friction 0.000 (step `contact without friction at the disc`)",
     "Relative residuals: ",
-    "(40 iterations)",
+    "(30 iterations)",
     "The loads pull disc / pad apart with 1000.0 N",
     "Look at the directions of the loads",
 ];
@@ -45,7 +45,7 @@ fn a_load_that_pulls_the_pad_off() {
     let finished = place.run(&["static", "brake.toml", "-o", "run"]);
     gave_up(&place, &finished, &PULLED);
     let steps = place.read("run/convergence.csv");
-    assert_eq!(steps.lines().filter(|line| line.contains("contact without friction")).count(), 41, "{steps}");
+    assert_eq!(steps.lines().filter(|line| line.contains("contact without friction")).count(), 31, "{steps}");
     // A run that failed is a run: it can be replaced.
     let finished = place.run(&["stability", "brake.toml", "-o", "run", "--force"]);
     gave_up(&place, &finished, &PULLED);
@@ -63,7 +63,7 @@ fn a_load_that_pulls_the_pad_off_two_ranks() {
 #[test]
 fn too_few_iterations() {
     let place = Place::blocks();
-    let few = ["--petsc", "-equilibrium_snes_max_it 4"];
+    let few = ["--petsc", "-equilibrium_snes_max_it 2"];
     let finished = place.run(&[&["static", "brake.toml", "-o", "run", "--friction", "1.9"][..], &few].concat());
     gave_up(&place, &finished, &["Flickering pair: disc / pad ("]);
 }
