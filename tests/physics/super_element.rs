@@ -422,7 +422,8 @@ fn a_users_friction_law_acts_in_the_super_element_as_in_its_model() {
     let (constant, exact) = (Full::new(&comm, &model(), FRICTION).eigenvalues[0], full.eigenvalues[0]);
     let effect = (constant - exact).norm() / exact.norm();
     println!("largest error {error:.1e}, effect of the law on the first mode {effect:.1e}");
-    assert!(error < 1e-10 && effect > 1e-4, "{error} {effect}");
+    // Pressures, on which the law depends, are those of equilibria to 1e-9.
+    assert!(error < 1e-9 && effect > 1e-4, "{error} {effect}");
 
     let (_, equilibrium, _) = analyse(&comm, &element, Some(NormalLaw::Cubic { k1: 8e8, k3: 5e19 }), FRICTION);
     for (found, exact) in equilibrium.responses.iter().zip(&full.equilibrium.responses) {
