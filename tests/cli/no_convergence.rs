@@ -63,7 +63,7 @@ fn a_load_that_pulls_the_pad_off_two_ranks() {
 #[test]
 fn too_few_iterations() {
     let place = Place::blocks();
-    let few = ["--petsc", "-equilibrium_snes_max_it 2"];
+    let few = ["--petsc", "-equilibrium_snes_max_it 1"];
     let finished = place.run(&[&["static", "brake.toml", "-o", "run", "--friction", "1.9"][..], &few].concat());
     gave_up(&place, &finished, &["Flickering pair: disc / pad ("]);
 }
