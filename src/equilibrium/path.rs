@@ -257,6 +257,7 @@ fn pulled_apart(interface: &Interface, responses: &[Response]) -> Vec<(String, f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::equilibrium::Counts;
     use crate::equilibrium::testing::{ALONG_X, CONTACT, blocks_on_belt};
     use crate::native::Session;
 
@@ -307,6 +308,20 @@ mod tests {
         tangent.copy_from(&system.k).unwrap();
         assert!(before == 4 && path.linear_system().factor.points().len() == before);
         assert!(path.advance(0.5, &mut |_, _, _| ()).is_ok());
+    }
+
+    #[test]
+    fn a_failure_names_the_pair_that_flickers() {
+        let comm = Session::start(&[]).unwrap();
+        let (system, interface) = blocks_on_belt(&comm, 2, 0, ALONG_X);
+        let mut path = Path::new(&system, &interface).unwrap();
+        let iteration = |n_flips| Iteration { residual: 0.1, counts: Counts::default(), flips: vec![n_flips] };
+        let mut failure = |flips: [usize; 2]| {
+            path.steps = vec![Step { label: "a".into(), converged: false, iterations: flips.map(iteration).to_vec() }];
+            path.failure(0.3).to_string()
+        };
+        assert!(failure([0, 2]).contains("1.0e-1. Flickering pair: belt (2 changes in 2 iterations)."));
+        assert!(!failure([0, 0]).contains("Flickering"));
     }
 
     #[test]

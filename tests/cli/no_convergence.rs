@@ -59,13 +59,13 @@ fn a_load_that_pulls_the_pad_off_two_ranks() {
     gave_up_with(&place, &finished, &PULLED, "last_state.pvtu");
 }
 
-/// Too few iterations for the status of the points to settle: what flickers is named.
+/// Too few iterations for large steps in friction: small ones come as far as they can.
 #[test]
 fn too_few_iterations() {
     let place = Place::blocks();
     let few = ["--petsc", "-equilibrium_snes_max_it 1"];
     let finished = place.run(&[&["static", "brake.toml", "-o", "run", "--friction", "1.9"][..], &few].concat());
-    gave_up(&place, &finished, &["Flickering pair: disc / pad ("]);
+    gave_up(&place, &finished, &["no equilibrium at friction 1.", "the last one is at 0.998"]);
 }
 
 /// What a sweep has found before it fails is kept. At high friction the pad digs into the disc.
