@@ -33,8 +33,7 @@ fn eigenvalues(table: &str) -> Vec<Complex64> {
     let rows = columns(table, &["frequency_hz", "growth_rate_per_s", "backward_error"]);
     rows.iter()
         .map(|row| {
-            // The search accepts 1e-10; random problems have come to 4e-12.
-            assert!(row[2] < 1e-11, "backward error {}", row[2]);
+            assert!(row[2] < 1e-12, "backward error {}", row[2]);
             Complex64::new(row[1], TAU * row[0])
         })
         .collect()
