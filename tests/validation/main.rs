@@ -13,6 +13,7 @@ mod hertz;
 mod konter;
 mod minimal_models;
 mod nafems_fv52;
+mod oberst_beam;
 mod pads_on_disc;
 mod sandwich_beam;
 #[path = "../support/mod.rs"]

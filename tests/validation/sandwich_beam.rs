@@ -82,31 +82,42 @@ axes = "y"
 band = [0, 3000]
 "#;
 
-/// One layer of elements each for faces and core.
-fn mesh(n: usize) -> Mesh {
-    let heights = [0.0, FACE, FACE + CORE, 2.0 * FACE + CORE];
+/// Layers of quadratic hexahedra between heights, a part each: `[along, across]` elements. The sets "clamp" (where
+/// x = 0) and "sides".
+pub fn layers(n: [usize; 2], [length, width]: [f64; 2], heights: &[f64], parts: &[&str]) -> Mesh {
+    let n_layers = parts.len();
     let height = |z: f64| {
-        let layer = ((3.0 * z) as usize).min(2);
-        heights[layer] + (3.0 * z - layer as f64) * (heights[layer + 1] - heights[layer])
+        let at = n_layers as f64 * z;
+        let layer = (at as usize).min(n_layers - 1);
+        heights[layer] + (at - layer as f64) * (heights[layer + 1] - heights[layer])
     };
-    let map = |x: [f64; 3]| [LENGTH * x[0], 0.005 * x[1], height(x[2])];
+    let map = |x: [f64; 3]| [length * x[0], width * x[1], height(x[2])];
     let mut mesh = Mesh::default();
-    Block { part: "beam", cells: [n, 1, 3], wraps: false, map: &map }.add_solids_to(&mut mesh, ElementKind::C3D20);
+    let cells = [n[0], n[1], n_layers];
+    Block { part: "beam", cells, wraps: false, map: &map }.add_solids_to(&mut mesh, ElementKind::C3D20);
+    mesh.parts = parts.iter().map(|part| (*part).to_owned()).collect();
+    mesh.parts.dedup();
+    let part_of = |layer: usize| mesh.parts.iter().position(|part| part == parts[layer]).unwrap() as u32;
+    let parts: Vec<u32> = (0..n_layers).map(part_of).collect();
     let beam = std::mem::take(&mut mesh.elements);
     for e in 0..beam.len() {
-        mesh.elements.push(ElementKind::C3D20, (e / n) as u32, beam.get(e).nodes);
+        mesh.elements.push(ElementKind::C3D20, parts[e / (n[0] * n[1])], beam.get(e).nodes);
     }
-    mesh.parts = ["lower", "core", "upper"].map(str::to_owned).to_vec();
     mesh.surfaces.clear();
     let clamp = nodes_where(&mesh, |x| x[0] == 0.0);
-    let sides = nodes_where(&mesh, |x| x[1] == 0.0 || x[1] == 0.005);
+    let sides = nodes_where(&mesh, |x| x[1] == 0.0 || x[1] == width);
     mesh.node_sets.extend([("clamp".to_owned(), clamp), ("sides".to_owned(), sides)]);
     mesh
 }
 
-/// The first five eigenvalues with a viscoelastic law of the core.
-fn eigenvalues(comm: &Comm, law: &str) -> Vec<Complex64> {
-    let beam = brake(&MODEL.replace("LAW", law), mesh(40));
+/// One layer of elements each for faces and core.
+fn mesh(n: usize) -> Mesh {
+    layers([n, 1], [LENGTH, 0.005], &[0.0, FACE, FACE + CORE, 2.0 * FACE + CORE], &["lower", "core", "upper"])
+}
+
+/// The eigenvalues of a structure without contact, those of the nonlinear problem to 1e-10.
+pub fn modes(comm: &Comm, text: &str, mesh: Mesh) -> Vec<Complex64> {
+    let beam = brake(text, mesh);
     let system = beam.assemble(comm, &beam.families().unwrap()).unwrap();
     let band = beam.model.band;
     let viscoelastic = Viscoelastic { stiffnesses: &system.viscoelastic, reference: TAU * band[1] };
@@ -122,7 +133,7 @@ fn eigenvalues(comm: &Comm, law: &str) -> Vec<Complex64> {
         println!("{:.4} Hz, residual of the nonlinear problem {:.1e}", mode.frequency(), mode.backward_error);
         assert!(mode.backward_error < 1e-10);
     }
-    found.modes.iter().take(5).map(|mode| mode.lambda).collect()
+    found.modes.iter().map(|mode| mode.lambda).collect()
 }
 
 /// The determinant of the boundary conditions at s, with the core's shear modulus there.
@@ -191,7 +202,7 @@ fn theory(s: Complex64, shear: &dyn Fn(Complex64) -> Complex64) -> Complex64 {
 }
 
 /// Frequency `sqrt(Re(-s^2)) / 2 pi`, Hz, and loss factor `Im(-s^2) / Re(-s^2)`, as papers on such beams have them.
-fn measures(s: Complex64) -> [f64; 2] {
+pub fn measures(s: Complex64) -> [f64; 2] {
     let square = -s * s;
     // With `Im s > 0` a decaying mode has `Re s < 0`, and `-s^2` a positive imaginary part.
     [square.re.sqrt() / TAU, square.im / square.re]
@@ -204,7 +215,7 @@ fn rows(comm: &Comm, core: &str, law: &str, shear: &dyn Fn(Complex64) -> Complex
             Row::new(format!("{core}, mode {}: {what}", i + 1), unit, found[at], exact[at], tolerance)
         })
     };
-    eigenvalues(comm, law).into_iter().enumerate().flat_map(row).collect()
+    modes(comm, &MODEL.replace("LAW", law), mesh(40)).into_iter().take(5).enumerate().flat_map(row).collect()
 }
 
 pub fn cases(comm: &Comm) -> Vec<Case> {
