@@ -35,7 +35,7 @@ fn main() -> squeal::Result<()> {
     println!("point   from  converged steps failed iterations factorisations columns seconds  apart");
     let (mut last, mut totals) = (None::<Vector>, [Totals::default(), Totals::default()]);
     for (number, values) in study.design.points(&distributions, &template.nominal())?.iter().enumerate() {
-        let brake = variants.brake(&comm, &template.text(values, &variants.file)?, study.contacts)?;
+        let brake = variants.brake(&comm, &template.text(values, None, &variants.file)?, study.contacts)?;
         let structure = Structure::Full(Box::new(brake));
         let system = structure.assemble(&comm)?;
         let [from_rest, from_before] = &mut totals;

@@ -19,7 +19,8 @@ pub fn main() -> Result<()> {
 
     let mut full = FullModel::read(&comm, model)?;
     full.reduce_contacts(12)?;
-    let options = ReduceOptions { friction: Some(0.3), limit: Some(6000.0), file: file.clone(), force: false };
+    let options =
+        ReduceOptions { friction: Some(0.3), limit: Some(6000.0), for_study: None, file: file.clone(), force: false };
     let reduction = reduce(&comm, &full, &options, &mut ())?;
     println!("{} coordinates in place of {} dofs", reduction.element.n_coordinates(), reduction.element.origin.n_dofs);
 

@@ -9,13 +9,16 @@ use serde::{Deserialize, Serialize};
 use crate::assembly::{Prestress, System};
 use crate::contact::Interface;
 use crate::equilibrium::{Contacts, Equilibrium};
-use crate::native::{Block, Comm, Factor, FactorKind, Vector};
+use crate::native::{Block, Comm, Factor, FactorKind, Matrix, Vector};
 use crate::reduction::projection::project;
+use crate::reduction::recovery::OuterSurface;
+use crate::reduction::super_element::SuperElement;
 use crate::results::{Certificate, CertifiedMode};
 use crate::stability::{Approximation, corrections};
-use crate::structure::Structure;
+use crate::structure::{FullModel, ReducedModel, Structure};
 use crate::{Error, Result};
 
+use super::other_parts::OtherModel;
 use super::sweep::Sweep;
 
 /// Accuracy of the super-element's left vectors: an estimate needs no more.
@@ -96,13 +99,43 @@ pub(super) fn certify(
     let k_ref = Sweep::new(&system, interface, false)?.symmetric_stiffness(&equilibrium)?;
     factor.factorise(&k_ref)?;
     // V is not quite orthonormal: it was made with another K_ref, and is kept in single precision.
-    let metric = project(DMatrix::zeros(0, 0), basis, &k_ref)?;
-    let inverse = metric.cholesky().ok_or_else(|| Error::Singular { found_by: "Cholesky of the basis".into() })?;
-    let inverse_metric = Some(inverse.inverse());
+    let inverse_metric = Some(inverse_metric(&k_ref, basis)?);
     let prestress = full.prestress()?;
     let whole =
         Whole { system: &system, interface, prestress: prestress.as_ref(), basis, factor: &factor, inverse_metric };
     solutions.iter().map(|solution| whole.compare(solution, structure.friction_damping())).collect()
+}
+
+/// Compares a super-element with other parts, at a friction value, with the full model with these parts; `reference` is
+/// an equilibrium about which the model is stiff. Collective.
+///
+/// # Errors
+/// Those of the solution; PETSc's and MUMPS's.
+pub(super) fn certify_at(
+    full: &FullModel,
+    other: &OtherModel,
+    (element, basis): (&SuperElement, &Block),
+    reference: &Equilibrium,
+    friction: f64,
+) -> Result<Certificate> {
+    let mut element = element.clone();
+    other.changes.iter().try_for_each(|(part, change)| element.change_part(part, change))?;
+    let reduced = ReducedModel::new(Path::new(""), element, OuterSurface::default());
+    let (system, interface) = (full.assemble_as(basis.comm(), &other.model)?, &full.interface);
+    let k_ref = Sweep::new(&system, interface, false)?.symmetric_stiffness(reference)?;
+    let mut factor = Factor::new(FactorKind::Symmetric);
+    factor.factorise(&k_ref)?;
+    let inverse_metric = Some(inverse_metric(&k_ref, basis)?);
+    let whole = Whole { system: &system, interface, prestress: None, basis, factor: &factor, inverse_metric };
+    let all = whole.certify(&Structure::Reduced(Box::new(reduced)), &[friction], full.model.band)?;
+    Ok(all.into_iter().next().expect("one friction value"))
+}
+
+/// `(V^T K_ref V)^-1`
+fn inverse_metric(k_ref: &Matrix, basis: &Block) -> Result<DMatrix<f64>> {
+    let metric = project(DMatrix::zeros(0, 0), basis, k_ref)?;
+    let factor = metric.cholesky().ok_or_else(|| Error::Singular { found_by: "Cholesky of the basis".into() })?;
+    Ok(factor.inverse())
 }
 
 /// The super-element's equilibrium with the full model's contacts. Collective.

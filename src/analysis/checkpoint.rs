@@ -27,7 +27,7 @@ use num_complex::Complex64;
 use crate::hdf::{self, Format, array, list, table, values};
 use crate::native::{Block, Comm, Vector};
 use crate::output::files::write_file;
-use crate::output::folder::{self, Folder, RESUME};
+use crate::output::folder::Folder;
 use crate::output::overwrite::entries;
 use crate::results::{Value, file};
 use crate::{Error, Result};
@@ -37,6 +37,9 @@ use super::sweep::Sweep;
 use super::unfinished::Unfinished;
 
 const FORMAT: Format = Format { name: "squeal checkpoint", version: 2, advice: "Begin again with --force" };
+
+/// What an analysis over friction finishes one by one.
+pub const UNIT: &str = "friction values";
 
 /// A finished value as an earlier run has left it.
 pub struct EarlierValue {
@@ -70,14 +73,12 @@ impl Checkpoint {
         identity: &[(&str, String)],
         force: bool,
     ) -> Result<(Checkpoint, VecDeque<EarlierValue>)> {
-        let place = folder::unfinished(target)?.join(RESUME);
-        let study = Unfinished { target, identity, name: value_name, unit: "friction values" };
-        let check = |n: usize| {
-            require_files(&place, n - 1)?;
+        let study = Unfinished { target, identity, name: value_name, unit: UNIT };
+        let check = |place: &Path, n: usize| {
+            require_files(place, n - 1)?;
             (0..n).try_for_each(|i| read_value(&place.join(value_name(i))).map(|_| ()))
         };
-        let n = folder.map_or(Ok(0), |folder| study.prepare(folder, force, check));
-        let n_earlier = comm.broadcast_value(0, comm.agree(n)?);
+        let (place, n_earlier) = study.open(comm, folder, force, check)?;
         let earlier = comm.agree((0..n_earlier).map(|i| read_value(&place.join(value_name(i)))).collect())?;
         Ok((Checkpoint { comm: comm.clone(), folder: place, n_earlier, n_done: 0, kept: Vec::new() }, earlier))
     }

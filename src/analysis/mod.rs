@@ -6,7 +6,7 @@
 //! | [`model_summary`] | a full model | masses, contact pairs, mesh quality, loads, warnings |
 //! | [`statics`] | a structure | equilibria over the friction coefficient |
 //! | [`stability`] | a structure | complex modes of a band over the friction coefficient, branches and Hopf points |
-//! | [`wear`] | a full model | worn gaps of its sliding pairs |
+//! | [`wear`] | a structure | worn gaps of its sliding pairs |
 //! | [`reduce`] | a full model | a super-element and its file |
 //! | [`study`] | a model file | contact layouts and super-elements compared with full contact |
 //! | [`explore`] | the file of a study | modes at points of many parameters, and the probability of squeal |
@@ -33,10 +33,13 @@ mod galerkin;
 mod measured;
 mod mode_data;
 mod observer;
+mod other_parts;
+mod part_keys;
 mod proposal;
 mod record;
 mod reduce;
 mod run;
+mod snapshots;
 mod stability;
 mod start;
 mod states;

@@ -5,7 +5,7 @@ use crate::explore::PointResult;
 use crate::model::ProposedStiffness;
 use crate::native::Comm;
 use crate::reduction::craig_bampton;
-use crate::results::Value;
+use crate::results::{Value, WearStep};
 use crate::stability::EigenProgress;
 use crate::structure::{FullModel, plausibility};
 
@@ -18,8 +18,10 @@ pub enum Event<'a> {
     Resumed {
         /// Where its results will be.
         place: &'a str,
-        /// Values that need not be computed again.
-        n_values: usize,
+        /// Number of them, which need not be computed again.
+        n: usize,
+        /// What they are, in the plural: values, points or steps.
+        unit: &'a str,
     },
     /// The model has something that can hardly be meant.
     Warning(&'a str),
@@ -58,6 +60,13 @@ pub enum Event<'a> {
     Reduction(&'a craig_bampton::Event),
     /// A value is finished.
     Finished(&'a Value),
+    /// A step of wear is finished.
+    Worn {
+        /// What is worn off.
+        step: &'a WearStep,
+        /// Whether an earlier run has found it.
+        is_replayed: bool,
+    },
     /// A point of a study of many parameters is finished.
     Point {
         /// Its number, from 1; 0 for the nominal point.

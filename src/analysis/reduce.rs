@@ -7,12 +7,15 @@ use crate::native::Comm;
 use crate::output::overwrite::{FileKind, may_write_file};
 use crate::reduction::craig_bampton::Costs;
 use crate::reduction::file;
+use crate::reduction::made_for::MadeFor;
+use crate::reduction::part_samples::{PartSamples, SampleReport};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::SuperElement;
 use crate::structure::FullModel;
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer, warn};
+use super::other_parts::OtherParts;
 use super::sweep::Sweep;
 
 /// What a reduction writes.
@@ -36,10 +39,12 @@ impl SuperElementPlace<'_> {
         model.require_constrained(comm)?;
         model.require_mass()?;
         model.require_no_prescribed()?;
+        model.require_pair_laws()?;
         comm.agree(if comm.is_root() { self.may_write() } else { Ok(()) })
     }
 
-    /// Writes the file, unless something has come to its place since. Collective.
+    /// Writes the file, unless something has come to its place since, and reports samples that do not agree.
+    /// Collective.
     ///
     /// # Errors
     /// [`Error::Input`], the system's.
@@ -49,7 +54,10 @@ impl SuperElementPlace<'_> {
         element: &SuperElement,
         surface: &OuterSurface,
         basis: Option<&[f32]>,
+        observer: &mut dyn Observer,
     ) -> Result<()> {
+        let warning = element.origin.made_for.as_ref().and_then(MadeFor::warning);
+        warning.iter().for_each(|warning| observer.event(Event::Warning(warning)));
         let write = || self.may_write().and_then(|()| file::write(self.file, element, surface, basis));
         comm.agree(if comm.is_root() { write() } else { Ok(()) })
     }
@@ -67,6 +75,8 @@ pub struct ReduceOptions {
     pub friction: Option<f64>,
     /// Fixed-interface modes are kept below this, Hz; the model's own limit where there is none.
     pub limit: Option<f64>,
+    /// File of a study of many parameters, at whose moduli and densities the basis holds as well.
+    pub for_study: Option<PathBuf>,
     /// The super-element's file.
     pub file: PathBuf,
     /// Whether an earlier super-element may be replaced.
@@ -101,14 +111,24 @@ pub fn reduce(
     let place = SuperElementPlace { file: &options.file, force: options.force };
     place.begin(comm, model, observer)?;
     let friction = options.friction.map_or_else(|| model.own_friction(), Ok)?;
+    let others = OtherParts::of(comm, model, options.for_study.as_deref(), &options.file, observer)?;
     let limit = options.limit.unwrap_or_else(|| model.reduction_limit());
     observer.event(Event::Stage("assembling"));
     let system = model.assemble(comm, &model.families()?)?;
     let equilibrium = Sweep::new(&system, &model.interface, false)?.equilibrium(friction, observer)?;
     let equilibrium_seconds = start.elapsed().as_secs_f64();
     let mut follow = |event| observer.event(Event::Reduction(&event));
-    let (element, surface, costs) = model.reduce(comm, &system, &equilibrium, limit, &mut follow)?;
-    place.write(comm, &element, &surface, None)?;
+    let sample = |i: usize| model.assemble_as(comm, &others.models[i].model);
+    // Damping is no part of the basis.
+    let n_samples = if others.changes_matrices { others.models.len() } else { 0 };
+    let samples = PartSamples { n_samples, min_samples: others.min_samples, system: &sample };
+    let (mut element, surface, costs, report) =
+        model.reduce_for(comm, (&system, &equilibrium), limit, &samples, &mut follow)?;
+    let SampleReport { errors: sample_errors, n_added: sample_coordinates } = report;
+    let n_samples = sample_errors.len();
+    let found = MadeFor { n_samples, sample_coordinates, sample_errors, ..MadeFor::default() };
+    element.origin.made_for = others.made_for(found);
+    place.write(comm, &element, &surface, None, observer)?;
     Ok(Reduction { element, costs, equilibrium_seconds, seconds: start.elapsed().as_secs_f64() })
 }
 

@@ -16,10 +16,10 @@ use crate::stability::Count;
 use crate::structure::{Structure, SurfaceMotion};
 use crate::{Error, ErrorKind, Result};
 
-use super::checkpoint::{Checkpoint, EarlierValue};
+use super::checkpoint::{Checkpoint, EarlierValue, UNIT};
 use super::family::{Snapshot, Vectors};
 use super::observer::{Event, Observer, stop_signal};
-use super::start::{Output, about, announce, identity, numbers};
+use super::start::{Earlier, Output, about, announce, identity, numbers, open_folder};
 use super::sweep::Sweep;
 
 /// An analysis over values of the friction coefficient.
@@ -76,8 +76,7 @@ pub(super) fn run(
     work: impl FnOnce(&mut Run) -> Result<()>,
 ) -> Result<Results> {
     let start = Instant::now();
-    let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
-    let folder = comm.agree(output.filter(|_| comm.is_root()).map_or(Ok(None), open))?;
+    let folder = open_folder(comm, output)?;
     let about = About {
         band: job.band,
         criterion: job.criterion,
@@ -86,7 +85,8 @@ pub(super) fn run(
     };
     let (checkpoint, earlier) = resume(comm, job, output, folder.as_ref(), &about)?;
     let n_earlier = earlier.len();
-    announce(&about, job.values.len(), output.map(|output| output.folder.as_path()), n_earlier, observer);
+    let (place, done) = (output.map(|output| output.folder.as_path()), Earlier { n: n_earlier, unit: UNIT });
+    announce(&about, job.values.len(), place, done, observer);
     observer.event(Event::Stage("assembling"));
     let (system, prestress) = (structure.assemble(comm)?, structure.prestress()?);
     let motion = structure.surface_motion(&system)?;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::Result;
 use crate::native::{Comm, libraries};
+use crate::output::folder::Folder;
 use crate::results::About;
 use crate::structure::Structure;
 
@@ -23,6 +24,23 @@ pub struct Output {
     pub identity: Vec<(&'static str, String)>,
 }
 
+/// The folder of an output, which the root has. Collective.
+///
+/// # Errors
+/// See [`Folder::open`].
+pub(super) fn open_folder(comm: &Comm, output: Option<&Output>) -> Result<Option<Folder>> {
+    let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
+    comm.agree(output.filter(|_| comm.is_root()).map_or(Ok(None), open))
+}
+
+/// What an earlier run has finished.
+#[derive(Clone, Copy)]
+pub(super) struct Earlier {
+    pub n: usize,
+    /// What it is, in the plural.
+    pub unit: &'static str,
+}
+
 /// What is analysed, and by what. Collective.
 pub(super) fn about(comm: &Comm, structure: &Structure, output: Option<&Output>) -> Result<About> {
     Ok(About {
@@ -40,7 +58,7 @@ pub(super) fn announce(
     about: &About,
     n_planned: usize,
     place: Option<&Path>,
-    n_earlier: usize,
+    earlier: Earlier,
     observer: &mut dyn Observer,
 ) {
     about.warnings.iter().for_each(|warning| observer.event(Event::Warning(warning)));
@@ -50,10 +68,14 @@ pub(super) fn announce(
         observer.event(Event::Proposed { pair: &pair.name, stiffness });
     }
     observer.event(Event::Planned(n_planned));
-    if let Some(place) = place.filter(|_| n_earlier > 0) {
-        observer.event(Event::Resumed { place: &place.display().to_string(), n_values: n_earlier });
+    let Earlier { n, unit } = earlier;
+    if let Some(place) = place.filter(|_| n > 0) {
+        observer.event(Event::Resumed { place: &place.display().to_string(), n, unit });
     }
 }
+
+/// The name of the number of ranks in what numbers depend on.
+pub(super) const N_RANKS: &str = "number of ranks";
 
 /// All that the numbers of an analysis depend on, by name: `own` alone, the rest every analysis.
 pub(super) fn identity(
@@ -67,7 +89,7 @@ pub(super) fn identity(
     identity.extend([
         ("SHA-256 of the model", about.model_digest.clone()),
         ("SHA-256 of the mesh", about.mesh_digest.clone()),
-        ("number of ranks", about.n_ranks.to_string()),
+        (N_RANKS, about.n_ranks.to_string()),
     ]);
     identity.extend(output.into_iter().flat_map(|output| output.identity.iter().cloned()));
     identity

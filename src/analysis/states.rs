@@ -134,13 +134,13 @@ impl Study<'_> {
 
     /// Wears a state where it is to be worn, and finds its modes. Collective.
     fn analyse(&self, state: &State, identity: &str, observer: &mut dyn Observer) -> Result<()> {
-        let (comm, mut full) = (self.comm, self.brake(state)?);
+        let (comm, mut brake) = (self.comm, Structure::Full(Box::new(self.brake(state)?)));
         if let Some(wear) = state.wear {
             let goal = match wear {
                 StateWear::Distance(distance, n_steps) => WearGoal::Distance { distance, n_steps },
                 StateWear::Uniform(tolerance) => WearGoal::Uniform { tolerance },
             };
-            let worn = super::wear(comm, &mut full, &WearOptions { friction: None, goal }, None, observer)?;
+            let worn = super::wear(comm, &mut brake, &WearOptions { friction: None, goal, output: None }, observer)?;
             comm.agree(if comm.is_root() { self.write_wear(state, &worn) } else { Ok(()) })?;
         }
         let output = Output {
@@ -155,7 +155,7 @@ impl Study<'_> {
             output: Some(output),
             ..StabilityOptions::default()
         };
-        let results = stability(comm, &Structure::Full(Box::new(full)), &options, observer)?;
+        let results = stability(comm, &brake, &options, observer)?;
         let failed =
             |failure: Failure| Err(Error::not_converged(format!("state {:?}: {}", state.name, failure.reason)));
         comm.agree(results.failure.map_or(Ok(()), failed))

@@ -95,6 +95,7 @@ impl<'a> Plan<'a> {
     fn new(comm: &Comm, options: &'a StudyOptions) -> Result<Plan<'a>> {
         let mut full = FullModel::read(comm, &options.model)?;
         full.require_constrained(comm)?;
+        full.require_pair_laws()?;
         let mut friction_values = full.friction_values(options.friction_values.as_deref())?;
         friction_values.sort_by(f64::total_cmp);
         for &n in options.layouts.iter().chain([&options.super_element]) {
@@ -204,7 +205,8 @@ impl<'a> Plan<'a> {
         let model = FullModel::read(comm, &self.options.model)?;
         let model = with_reference_contacts(model, Some(self.options.super_element))?;
         let (friction, file) = (Some(self.reduced_at), self.element());
-        reduce(comm, &model, &ReduceOptions { friction, limit: None, file, force: true }, observer).map(|_| ())
+        reduce(comm, &model, &ReduceOptions { friction, limit: None, for_study: None, file, force: true }, observer)
+            .map(|_| ())
     }
 
     fn reduce_galerkin(&self, comm: &Comm, observer: &mut dyn Observer) -> Result<()> {

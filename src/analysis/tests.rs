@@ -6,14 +6,17 @@ use nalgebra::DMatrix;
 use tempfile::TempDir;
 
 use super::{
-    Event, ExportOptions, MatrixFormat, Observer, Output, StabilityOptions, StaticOptions, export, stability, statics,
+    Event, ExportOptions, MatrixFormat, Observer, Output, StabilityOptions, StaticOptions, WearGoal, WearOptions,
+    export, stability, statics, wear,
 };
+use crate::contact::ArchardWear;
 use crate::equilibrium::testing::{ALONG_X, belt, blocks};
 use crate::model::InstabilityCriterion;
 use crate::native::{Comm, Session};
 use crate::output::folder::{RESUME, unfinished};
 use crate::reduction::recovery::OuterSurface;
 use crate::reduction::super_element::{ContactMotion, NodeContact, Origin, SuperElement};
+use crate::results::Wear;
 use crate::structure::{ReducedModel, Structure};
 use crate::{Error, ErrorKind, Results};
 
@@ -41,6 +44,7 @@ fn pressed_by(force: f64) -> Structure {
             samples: Vec::new(),
             criterion: InstabilityCriterion::default(),
             prestress_friction: None,
+            made_for: None,
         },
         points: vec![[0.0; 3]; 2 * N],
         frequencies: Vec::new(),
@@ -48,6 +52,7 @@ fn pressed_by(force: f64) -> Structure {
         damping: matrices.c,
         stiffness: matrices.k,
         viscoelastic: Vec::new(),
+        model_text: None,
         geometric_stiffness: None,
         structural_damping: matrices.g,
         parts: Vec::new(),
@@ -81,8 +86,8 @@ struct Counter {
 impl Observer for Counter {
     fn event(&mut self, event: Event) {
         match event {
-            Event::Finished(_) => self.n_finished += 1,
-            Event::Replayed(_) => self.n_replayed += 1,
+            Event::Finished(_) | Event::Worn { is_replayed: false, .. } => self.n_finished += 1,
+            Event::Replayed(_) | Event::Worn { is_replayed: true, .. } => self.n_replayed += 1,
             Event::Inserted => self.n_inserted += 1,
             Event::Warning(text) => self.warnings.push(text.to_owned()),
             _ => (),
@@ -178,6 +183,59 @@ fn a_value_where_another_one_is_due_is_refused() {
     std::fs::copy(kept.join("value-0000.h5"), kept.join("value-0001.h5")).unwrap();
     let error = analyse(&comm, &folder, StabilityOptions::default(), &mut Counter::default()).err().unwrap();
     assert!(error.to_string().contains("has friction coefficient 0.1 where"), "{error}");
+}
+
+/// Wear of the blocks by the belt, in steps of one length, into a folder.
+fn wear_blocks(comm: &Comm, output: Output, n_steps: usize, counter: &mut Counter) -> crate::Result<(Wear, Vec<f64>)> {
+    let mut blocks = pressed_by(10.0);
+    blocks.interface_mut().pairs[0].wear = Some(ArchardWear { coefficient: 1e-2, density: 3.0 });
+    let goal = WearGoal::Distance { distance: n_steps as f64, n_steps };
+    let options = WearOptions { friction: Some(0.2), goal, output: Some(output) };
+    let worn = wear(comm, &mut blocks, &options, counter)?;
+    Ok((worn, blocks.interface().points.iter().map(|point| point.law.gap).collect()))
+}
+
+#[test]
+fn wear_that_was_stopped_resumes_after_its_last_step_and_ends_with_the_same_numbers() {
+    let (comm, place) = (Session::start(&[]).unwrap(), TempDir::new().unwrap());
+    let output = |name: &str| Output { folder: place.path().join(name), ..Output::default() };
+    let (whole, gaps) = wear_blocks(&comm, output("whole"), 4, &mut Counter::default()).unwrap();
+    let last = &whole.steps[4].pairs[0];
+    assert!(last.volume > 0.0 && (last.volume / last.archard_volume - 1.0).abs() < 1e-12);
+    assert!((last.mass - 3.0 * last.volume).abs() < 1e-12 * last.mass && whole.is_reduced);
+    assert!(gaps.iter().zip(&whole.points).all(|(gap, point)| *gap > 0.0 && *gap == point.gap_m));
+    let mut first = Counter { stop_after: Some(3), ..Counter::default() };
+    let error = wear_blocks(&comm, output("run"), 4, &mut first).err().unwrap();
+    assert!(matches!(&error, Error::Interrupted { signal: 2, .. }) && first.n_finished == 3, "{error}");
+    assert!(error.to_string().contains("m of sliding; 3 equilibria are done. The same command goes on"), "{error}");
+    let kept = unfinished(&place.path().join("run")).unwrap().join(RESUME);
+    let has = |i: usize| kept.join(format!("state-000{i}.0.bin")).exists();
+    assert_eq!([0, 1, 2].map(has), [true, false, true], "the first and the last state alone");
+    let other = wear_blocks(&comm, output("run"), 5, &mut Counter::default()).err().unwrap().to_string();
+    assert!(other.contains("goal was Distance"), "{other}");
+    let mut second = Counter::default();
+    let (resumed, same) = wear_blocks(&comm, output("run"), 4, &mut second).unwrap();
+    assert_eq!((second.n_replayed, second.n_finished), (3, 2));
+    assert_eq!((&resumed.steps, &resumed.points, same), (&whole.steps, &whole.points, gaps));
+}
+
+#[test]
+fn damaged_states_of_wear_are_refused_before_anything_is_computed_unless_by_force() {
+    let (comm, place) = (Session::start(&[]).unwrap(), TempDir::new().unwrap());
+    for damaged in ["step-0000.bin", "state-0001.0.bin"] {
+        let folder = place.path().join(damaged);
+        let output = |force| Output { folder: folder.clone(), force, ..Output::default() };
+        let kept = unfinished(&folder).unwrap().join(RESUME);
+        let mut counter = Counter { stop_after: Some(2), ..Counter::default() };
+        wear_blocks(&comm, output(false), 2, &mut counter).err().unwrap();
+        std::fs::write(kept.join(damaged), [7]).unwrap();
+        let mut second = Counter::default();
+        let error = wear_blocks(&comm, output(false), 2, &mut second).err().unwrap();
+        assert!(error.to_string().contains(damaged) && second.n_finished == 0, "{error}");
+        let mut forced = Counter { stop_after: Some(1), ..Counter::default() };
+        wear_blocks(&comm, output(true), 2, &mut forced).err().unwrap();
+        assert_eq!((forced.n_replayed, forced.n_finished), (0, 1));
+    }
 }
 
 #[test]

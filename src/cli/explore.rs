@@ -11,7 +11,7 @@ use crate::output::explore::Document;
 use crate::report::explore_page;
 
 use super::watch::Watch;
-use super::{Shell, command_line};
+use super::{Shell, command_line, values};
 
 /// What `explore` takes.
 #[derive(Args)]
@@ -25,6 +25,10 @@ pub struct Explore {
     /// Replace the results of an earlier run, and what another study has left unfinished
     #[arg(long)]
     force: bool,
+    /// Under mpirun: so many ranks solve a point together, and groups of them solve points at the same time; the number
+    /// of ranks is a multiple of it (default: all ranks, of a super-element one)
+    #[arg(long, value_name = "R", value_parser = values::count)]
+    ranks_per_point: Option<usize>,
     /// Print a line for each finished point on standard error, with the time left (a terminal shows a bar anyway)
     #[arg(short, long)]
     verbose: bool,
@@ -47,7 +51,7 @@ pub fn run(shell: &Shell, arguments: &Explore) -> Result<()> {
     let study = shell.comm.agree(explore::read(&arguments.study))?;
     let output = arguments.output(shell, &study);
     let mut watch = Watch::with_signals(shell, arguments.verbose)?;
-    let found = analysis::explore(shell.comm, &study, Some(&output), &mut watch);
+    let found = analysis::explore(shell.comm, &study, arguments.ranks_per_point, Some(&output), &mut watch);
     watch.finish();
     let Some(found) = found? else { return Ok(()) };
     let document = Document::new(&study, &found, &output.output.folder);

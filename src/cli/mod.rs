@@ -157,7 +157,10 @@ enum Command {
     Study(study::Study),
     /// Find the modes at points of many parameters, the probability of squeal, and the influence of each parameter
     Explore(explore::Explore),
-    /// Wear the sliding contacts of a model by Archard's law, to a sliding distance or until the wear rate is uniform
+    /// Wear the sliding contacts of a model or super-element by Archard's law, to a sliding distance or until the wear
+    /// rate is uniform
+    ///
+    /// Contacts wear that have wear = COEFFICIENT (m2/N) in the model file.
     Wear(wear::Wear),
     /// Compare the modes of a model in named states, such as forward and reverse, hot and cold, new and worn
     ///
@@ -189,6 +192,9 @@ struct Run {
     /// Of a super-element: the normal law of its contacts, linear:K or cubic:K1,K3 in N/m and N/m3
     #[arg(long, value_name = "LAW", value_parser = values::law)]
     law: Option<NormalLaw>,
+    /// Of a super-element: a gap field (CSV) of its contacts in place of its model's, such as worn.csv of squeal wear
+    #[arg(long, value_name = "FILE")]
+    gap: Option<PathBuf>,
     /// Of a super-element: the loads as a multiple of the model's
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = values::factor, allow_hyphen_values = true)]
     pressure: f64,
@@ -216,6 +222,7 @@ impl Run {
         StructureOptions {
             contacts: self.contacts,
             law: self.law.clone(),
+            gap: self.gap.clone(),
             load_factor: self.pressure,
             contact_stiffness: self.contact_stiffness,
             damping: self.damping.clone(),

@@ -35,6 +35,10 @@ pub struct Reduce {
     /// one super-element for all friction coefficients, pressures and contact stiffnesses
     #[arg(long, conflicts_with_all = ["contacts", "friction", "limit"])]
     galerkin: bool,
+    /// Make the super-element for the moduli and densities of a study: its basis holds over the ranges of the study's
+    /// parameters
+    #[arg(long = "for", value_name = "STUDY")]
+    for_study: Option<PathBuf>,
     /// With --galerkin: friction coefficients at which the full model's modes are found, a list 0.1,0.5,0.9 (default:
     /// the first, the middle and the last of the model file's sweep)
     #[arg(long, value_name = "MU", value_parser = values::parse, requires = "galerkin")]
@@ -60,6 +64,7 @@ pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let options = ReduceOptions {
         friction: arguments.friction,
         limit: arguments.limit,
+        for_study: arguments.for_study.clone(),
         file: arguments.file(),
         force: arguments.force,
     };
@@ -78,6 +83,7 @@ fn run_galerkin(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let options = GalerkinOptions {
         force: arguments.force,
         keep_basis: arguments.keep_basis,
+        for_study: arguments.for_study.clone(),
         ..GalerkinOptions::over(&samples, arguments.file())
     };
     let mut watch = Watch::new(shell, false);

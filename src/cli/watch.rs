@@ -6,7 +6,7 @@ use crate::explore::{Outcome, PointResult};
 use crate::model::ProposedStiffness;
 use crate::output::text::friction;
 use crate::reduction::craig_bampton;
-use crate::results::Value;
+use crate::results::{Value, WearStep};
 use crate::stability::EigenProgress;
 
 use super::interrupt::Interrupt;
@@ -34,7 +34,7 @@ impl Watch {
     pub fn with_signals(shell: &Shell, verbose: bool) -> Result<Watch> {
         let watch = Watch::new(shell, verbose);
         let notice =
-            watch.progress.notice("stopping after this value, or within five seconds; a second signal stops at once");
+            watch.progress.notice("stopping after this value, or within four seconds; a second signal stops at once");
         let farewell = watch.progress.notice(
             "stopped within a value, which is lost; finished values are kept. The same command goes on from there",
         );
@@ -53,9 +53,9 @@ impl Observer for Watch {
             Event::Planned(n) => self.progress.begin(n),
             Event::Inserted => self.progress.lengthen(),
             Event::Stage(what) => self.progress.show(what),
-            Event::Resumed { place, n_values } => self.progress.print(&format!(
-                "{place}: an earlier run has finished {n_values} values; this run continues from there"
-            )),
+            Event::Resumed { place, n, unit } => self
+                .progress
+                .print(&format!("{place}: an earlier run has finished {n} {unit}; this run continues from there")),
             Event::Warning(text) => self.progress.print(&warning_line(text, self.json)),
             // In JSON the results have it.
             Event::Proposed { pair, stiffness } if !self.json => {
@@ -76,7 +76,8 @@ impl Observer for Watch {
             }
             Event::Reduction(step) => self.progress.show(reduction_step(step)),
             Event::Finished(value) => self.progress.advance(&finished(value)),
-            Event::Point { is_replayed: true, .. } => self.progress.skip(true),
+            Event::Worn { step, is_replayed: false } => self.progress.advance(&worn(step)),
+            Event::Worn { .. } | Event::Point { is_replayed: true, .. } => self.progress.skip(true),
             Event::Point { number, point, .. } => self.progress.advance(&finished_point(number, point)),
         }
     }
@@ -91,6 +92,7 @@ fn reduction_step(step: &craig_bampton::Event) -> String {
         craig_bampton::Event::Factor => "factorising the structure without its sliding contacts".into(),
         craig_bampton::Event::Constraint(done, all) => format!("constraint modes: {done} of {all}"),
         craig_bampton::Event::Fixed(size) => format!("fixed-interface modes: a space of {size} vectors"),
+        craig_bampton::Event::Sample(done, all) => format!("samples of moduli and densities: {done} of at most {all}"),
         craig_bampton::Event::Project => "projecting".into(),
     }
 }
@@ -105,6 +107,11 @@ fn finished_point(number: usize, point: &PointResult) -> String {
             format!("{name}: {} modes, {n_unstable} unstable", modes.len())
         }
     }
+}
+
+/// A step of wear in a few words.
+fn worn(step: &WearStep) -> String {
+    format!("worn to {:.3e} m: p v differs by {:.2} %", step.distance, 100.0 * step.spread())
 }
 
 /// A finished value in a few words.

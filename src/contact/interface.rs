@@ -7,6 +7,7 @@ use super::surface_points::Place;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Model, NormalLaw, names};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Initial gaps up to this are rounding of the mesh, m.
@@ -44,6 +45,8 @@ pub struct ContactPair {
     pub separation: bool,
     /// Whether a sweep changes its friction.
     pub swept: bool,
+    /// How sliding wears it; none where it does not wear.
+    pub wear: Option<ArchardWear>,
     /// Its points in [`Interface::points`].
     pub points: Range<usize>,
     /// What the search found.
@@ -55,6 +58,15 @@ impl ContactPair {
     pub fn is_sliding(&self) -> bool {
         self.kind == TangentialKind::Sliding
     }
+}
+
+/// Wear of a pair by Archard's law, `dh/dt = k p v`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ArchardWear {
+    /// k, m2/N.
+    pub coefficient: f64,
+    /// Density of the slave's part, kg/m3; 0 where the slave lies on several.
+    pub density: f64,
 }
 
 /// What acts in the tangent plane of a pair; [`law::Tangential`] says how.
@@ -98,8 +110,18 @@ pub struct ContactPoint {
     pub nodes: Vec<u32>,
     /// Position of the point, m.
     pub position: [f64; 3],
+    /// What a gap field has added to its gap, m.
+    pub field_gap: f64,
     /// Its law, with weight, normal and gap.
     pub law: law::PointLaw,
+}
+
+impl ContactPoint {
+    /// Gives the point the gap (m) of a field in place of that of the field before.
+    pub fn set_field_gap(&mut self, gap: f64) {
+        self.law.gap += gap - self.field_gap;
+        self.field_gap = gap;
+    }
 }
 
 /// Which law acts.

@@ -42,7 +42,7 @@ mod tangent_change;
 pub(crate) mod testing;
 
 pub use gap_operator::GapOperator;
-pub use interface::{ContactPair, ContactPoint, Interface, Stage, Statistics, TangentialKind};
+pub use interface::{ArchardWear, ContactPair, ContactPoint, Interface, Stage, Statistics, TangentialKind};
 pub use law::{FrictionLaw, PointLaw, Response, Status, Tangential};
 pub use motion::sliding;
 pub use pairing::NothingFound;

@@ -1,6 +1,6 @@
 //! From a contact of the model to a pair of the interface: search, and choose the laws.
 
-use super::interface::{ContactPair, ContactPoint, Interface, Statistics, TangentialKind};
+use super::interface::{ArchardWear, ContactPair, ContactPoint, Interface, Statistics, TangentialKind};
 use super::law::{self, FrictionLaw, Tangential};
 use super::motion::sliding;
 use super::search::{Found, FoundPoint, Options, Team, find};
@@ -31,15 +31,9 @@ pub(super) fn add_pair(
     let first = interface.points.len();
     for point in &found.points {
         interface.gap_operator.push_projection(&point.slave, &point.master);
-        interface.points.push(ContactPoint {
-            pair: interface.pairs.len(),
-            places: vec![point.place],
-            nodes: point.slave.nodes.clone(),
-            position: point.position,
-            law: law.at(point),
-        });
+        interface.points.push(law.contact_point(interface.pairs.len(), point));
     }
-    surfaces.add_gap_field(&mut interface.points[first..])?;
+    surfaces.add_fields(&mut interface.points[first..])?;
     interface.pairs.push(ContactPair {
         name: contact.name.clone(),
         slave: contact.slave.clone(),
@@ -50,6 +44,7 @@ pub(super) fn add_pair(
         kind: law.kind(),
         separation: contact.separation,
         swept,
+        wear: law.wear,
         points: first..interface.points.len(),
         statistics: Statistics {
             n_adjusted: adjusted.len(),
@@ -60,6 +55,14 @@ pub(super) fn add_pair(
     Ok(())
 }
 
+/// How a contact wears: by its coefficient, and the density of the part behind its slave.
+fn wear(model: &Model, mesh: &Mesh, contact: &Contact) -> Option<ArchardWear> {
+    let part = mesh.part_of_surface(&contact.slave).map(|part| &mesh.parts[part as usize]);
+    let own = model.parts.iter().find(|own| Some(&own.name) == part);
+    let density = own.map_or(0.0, |own| own.material.density);
+    contact.wear.map(|coefficient| ArchardWear { coefficient, density })
+}
+
 /// What acts at all points of a pair.
 struct PairLaw<'a> {
     /// That of the master, where it slides for ever.
@@ -67,6 +70,7 @@ struct PairLaw<'a> {
     normal_law: NormalLaw,
     stick: Option<f64>,
     separation: bool,
+    wear: Option<ArchardWear>,
 }
 
 impl<'a> PairLaw<'a> {
@@ -76,6 +80,7 @@ impl<'a> PairLaw<'a> {
             normal_law: model.normal_law(contact, mesh),
             stick: model.stick(contact, mesh),
             separation: contact.separation,
+            wear: wear(model, mesh, contact),
         }
     }
 
@@ -84,6 +89,18 @@ impl<'a> PairLaw<'a> {
             (Some(_), _) => TangentialKind::Sliding,
             (None, Some(_)) => TangentialKind::StickSlip,
             (None, None) => TangentialKind::Frictionless,
+        }
+    }
+
+    /// A point of the pair with this number, without the gap of a field.
+    fn contact_point(&self, pair: usize, found: &FoundPoint) -> ContactPoint {
+        ContactPoint {
+            pair,
+            places: vec![found.place],
+            nodes: found.slave.nodes.clone(),
+            position: found.position,
+            field_gap: 0.0,
+            law: self.at(found),
         }
     }
 
@@ -125,13 +142,30 @@ impl ContactSurfaces<'_> {
         self.model.error(self.contact.place, message)
     }
 
+    /// Adds the contact's gap field to the gaps, and multiplies the normal laws by its factors.
+    fn add_fields(&self, points: &mut [ContactPoint]) -> Result<()> {
+        self.add_gap_field(points)?;
+        self.scale_laws(points)
+    }
+
     /// Adds the contact's gap field to the gaps. Which points touch stays: worn surfaces are brought together by the
     /// loads.
     fn add_gap_field(&self, points: &mut [ContactPoint]) -> Result<()> {
         let Some(field) = &self.contact.gap_field else { return Ok(()) };
         let positions: Vec<[f64; 3]> = points.iter().map(|point| point.position).collect();
         let gaps = field.at(&positions).map_err(|reason| self.refuse(&reason))?;
-        points.iter_mut().zip(gaps).for_each(|(point, gap)| point.law.gap += gap);
+        points.iter_mut().zip(gaps).for_each(|(point, gap)| point.set_field_gap(gap));
+        Ok(())
+    }
+
+    /// Multiplies the normal laws by the contact's factors.
+    fn scale_laws(&self, points: &mut [ContactPoint]) -> Result<()> {
+        let Some(field) = &self.contact.stiffness_field else { return Ok(()) };
+        let positions: Vec<[f64; 3]> = points.iter().map(|point| point.position).collect();
+        let factors = field.at(&positions).map_err(|reason| self.refuse(&reason))?;
+        points.iter_mut().zip(factors).for_each(|(point, factor)| {
+            point.law.normal_law = point.law.normal_law.times(factor);
+        });
         Ok(())
     }
 

@@ -157,6 +157,7 @@ pub fn contact(name: &str, slave: &str, master: &str) -> Contact {
         adjust: 0.0,
         clearance: None,
         gap_field: None,
+        stiffness_field: None,
         wear: None,
         place: Place { file: 0, line: 12 },
     }

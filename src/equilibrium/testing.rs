@@ -92,7 +92,14 @@ pub fn belt(n: usize, tangential: Tangential) -> Interface {
             normal_law: NormalLaw::Linear { stiffness: CONTACT },
             tangential,
         };
-        interface.points.push(ContactPoint { pair: 0, places: vec![], nodes: vec![i as u32], position: [0.0; 3], law });
+        interface.points.push(ContactPoint {
+            pair: 0,
+            places: vec![],
+            nodes: vec![i as u32],
+            position: [0.0; 3],
+            field_gap: 0.0,
+            law,
+        });
     }
     interface.pairs.push(ContactPair {
         name: "belt".into(),
@@ -107,6 +114,7 @@ pub fn belt(n: usize, tangential: Tangential) -> Interface {
         },
         separation: true,
         swept: true,
+        wear: None,
         points: 0..n,
         statistics: Statistics::default(),
     });

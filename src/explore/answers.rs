@@ -256,6 +256,7 @@ mod tests {
             file: "explore.toml".into(),
             model: "brake.toml".into(),
             parameters: (0..n_parameters).map(parameter).collect(),
+            fields: Vec::new(),
             design: Design { kind, seed: 1, correlation: None },
             contacts: None,
             band: None,

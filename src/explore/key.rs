@@ -193,7 +193,7 @@ fn item_name(item: &Item) -> Option<String> {
 }
 
 /// Whether a name is of a pattern, in which `*` is any text.
-fn matches(pattern: &str, name: &str) -> bool {
+pub(super) fn matches(pattern: &str, name: &str) -> bool {
     let Some((head, rest)) = pattern.split_once('*') else { return pattern == name };
     let Some(tail) = name.strip_prefix(head) else { return false };
     (0..=tail.len()).any(|i| tail.is_char_boundary(i) && matches(rest, &tail[i..]))

@@ -12,13 +12,16 @@
 
 mod adaptive;
 mod answers;
+mod contact_table;
 mod correlation;
 mod design;
 mod design_table;
 mod distribution;
+mod field;
 mod gradient;
 mod key;
 mod linking;
+mod random_field;
 mod result;
 mod sensitivity;
 mod states;
@@ -28,12 +31,15 @@ mod template;
 
 pub use adaptive::{BoundaryPair, Refinement};
 pub use answers::{Answers, Bin, Instability, quantity};
+pub use contact_table::{ContactTable, PointModel, with_tables, write_tables};
 pub use correlation::Correlation;
 pub use design::{AdaptiveRule, Design, DesignKind};
 pub use distribution::Distribution;
+pub use field::{Field, FieldQuantity};
 pub use gradient::{Difference, Gradient, Influence, MissingDerivative, Tornado, missing_derivatives, tornados};
 pub use key::KeyPath;
 pub use linking::{ModeProducts, link};
+pub use random_field::{Kernel, RandomField};
 pub use result::{Link, Outcome, PointMode, PointResult};
 pub use sensitivity::{Bar, Estimate, Indices, sobol_indices, tornado};
 pub use states::{State, StateWear, States};

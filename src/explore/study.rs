@@ -9,6 +9,7 @@ use toml::Spanned;
 use super::design::Design;
 use super::design_table::{CorrelationTable, DesignTable, beside, correlated, design};
 use super::distribution::Distribution;
+use super::field::{Field, FieldTable, fields};
 use super::key::KeyPath;
 use super::template::{CONTACT_STIFFNESS, FRICTION, PRESSURE};
 use crate::model::{InstabilityCriterion, located, utf8};
@@ -21,8 +22,10 @@ pub struct Study {
     pub file: PathBuf,
     /// Model file or super-element.
     pub model: PathBuf,
-    /// The parameters, in the order of the file.
+    /// The parameters in the order of the file, then those of the fields.
     pub parameters: Vec<Parameter>,
+    /// Random fields over contact points.
+    pub fields: Vec<Field>,
     /// How points are chosen.
     pub design: Design,
     /// Reference pairs in place of the contact points of the sliding pairs, where there are any.
@@ -44,7 +47,7 @@ pub struct Study {
 pub struct Parameter {
     /// Its name in tables.
     pub name: String,
-    /// The numbers that it changes.
+    /// The numbers that it changes; none of a mode of a random field.
     pub keys: Vec<KeyPath>,
     /// Whether its values are factors on the numbers of the model file.
     pub is_factor: bool,
@@ -52,7 +55,26 @@ pub struct Parameter {
     pub distribution: Distribution,
 }
 
+impl Study {
+    /// Refuses random fields where the study is not of a model with all of its contact points.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the first one.
+    pub fn require_no_fields(&self) -> Result<()> {
+        let what =
+            "a random field needs full contact: super-elements and layouts of reference pairs have none of its points";
+        let refuse =
+            |field: &Field| Err(Error::input(format!("{}: field {:?}: {what}", self.file.display(), field.name)));
+        self.fields.first().map_or(Ok(()), refuse)
+    }
+}
+
 impl Parameter {
+    /// Whether it is the coefficient of a random field's mode.
+    pub fn is_of_field(&self) -> bool {
+        self.keys.is_empty()
+    }
+
     /// The key that models and super-elements share, where the parameter is one of those.
     pub fn shared_key(&self) -> Option<&str> {
         match &self.keys[..] {
@@ -77,7 +99,10 @@ struct Keys {
     design: DesignTable,
     #[serde(default)]
     correlation: Vec<CorrelationTable>,
+    #[serde(default)]
     parameter: BTreeMap<Spanned<String>, ParameterTable>,
+    #[serde(default)]
+    field: BTreeMap<Spanned<String>, FieldTable>,
 }
 
 fn yes() -> bool {
@@ -99,9 +124,18 @@ struct ParameterTable {
 
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum OneOrMore {
+pub(super) enum OneOrMore {
     One(String),
     More(Vec<String>),
+}
+
+impl OneOrMore {
+    pub fn texts(&self) -> &[String] {
+        match self {
+            OneOrMore::One(text) => std::slice::from_ref(text),
+            OneOrMore::More(texts) => texts,
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -134,7 +168,7 @@ pub fn read(path: &Path) -> Result<Study> {
 }
 
 /// The study of a text.
-fn parse(text: &str, path: &Path) -> Result<Study> {
+pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
     let line = |offset: usize| 1 + text[..offset.min(text.len())].matches('\n').count();
     let at = |offset: usize, what: String| Error::input(located(path, line(offset), what));
     let keys: Keys = toml::from_str(text).map_err(|error| {
@@ -142,13 +176,8 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
                       loguniform, normal or lognormal";
         at(error.span().map_or(0, |span| span.start), format!("{}. {advice}", error.message().trim_end()))
     })?;
-    let mut tables: Vec<(Spanned<String>, ParameterTable)> = keys.parameter.into_iter().collect();
-    tables.sort_by_key(|(name, _)| name.span().start);
-    let mut parameters = Vec::new();
-    for (name, table) in &tables {
-        let wrong = |what: String| at(name.span().start, format!("parameter {:?}: {what}", name.get_ref()));
-        parameters.push(parameter(name.get_ref(), table).map_err(wrong)?);
-    }
+    let mut parameters = parameters(keys.parameter).map_err(|(offset, what)| at(offset, what))?;
+    let fields = fields(keys.field, &mut parameters).map_err(|(offset, what)| at(offset, what))?;
     let design = design(&keys.design, &parameters, path)
         .and_then(|design| correlated(design, &keys.correlation, &parameters))
         .map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
@@ -156,17 +185,20 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
     let [from, to] = keys.band.unwrap_or([0.0, 1.0]);
     let mistakes = [
         keys.unstable.and_then(InstabilityCriterion::mistake),
-        parameters.is_empty().then_some("there is no parameter. Add a [parameter.NAME] with its key"),
+        parameters
+            .is_empty()
+            .then_some("there is no parameter. Add a [parameter.NAME] with its key, or a [field.NAME]"),
         (bin.is_nan() || bin <= 0.0).then_some("bin is not above 0. Give the width of the frequency bins in Hz"),
         (!(0.0..to).contains(&from)).then_some("band is not [from, to] with 0 <= from < to. Give both ends in Hz"),
     ];
     if let Some(what) = mistakes.into_iter().flatten().next() {
         return Err(Error::input(format!("{}: {what}", path.display())));
     }
-    Ok(Study {
+    let study = Study {
         file: path.to_owned(),
         model: beside(path, &keys.model),
         parameters,
+        fields,
         design,
         contacts: keys.contacts,
         band: keys.band,
@@ -174,15 +206,32 @@ fn parse(text: &str, path: &Path) -> Result<Study> {
         bin,
         follow: keys.follow,
         gradients: keys.gradients && keys.follow,
-    })
+    };
+    study.contacts.map_or(Ok(()), |_| study.require_no_fields())?;
+    Ok(study)
+}
+
+/// The parameters of the tables in the order of the file, or what is wrong with its place in the text.
+fn parameters(
+    tables: BTreeMap<Spanned<String>, ParameterTable>,
+) -> std::result::Result<Vec<Parameter>, (usize, String)> {
+    let mut tables: Vec<(Spanned<String>, ParameterTable)> = tables.into_iter().collect();
+    tables.sort_by_key(|(name, _)| name.span().start);
+    let own = |(name, table): (Spanned<String>, ParameterTable)| {
+        let wrong = |what: String| (name.span().start, format!("parameter {:?}: {what}", name.get_ref()));
+        parameter(name.get_ref(), &table).map_err(wrong)
+    };
+    tables.into_iter().map(own).collect()
 }
 
 fn parameter(name: &str, table: &ParameterTable) -> std::result::Result<Parameter, String> {
-    let texts = match &table.key {
-        OneOrMore::One(key) => std::slice::from_ref(key),
-        OneOrMore::More(keys) => keys,
-    };
-    let keys = texts.iter().map(|key| KeyPath::parse(key)).collect::<Result<Vec<_>>>().map_err(|e| e.to_string())?;
+    let keys = table
+        .key
+        .texts()
+        .iter()
+        .map(|key| KeyPath::parse(key))
+        .collect::<Result<Vec<_>>>()
+        .map_err(|e| e.to_string())?;
     let distribution = distribution(table)?;
     let parameter = Parameter { name: name.to_owned(), keys, is_factor: table.factor, distribution };
     match (parameter.shared_key(), parameter.keys.is_empty()) {

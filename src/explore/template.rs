@@ -33,6 +33,8 @@ enum Target {
     Numbers { places: Vec<(Address, f64)>, is_factor: bool },
     /// The friction coefficient of all swept pairs.
     Friction,
+    /// No number of the model file: a mode of a random field.
+    FieldMode,
 }
 
 /// Keys that models and super-elements share, as the options of `squeal stability` do.
@@ -62,20 +64,22 @@ impl Template {
             Target::Numbers { is_factor: true, .. } => 1.0,
             Target::Numbers { places, .. } => places[0].1,
             Target::Friction => self.friction,
+            Target::FieldMode => 0.0,
         };
         self.targets.iter().map(of).collect()
     }
 
     /// The text of the model file with other values of the parameters, and a sweep of the one friction coefficient that
-    /// follows from them. `file` is what messages call it.
+    /// follows from them. Where no parameter is it, it is `friction`, of all swept pairs, else the model file's. `file`
+    /// is what messages call it.
     ///
     /// # Errors
     /// [`Error::Input`] where the model file with these values is not valid.
-    pub fn text(&self, values: &[f64], file: &Path) -> Result<String> {
+    pub fn text(&self, values: &[f64], mut friction: Option<f64>, file: &Path) -> Result<String> {
         let mut document = self.document.clone();
-        let mut friction = None;
         for (target, value) in self.targets.iter().zip(values) {
             match target {
+                Target::FieldMode => {}
                 Target::Friction => friction = Some(*value),
                 Target::Numbers { places, is_factor } => {
                     for (place, own) in places {
@@ -121,9 +125,12 @@ pub fn standing_alone(text: &str, file: &Path, mesh: &str, band: [f64; 2]) -> Re
         table.insert("band", value(band.into_iter().collect::<Array>()));
     });
     let contacts = document.get_mut("contact").and_then(Item::as_array_of_tables_mut);
-    for gap in contacts.into_iter().flat_map(|list| list.iter_mut()).filter_map(|contact| contact.get_mut("gap")) {
-        let own = file.parent().unwrap_or(Path::new("")).join(gap.as_str().unwrap_or_default());
-        *gap = value(std::path::absolute(&own).map_err(Error::io(&own))?.display().to_string());
+    for contact in contacts.into_iter().flat_map(|list| list.iter_mut()) {
+        for key in ["gap", "stiffness_factor"] {
+            let Some(field) = contact.get_mut(key) else { continue };
+            let own = file.parent().unwrap_or(Path::new("")).join(field.as_str().unwrap_or_default());
+            *field = value(std::path::absolute(&own).map_err(Error::io(&own))?.display().to_string());
+        }
     }
     Ok(document.to_string())
 }
@@ -140,6 +147,7 @@ fn target(document: &Item, parameter: &Parameter, swept: &[String]) -> Result<Ta
         Ok(Target::Numbers { places, is_factor })
     };
     match parameter.shared_key() {
+        _ if parameter.is_of_field() => Ok(Target::FieldMode),
         Some(FRICTION) if swept.is_empty() => {
             let what = "no contact slides, so that there is no friction coefficient";
             Err(of_parameter(Error::input(format!("{what}. Add the [[rotation]] of the disc"))))
@@ -214,7 +222,7 @@ mod tests {
     }
 
     fn changed(parameters: &[(&str, &str, bool)], values: &[f64]) -> Model {
-        let text = template(parameters).unwrap().text(values, FILE.as_ref()).unwrap();
+        let text = template(parameters).unwrap().text(values, None, FILE.as_ref()).unwrap();
         model::parse(&text, FILE.as_ref()).unwrap()
     }
 
@@ -240,6 +248,17 @@ mod tests {
     }
 
     #[test]
+    fn a_given_friction_coefficient_stands_where_no_parameter_has_it() {
+        let sweep = |parameters: &[(&str, &str, bool)], values: &[f64]| {
+            let text = template(parameters).unwrap().text(values, Some(0.3), FILE.as_ref()).unwrap();
+            let model = model::parse(&text, FILE.as_ref()).unwrap();
+            (model.swept.len(), model.frictions)
+        };
+        assert_eq!(sweep(&[], &[]), (2, vec![0.3]));
+        assert_eq!(sweep(&[("mu", "friction", false)], &[0.5]), (2, vec![0.5]));
+    }
+
+    #[test]
     fn keys_of_super_elements_are_factors_of_models() {
         let model = changed(&[("p", "pressure", false), ("k", "contact_stiffness", false)], &[2.0, 0.5]);
         let law = model.contacts[0].law.clone().unwrap();
@@ -249,7 +268,7 @@ mod tests {
 
     #[test]
     fn values_that_no_model_can_have_are_refused_with_the_readers_message() {
-        let message = template(&[("rho", "material.iron.density", false)]).unwrap().text(&[-1.0], FILE.as_ref());
+        let message = template(&[("rho", "material.iron.density", false)]).unwrap().text(&[-1.0], None, FILE.as_ref());
         let message = message.unwrap_err().to_string();
         assert!(message.contains("pads_on_disc.toml:11") && message.contains("density"), "{message}");
     }

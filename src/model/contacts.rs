@@ -1,7 +1,7 @@
 //! Contact pairs.
 
 use super::friction::contact_friction;
-use super::gap_field::GapField;
+use super::gap_field::{GapField, StiffnessField};
 use super::gap_image::ImageFrame;
 use super::item::{Item, Number, named};
 use super::keys;
@@ -35,6 +35,7 @@ fn contact(item: &Item, name: String, raw: &keys::ContactTable, unit: f64) -> Re
             * unit,
         clearance: clearance(item, raw, unit)?,
         gap_field: gap_field(item, raw, &name, unit)?,
+        stiffness_field: stiffness_field(item, raw, &name)?,
         wear: wear(item, raw)?,
         name,
         place: item.place(),
@@ -72,6 +73,15 @@ fn gap_field(item: &Item, raw: &keys::ContactTable, name: &str, unit: f64) -> Re
     }
     GapField::read(&item.beside(file.get_ref()), name).map(Some).map_err(|what| {
         let advice = "Give a table (CSV) with the columns x_mm, y_mm, z_mm (two of them are enough) and gap_um";
+        item.error(&file.span(), &what, advice)
+    })
+}
+
+/// The factors on the normal law of a file beside the model file.
+fn stiffness_field(item: &Item, raw: &keys::ContactTable, name: &str) -> Result<Option<StiffnessField>> {
+    let Some(file) = &raw.stiffness_factor else { return Ok(None) };
+    StiffnessField::read(&item.beside(file.get_ref()), name).map(Some).map_err(|what| {
+        let advice = "Give a table (CSV) with the columns x_mm, y_mm, z_mm (two of them are enough) and factor";
         item.error(&file.span(), &what, advice)
     })
 }

@@ -5,6 +5,8 @@
 //! contact,x_mm,y_mm,z_mm,gap_um    a head with units; two coordinates are enough; contact may be missing
 //! disc / pad,12.5,98,0,3.2         rows in any order; other columns are left alone
 //! ```
+//!
+//! A table of factors on the contact stiffness has the column `factor` in place of `gap_um`.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::gap_image::{GapImage, ImageFrame};
 use super::paths;
 use super::read::UNITS;
-use crate::algebra::norm;
+use crate::algebra::{norm, sub};
 
 /// Gaps (m) at points (m) of a contact surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,6 +27,49 @@ pub struct GapField {
     #[serde(with = "paths::one")]
     pub file: PathBuf,
     gaps: Gaps,
+}
+
+/// Factors on the contact stiffness at points of a contact surface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StiffnessField {
+    /// The table.
+    #[serde(with = "paths::one")]
+    pub file: PathBuf,
+    factors: Table,
+}
+
+impl StiffnessField {
+    /// Reads the rows of a contact: all rows where the table has no column `contact`.
+    ///
+    /// # Errors
+    /// What is wrong, with the line.
+    pub fn read(file: &Path, contact: &str) -> Result<StiffnessField, String> {
+        let factors = Table::read(file, contact, Quantity::Factor)?;
+        StiffnessField::checked(file, factors)
+    }
+
+    /// The factors of points (m) themselves. `file` is what messages call them.
+    ///
+    /// # Errors
+    /// What is wrong where a factor is not above 0.
+    pub fn of_points(file: &Path, rows: Vec<([f64; 3], f64)>) -> Result<StiffnessField, String> {
+        StiffnessField::checked(file, Table { axes: [true; 3], rows })
+    }
+
+    fn checked(file: &Path, factors: Table) -> Result<StiffnessField, String> {
+        match factors.rows.iter().find(|(_, factor)| *factor <= 0.0) {
+            Some((_, factor)) => Err(format!("{}: a factor is {factor}, not above 0", file.display())),
+            None => Ok(StiffnessField { file: file.to_owned(), factors }),
+        }
+    }
+
+    /// The factors at points (m) of a surface, as [`GapField::at`] interpolates.
+    ///
+    /// # Errors
+    /// What is wrong where the rows do not cover the surface.
+    pub fn at(&self, points: &[[f64; 3]]) -> Result<Vec<f64>, String> {
+        self.factors.at(points).map_err(|what| format!("{}: {what}", self.file.display()))
+    }
 }
 
 /// What a file has.
@@ -39,7 +84,7 @@ enum Gaps {
 struct Table {
     /// Which coordinates it has.
     axes: [bool; 3],
-    /// Points, 0 along the axes that it does not have, and their gaps.
+    /// Points, 0 along the axes that it does not have, and their gaps or factors.
     rows: Vec<([f64; 3], f64)>,
 }
 
@@ -58,25 +103,12 @@ impl GapField {
     /// # Errors
     /// What is wrong, with the line.
     pub fn read(file: &Path, contact: &str) -> Result<GapField, String> {
-        let place = file.display();
-        let fail = |reason: csv::Error| format!("the gaps of {place} cannot be read: {reason}");
-        let mut table = ReaderBuilder::new().trim(Trim::All).from_path(file).map_err(fail)?;
-        let columns = Columns::of(table.headers().map_err(fail)?).map_err(|what| format!("{place}:1: {what}"))?;
-        let mut rows = Vec::new();
-        for record in table.records() {
-            let record = record.map_err(fail)?;
-            if columns.contact.is_none_or(|column| &record[column] == contact) {
-                let line = record.position().map_or(0, Position::line);
-                rows.push(columns.row(&record).map_err(|what| format!("{place}:{line}: {what}"))?);
-            }
-        }
-        match rows.is_empty() {
-            true => Err(format!("{place} has no row of this contact")),
-            false => {
-                let table = Table { axes: columns.place.map(|column| column.is_some()), rows };
-                Ok(GapField { file: file.to_owned(), gaps: Gaps::Table(table) })
-            }
-        }
+        Ok(GapField { file: file.to_owned(), gaps: Gaps::Table(Table::read(file, contact, Quantity::Gap)?) })
+    }
+
+    /// The gaps (m) of points (m) themselves. `file` is what messages call them.
+    pub fn of_points(file: &Path, rows: Vec<([f64; 3], f64)>) -> GapField {
+        GapField { file: file.to_owned(), gaps: Gaps::Table(Table { axes: [true; 3], rows }) }
     }
 
     /// Reads an image (PNG) that lies as the frame says.
@@ -107,12 +139,54 @@ impl GapField {
         };
         gaps.map_err(|what| format!("{}: {what}", self.file.display()))
     }
+
+    /// The gap (m) of the row that stands at a point (m), if there is one.
+    pub fn of_row_at(&self, point: [f64; 3]) -> Option<f64> {
+        let Gaps::Table(table) = &self.gaps else { return None };
+        let point = table.flat(&point);
+        table.rows.iter().find(|(x, _)| norm(sub(*x, point)) <= SAME_PLACE).map(|(_, gap)| *gap)
+    }
+}
+
+/// What the rows of a table have.
+#[derive(Clone, Copy)]
+enum Quantity {
+    Gap,
+    Factor,
 }
 
 impl Table {
+    fn read(file: &Path, contact: &str, quantity: Quantity) -> Result<Table, String> {
+        let place = file.display();
+        let what = match quantity {
+            Quantity::Gap => "gaps",
+            Quantity::Factor => "factors",
+        };
+        let fail = |reason: csv::Error| format!("the {what} of {place} cannot be read: {reason}");
+        let mut table = ReaderBuilder::new().trim(Trim::All).from_path(file).map_err(fail)?;
+        let columns = Columns::of(table.headers().map_err(fail)?, quantity);
+        let columns = columns.map_err(|what| format!("{place}:1: {what}"))?;
+        let mut rows = Vec::new();
+        for record in table.records() {
+            let record = record.map_err(fail)?;
+            if columns.contact.is_none_or(|column| &record[column] == contact) {
+                let line = record.position().map_or(0, Position::line);
+                rows.push(columns.row(&record).map_err(|what| format!("{place}:{line}: {what}"))?);
+            }
+        }
+        match rows.is_empty() {
+            true => Err(format!("{place} has no row of this contact")),
+            false => Ok(Table { axes: columns.place.map(|column| column.is_some()), rows }),
+        }
+    }
+
+    /// A place without the coordinates that the table does not have.
+    fn flat(&self, x: &[f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|i| if self.axes[i] { x[i] } else { 0.0 })
+    }
+
     fn at(&self, points: &[[f64; 3]]) -> Result<Vec<f64>, String> {
-        let flat = |x: &[f64; 3]| [0, 1, 2].map(|i| if self.axes[i] { x[i] } else { 0.0 });
-        let points: Vec<[f64; 3]> = points.iter().map(flat).collect();
+        let points: Vec<[f64; 3]> = points.iter().map(|x| self.flat(x)).collect();
         let tree = RTree::bulk_load(self.rows.iter().map(|(x, gap)| Row::new(*x, *gap)).collect());
         let reach = REACH * extent(&points);
         let gap = |x: &[f64; 3]| {
@@ -155,11 +229,11 @@ type Column = (usize, f64);
 struct Columns {
     contact: Option<usize>,
     place: [Option<Column>; 3],
-    gap: Column,
+    value: Column,
 }
 
 impl Columns {
-    fn of(head: &StringRecord) -> Result<Columns, String> {
+    fn of(head: &StringRecord, quantity: Quantity) -> Result<Columns, String> {
         let find = |wanted: &str| {
             let column = |(i, name): (usize, &str)| {
                 let (quantity, unit) = name.rsplit_once('_')?;
@@ -169,10 +243,15 @@ impl Columns {
             head.iter().enumerate().find_map(column)
         };
         let place = ["x", "y", "z"].map(find);
-        match (find("gap"), place.iter().flatten().count()) {
-            (None, _) => Err("there is no column gap_um, gap_mm or gap_m".into()),
+        let called = |wanted: &str| head.iter().position(|name| name == wanted);
+        let (value, missing) = match quantity {
+            Quantity::Gap => (find("gap"), "there is no column gap_um, gap_mm or gap_m"),
+            Quantity::Factor => (called("factor").map(|column| (column, 1.0)), "there is no column factor"),
+        };
+        match (value, place.iter().flatten().count()) {
+            (None, _) => Err(missing.into()),
             (_, 0 | 1) => Err("there are fewer than two of the columns x_mm, y_mm, z_mm (or x_m and so on)".into()),
-            (Some(gap), _) => Ok(Columns { contact: head.iter().position(|name| name == "contact"), place, gap }),
+            (Some(value), _) => Ok(Columns { contact: called("contact"), place, value }),
         }
     }
 
@@ -185,7 +264,7 @@ impl Columns {
         for (x, column) in place.iter_mut().zip(self.place) {
             *x = column.map_or(Ok(0.0), number)?;
         }
-        Ok((place, number(self.gap)?))
+        Ok((place, number(self.value)?))
     }
 }
 
@@ -208,6 +287,20 @@ mod tests {
         assert_eq!((table.axes, table.rows.len(), field.frame()), ([true, true, false], 2, None));
         let found = field.at(&[[0.02, 0.05, 7.0], [0.01, 0.1, -1.0]]).unwrap();
         assert!((found[0] - 3e-6).abs() < 1e-20 && (found[1] - 2e-6).abs() < 1e-20, "{found:?}");
+    }
+
+    #[test]
+    fn a_table_of_factors_has_them_above_zero() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("factors.csv");
+        let read = |text: &str| {
+            std::fs::write(&file, text).unwrap();
+            StiffnessField::read(&file, "pad")
+        };
+        let field = read("contact,x_mm,y_mm,factor\npad,1,0,0.5\npad,5,0,2\nother,1,0,-7\n").unwrap();
+        assert_eq!(field.at(&[[0.001, 0.0, 3.0], [0.005, 0.0, 0.0]]).unwrap(), [0.5, 2.0]);
+        assert!(read("x_mm,y_mm,factor\n1,0,0\n").unwrap_err().contains("a factor is 0, not above 0"));
+        assert!(read("x_mm,y_mm,gap_um\n1,0,1\n").unwrap_err().contains(":1: there is no column factor"));
     }
 
     #[test]

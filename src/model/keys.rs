@@ -219,6 +219,7 @@ tables! {
         pub clearance: Option<Number>,
         pub gap: Option<Text>,
         pub gap_image: Option<Spanned<GapImageTable>>,
+        pub stiffness_factor: Option<Text>,
         pub wear: Option<Number>,
     }
 

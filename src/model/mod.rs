@@ -56,14 +56,14 @@ pub use analysis::spaced;
 pub use contacts::is_pressure_table;
 pub use criterion::InstabilityCriterion;
 pub use friction::{LARGEST_FRICTION, ROUGH};
-pub use gap_field::GapField;
+pub use gap_field::{GapField, StiffnessField};
 pub use gap_image::ImageFrame;
 pub use grid::GridInterval;
 pub use joint_types::{Connector, Equation, EquationTerm, GROUND, PointMass, RigidSet, Tie};
 pub use joints::PENALTY;
 pub use place::Place;
 pub use proposed::ProposedStiffness;
-pub use read::{is_deck, parse, read};
+pub use read::{is_deck, parse, read, read_text};
 pub use source::{located, utf8};
 pub use surfaces::softest_young;
 pub use types::{

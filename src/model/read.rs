@@ -24,6 +24,14 @@ pub(super) const UNITS: [(&str, f64); 6] =
 /// # Errors
 /// [`Error::Input`], `file:line: what (item). what to do`, for the first thing that is wrong.
 pub fn read(path: &Path) -> Result<Model> {
+    parse(&read_text(path)?, path)
+}
+
+/// Reads the text of a model file.
+///
+/// # Errors
+/// [`Error::Input`] where the file cannot be read or is of another kind.
+pub fn read_text(path: &Path) -> Result<String> {
     let place = path.display();
     let bytes = std::fs::read(path).map_err(|reason| {
         let advice =
@@ -38,7 +46,7 @@ pub fn read(path: &Path) -> Result<Model> {
         let advice = "Super-elements are for squeal static, stability and export, results for report and compare";
         return Err(Error::input(format!("{place} {what}. {advice}")));
     }
-    parse(utf8(path, &bytes)?, path)
+    utf8(path, &bytes).map(str::to_owned)
 }
 
 /// Checks the text of a model file; `file` is what messages call it, and its folder is where the mesh is looked for.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::youngs;
 use super::friction::FrictionCurve;
-use super::gap_field::GapField;
+use super::gap_field::{GapField, StiffnessField};
 use super::viscoelastic::ViscoelasticLaw;
 use super::{Connector, Equation, InstabilityCriterion, Place, PointMass, RigidSet, Tie, names, paths};
 use crate::algebra::{cross, scale, sub};
@@ -273,8 +273,7 @@ pub struct Contact {
     pub friction: f64,
     /// How the coefficient depends on sliding speed and pressure, where it does.
     pub friction_curve: Option<FrictionCurve>,
-    /// Elastic stick, N/m3; none on pairs that slide for ever, and where the program is to propose it
-    /// ([`Model::stick`]).
+    /// Elastic stick, N/m3; none on pairs that slide for ever, and where it is to be proposed ([`Model::stick`]).
     pub stick: Option<f64>,
     /// Whether the pair may open.
     pub separation: bool,
@@ -286,6 +285,8 @@ pub struct Contact {
     pub clearance: Option<f64>,
     /// Added to the initial gap, point by point: a measured topography, or what is worn off.
     pub gap_field: Option<GapField>,
+    /// Multiplies the normal law, point by point.
+    pub stiffness_field: Option<StiffnessField>,
     /// Archard's coefficient `k/H`, m2/N: depth worn off by pressure and sliding distance.
     pub wear: Option<f64>,
     /// Where it stands.

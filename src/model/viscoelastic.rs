@@ -106,6 +106,25 @@ impl ViscoelasticLaw {
 }
 
 impl ViscoelasticLaw {
+    /// Whether another law is of the same kind, and each of its numbers differs by no more than a part of itself.
+    pub fn is_close(&self, other: &ViscoelasticLaw, part: f64) -> bool {
+        let (own, other_numbers) = (self.numbers(), other.numbers());
+        let is_close = |(a, b): (&f64, &f64)| (a - b).abs() <= part * a.abs();
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+            && own.len() == other_numbers.len()
+            && own.iter().zip(&other_numbers).all(is_close)
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        match self {
+            ViscoelasticLaw::Maxwell(elements) => {
+                elements.iter().flat_map(|own| [own.ratio, own.relaxation_time]).collect()
+            }
+            ViscoelasticLaw::FractionalZener(own) => vec![own.unrelaxed_ratio, own.relaxation_time, own.order],
+            ViscoelasticLaw::Table(own) => [&own.frequencies[..], &own.ratios, &own.loss_factors].concat(),
+        }
+    }
+
     /// Whether its numbers are those of a material: for laws that do not come from a model file.
     pub fn is_sound(&self) -> bool {
         let is_positive = |x: &f64| *x > 0.0 && x.is_finite();

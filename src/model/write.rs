@@ -215,6 +215,9 @@ fn contact(out: &mut Text, contact: &Contact, unit: f64) {
     gap.into_iter().for_each(|file| out.line("gap", quoted(&file.display().to_string())));
     let frame = contact.gap_field.as_ref().and_then(GapField::frame);
     frame.into_iter().for_each(|frame| out.line("gap_image", gap_image(frame, unit)));
+    let factors =
+        contact.stiffness_field.as_ref().map(|field| std::path::absolute(&field.file).unwrap_or(field.file.clone()));
+    factors.into_iter().for_each(|file| out.line("stiffness_factor", quoted(&file.display().to_string())));
     out.optional("wear", contact.wear);
 }
 

@@ -10,9 +10,10 @@ use super::results_folder::RESULTS;
 use super::text::{aligned, files, or_dash, plural};
 use crate::Result;
 use crate::explore::{
-    Answers, Bar, Bin, Estimate, Indices, Influence, Instability, Outcome, Parameter, PointResult, Study, Tornado,
+    Answers, Bar, Bin, Estimate, Indices, Influence, Instability, Outcome, Parameter, PointModel, PointResult, Study,
+    Tornado,
 };
-use crate::results::{About, Exploration, exploration_file};
+use crate::results::{Exploration, FieldShare, exploration_file};
 
 /// Name of the page in the folder of a study.
 pub const PAGE: &str = "explore.html";
@@ -33,6 +34,10 @@ pub struct Document<'a> {
     answers: &'a Answers,
     worst_point: Option<PointDocument<'a>>,
     failures: Vec<FailureDocument<'a>>,
+    fields: &'a [FieldShare],
+    /// Files of the tables that the worst point's model file names.
+    #[serde(skip)]
+    tables: Vec<&'static str>,
     folder: String,
     /// Points that an adaptive design starts with.
     #[serde(skip)]
@@ -78,7 +83,7 @@ impl<'a> Document<'a> {
         };
         let worst = answers.worst.and_then(|point| {
             let mode = points[point].critical()?;
-            let command = command(study, about, &points[point].values, folder);
+            let command = command(study, found, &points[point].values, folder);
             let (frequency_hz, growth_rate_per_s) = (mode.frequency(), mode.growth_rate());
             Some(PointDocument { point, values: &points[point].values, frequency_hz, growth_rate_per_s, command })
         });
@@ -95,6 +100,8 @@ impl<'a> Document<'a> {
             answers,
             worst_point: worst,
             failures: points.iter().enumerate().filter_map(failure).collect(),
+            fields: &found.fields,
+            tables: found.worst.as_ref().map_or_else(Vec::new, PointModel::files),
             folder: folder.display().to_string(),
             n_start: study.design.n_start(),
         }
@@ -120,6 +127,7 @@ impl<'a> Document<'a> {
         let what = if answers.is_sample { "probability" } else { "fraction of the points" };
         let mut text = self.head() + &format!("unstable ({}): {what} {}\n", self.criterion, percent(answers.unstable));
         text += &self.boundary();
+        text += &fields(self.fields);
         text += &section("largest growth rate, 1/s", &self.growth_rates());
         text += &section(&format!("instabilities, by {what}"), &instabilities(&answers.instabilities));
         text += &section(&format!("{what} of squeal over frequency"), &bins(&answers.bins));
@@ -209,15 +217,15 @@ impl<'a> Document<'a> {
         if self.worst_point.as_ref().is_some_and(|worst| worst.command.contains(WORST)) {
             list.push((WORST, "the model file of the worst point"));
         }
+        list.extend(self.tables.iter().map(|file| (*file, "the random field of its contact points")));
         files(&self.folder, &list)
     }
 }
 
 /// What analyses a point alone.
-fn command(study: &Study, about: &About, values: &[f64], folder: &Path) -> String {
-    // Of a super-element no text of a model is known.
-    if !about.model_text.is_empty() {
-        let contacts = study.contacts.map_or_else(String::new, |n| format!(" --contacts {n}"));
+fn command(study: &Study, found: &Exploration, values: &[f64], folder: &Path) -> String {
+    if found.worst.is_some() {
+        let contacts = found.contacts.map_or_else(String::new, |n| format!(" --contacts {n}"));
         return format!("squeal stability {}{contacts}", folder.join(WORST).display());
     }
     let option = |(own, value): (&Parameter, &f64)| {
@@ -274,6 +282,18 @@ fn instabilities(all: &[Instability]) -> String {
     let heading = "mode at the\t\t\t95 %\t95 %\tfrequency where unstable\t\tlargest\tat\n\
                    nominal point\tHz\t%\tfrom\tto\tfrom\tto\tgrowth, 1/s\tpoint";
     if all.is_empty() { String::new() } else { aligned(heading, all.iter().map(row)) }
+}
+
+/// A line for each random field.
+fn fields(all: &[FieldShare]) -> String {
+    let line = |own: &FieldShare| {
+        let FieldShare { name, n_points, n_modes, share } = own;
+        let (modes, share) = (plural(*n_modes), 100.0 * share);
+        format!(
+            "field {name:?}: {n_modes} mode{modes} with {share:.1} % of the variance over {n_points} contact points\n"
+        )
+    };
+    all.iter().map(line).collect()
 }
 
 /// Bins up to the last one with squeal.

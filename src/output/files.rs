@@ -21,8 +21,8 @@ pub fn write_file(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Res
     body(&mut out).and_then(|()| out.flush()).map_err(Error::io(path))
 }
 
-/// Writes a file that appears under its name when it is complete. Where that fails, what was there before is untouched.
-/// A symbolic link stays; the file behind it is replaced.
+/// Writes a file that appears under its name when it is complete, and on the disk. Where that fails, what was there
+/// before is untouched. A symbolic link stays; the file behind it is replaced.
 ///
 /// # Errors
 /// The system's, with the file's path.
@@ -30,7 +30,8 @@ pub fn write_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> std::io::Re
     let target = behind_link(path);
     let name = target.file_name().ok_or_else(|| Error::input(format!("{} is no name of a file", path.display())))?;
     let draft = target.with_file_name(format!(".{}{PARTIAL}{}", name.to_string_lossy(), std::process::id()));
-    write_file(&draft, body).and_then(|()| fs::rename(&draft, &target).map_err(Error::io(path))).inspect_err(|_| {
+    let named = || File::open(&draft)?.sync_data().and_then(|()| fs::rename(&draft, &target));
+    write_file(&draft, body).and_then(|()| named().map_err(Error::io(path))).inspect_err(|_| {
         // Best effort: half a file is of no use to anyone.
         let _ = fs::remove_file(&draft);
     })

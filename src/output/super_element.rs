@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::reduction::craig_bampton::Costs;
 use crate::reduction::galerkin::BasisReport;
+use crate::reduction::made_for::MadeFor;
 use crate::reduction::super_element::{Origin, SuperElement};
 use crate::results::Certificate;
 
@@ -55,6 +56,7 @@ impl<'a> ReductionDocument<'a> {
              one LDL^T factor       {:8.1} s  {:.0} M entries, {:.0} MB, ordering {}\n\
              constraint modes       {:8.1} s  {} solves in blocks\n\
              fixed-interface modes  {:8.1} s  {} solves in blocks\n\
+             samples of parts       {:8.1} s\n\
              projection of M, C, K  {:8.1} s\n\
              in all                 {:8.1} s\n\n\
              results in {file}\n",
@@ -67,7 +69,7 @@ impl<'a> ReductionDocument<'a> {
             self.residual_modes,
             self.coordinates,
             self.origin.n_dofs,
-            prestress(self.origin),
+            notes(self.origin),
             self.seconds_before,
             factor.analysis_seconds + factor.factorisation_seconds,
             1e-6 * factor.entries,
@@ -77,16 +79,51 @@ impl<'a> ReductionDocument<'a> {
             3 * self.retained_points,
             self.costs.fixed_seconds,
             self.costs.n_solves,
+            self.costs.sample_seconds,
             self.costs.projection_seconds,
             self.seconds,
         )
     }
 }
 
+/// What else is to be known of it.
+fn notes(origin: &Origin) -> String {
+    prestress(origin) + &origin.made_for.as_ref().map_or(String::new(), made_for)
+}
+
 /// A line about the geometric stiffness, where there is one.
 fn prestress(origin: &Origin) -> String {
     let what = "its modes have the geometric stiffness of the equilibrium at friction";
     origin.prestress_friction.map_or(String::new(), |mu| format!("prestress is frozen: {what} {mu}\n"))
+}
+
+/// What samples of other moduli and densities found.
+fn made_for(own: &MadeFor) -> String {
+    let percent = |errors: &[f64]| {
+        let errors: Vec<String> = errors.iter().map(|error| format!("{:.4}", 100.0 * error)).collect();
+        errors.join(", ")
+    };
+    let ranges = own.parts.iter().flat_map(|part| {
+        let range = |what: &str, [from, to]: [f64; 2]| match from == to {
+            true => None,
+            false => Some(format!("  {} of {} {from:.3} to {to:.3} times the model's\n", what, part.part)),
+        };
+        [range("stiffness", part.stiffness), range("mass", part.mass)].into_iter().flatten()
+    });
+    let ranges: String = ranges.collect();
+    let largest = "largest error of a frequency";
+    let errors = match own.test_friction {
+        None => {
+            let errors = percent(&own.sample_errors);
+            format!("{largest} at each sample, estimated before its vectors joined the basis, %: {errors}")
+        }
+        Some(mu) => {
+            let errors = percent(&own.test_errors);
+            format!("{largest} at other points, friction {mu}, by the full model's residuals, %: {errors}")
+        }
+    };
+    let (study, n_samples, n) = (&own.study, own.n_samples, own.sample_coordinates);
+    format!("made for the parts of {study}: {n} of the coordinates are of {n_samples} samples\n{ranges}{errors}\n")
 }
 
 /// A Galerkin super-element just made: where its coordinates come from, and the seconds that its steps took.
@@ -157,7 +194,7 @@ impl<'a> GalerkinDocument<'a> {
             report.mode_samples,
             report.coordinates_of_static_answers,
             report.switching_points,
-            prestress(self.origin),
+            notes(self.origin),
             report.equilibrium_seconds,
             report.mode_seconds,
             report.left_seconds,
@@ -166,5 +203,29 @@ impl<'a> GalerkinDocument<'a> {
             report.test_seconds,
             report.seconds,
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reduction::made_for::PartRange;
+
+    #[test]
+    fn errors_at_samples_and_at_other_points_have_their_own_words() {
+        let parts = vec![PartRange { stiffness: [0.7, 1.4], ..PartRange::nominal("pad") }];
+        let own =
+            MadeFor { study: "for.toml".into(), n_samples: 3, sample_coordinates: 7, parts, ..MadeFor::default() };
+        let sampled = made_for(&MadeFor { sample_errors: vec![0.01, 2e-5, 1e-6], ..own.clone() });
+        assert_eq!(
+            sampled,
+            "made for the parts of for.toml: 7 of the coordinates are of 3 samples\n  stiffness of pad 0.700 to 1.400 \
+             times the model's\nlargest error of a frequency at each sample, estimated before its vectors joined the \
+             basis, %: 1.0000, 0.0020, 0.0001\n"
+        );
+        let tested = made_for(&MadeFor { test_errors: vec![0.02, 0.01], test_friction: Some(0.35), ..own });
+        assert!(tested.contains("7 of the coordinates are of 3 samples"), "{tested}");
+        let end = "frequency at other points, friction 0.35, by the full model's residuals, %: 2.0000, 1.0000\n";
+        assert!(tested.ends_with(end) && !tested.contains("joined"), "{tested}");
     }
 }

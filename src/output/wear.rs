@@ -13,13 +13,18 @@ pub const GAPS: &str = "worn.csv";
 
 /// The steps in words, with the files of their folder.
 pub fn summary(wear: &Wear, place: &str) -> String {
+    let gaps = match wear.is_reduced {
+        false => "gaps and pressures by contact point: gap = \"worn.csv\" of a [[contact]] reads it",
+        true => "gaps and pressures by contact: --gap reads it",
+    };
     let files = [
         ("summary.txt", "this text"),
         ("steps.csv", "wear by step and pair"),
-        (GAPS, "gaps and pressures by contact point: gap = \"worn.csv\" of a [[contact]] reads it"),
+        (GAPS, gaps),
         ("contact_before.vtu, _worn.vtu", "pressure before and after, for ParaView"),
     ];
-    text(wear) + &cost(wear.seconds, wear.n_ranks) + &files_text(place, &files)
+    let n_files = if wear.is_reduced { 3 } else { 4 };
+    text(wear) + &cost(wear.seconds, wear.n_ranks) + &files_text(place, &files[..n_files])
 }
 
 /// The steps in words.

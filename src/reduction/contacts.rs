@@ -21,7 +21,7 @@ use crate::contact::search::{Landing, land};
 use crate::contact::{ContactPoint, Interface, PointLaw, Statistics, sliding};
 use crate::element::coupling::{self, Cloud, mean_motion};
 use crate::mesh::{Mesh, Surface};
-use crate::model::{Model, Place};
+use crate::model::{Contact, Model};
 use crate::{Error, Result};
 
 use super::layout::{self, Points};
@@ -31,9 +31,9 @@ use super::layout::{self, Points};
 ///
 /// # Errors
 /// [`Error::Input`] with file, line and pair: nothing slides, fewer than three contact points a reference node, a cell
-/// on a line, or a gap field of a sliding pair.
+/// on a line, or a stiffness field of a sliding pair.
 pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -> Result<Interface> {
-    refuse_gap_fields(model, full)?;
+    refuse_stiffness_fields(model, full)?;
     let areas: Vec<f64> = full.pairs.iter().filter(|p| p.is_sliding()).map(|p| p.statistics.weight).collect();
     let refuse = |what: String| Err(Error::input(format!("{}: {what}", model.file.display())));
     if areas.is_empty() {
@@ -48,7 +48,7 @@ pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -
     for (i, pair) in full.pairs.iter().enumerate() {
         let first = reduced.points.len();
         if pair.is_sliding() {
-            let site = Site { model, mesh, full, pair, place: model.contacts[i].place };
+            let site = Site { model, mesh, full, pair, number: i };
             site.add(&mut reduced, shares.next().expect("a share for each sliding pair"))?;
         } else {
             for a in pair.points.clone() {
@@ -64,11 +64,12 @@ pub fn reduce(model: &Model, mesh: &Mesh, full: &Interface, n_contacts: usize) -
     Ok(reduced)
 }
 
-/// Refuses gap fields of sliding pairs: a reference pair has one gap, that of the mesh.
-fn refuse_gap_fields(model: &Model, full: &Interface) -> Result<()> {
+/// Refuses stiffness fields of sliding pairs: all reference nodes of a pair have one law.
+fn refuse_stiffness_fields(model: &Model, full: &Interface) -> Result<()> {
     let pairs = model.contacts.iter().zip(&full.pairs).filter(|(_, pair)| pair.is_sliding());
-    let Some((contact, _)) = pairs.into_iter().find(|(contact, _)| contact.gap_field.is_some()) else { return Ok(()) };
-    let what = "a reference pair has the mesh's gap, none of a gap field. Use full contact, or leave out gap";
+    let has_field = |contact: &Contact| contact.stiffness_field.is_some();
+    let Some((contact, _)) = pairs.into_iter().find(|(contact, _)| has_field(contact)) else { return Ok(()) };
+    let what = "a reference pair has the law of its pair. Use full contact, or leave out stiffness_factor";
     Err(model.error(contact.place, format_args!("contact {:?}: {what}", contact.name)))
 }
 
@@ -78,14 +79,15 @@ struct Site<'a> {
     mesh: &'a Mesh,
     full: &'a Interface,
     pair: &'a ContactPair,
-    place: Place,
+    /// Its number among the contacts of the model.
+    number: usize,
 }
 
 impl Site<'_> {
     fn refuse(&self, reason: &dyn std::fmt::Display) -> Error {
         let advice = "Give a smaller number of contacts, or a finer mesh of the slave";
         let what = format!("contact {:?}: {reason}. {advice}", self.pair.name);
-        self.model.error(self.place, what)
+        self.model.error(self.model.contacts[self.number].place, what)
     }
 
     /// Appends the pair's reference nodes.
@@ -100,6 +102,7 @@ impl Site<'_> {
         let centre_of = |cell| (centre(&points_of(cell)), outward(&points_of(cell)));
         let centres: Vec<([f64; 3], [f64; 3])> = cells.iter().map(centre_of).collect();
         let master = &self.mesh.surfaces[&self.pair.master];
+        let first = reduced.points.len();
         for ((cell, (position, _)), landing) in cells.iter().zip(&centres).zip(land(&centres, master, &self.mesh.nodes))
         {
             let landing =
@@ -107,7 +110,19 @@ impl Site<'_> {
             let cell: Vec<usize> = cell.iter().map(|a| self.pair.points.start + a).collect();
             self.push(reduced, &cell, *position, &landing)?;
         }
+        self.add_gap_field(&mut reduced.points[first..], cells.iter().map(points_of));
         Ok(())
+    }
+
+    /// Gives the reference nodes the gaps of the contact's field: that of a row where a node stands, as the field of a
+    /// worn layout has them, else the mean over the area of the node's cell, which keeps the volume.
+    fn add_gap_field<'a>(&self, nodes: &mut [ContactPoint], cells: impl Iterator<Item = Vec<&'a ContactPoint>>) {
+        let Some(field) = &self.model.contacts[self.number].gap_field else { return };
+        for (node, cell) in nodes.iter_mut().zip(cells) {
+            let volume: f64 = cell.iter().map(|point| point.law.weight * point.field_gap).sum();
+            let area: f64 = cell.iter().map(|point| point.law.weight).sum();
+            node.set_field_gap(field.of_row_at(node.position).unwrap_or(volume / area));
+        }
     }
 
     /// Appends one reference node, which follows a cell of points: `g = sum_a U_a sum_i N_ai u_i - sum_j N_j u_j`.
@@ -133,6 +148,7 @@ impl Site<'_> {
             places: points.iter().flat_map(|point| point.places.iter().copied()).collect(),
             nodes: slaves,
             position: x,
+            field_gap: 0.0,
             law: self.law(&points, x, landing),
         });
         Ok(())
@@ -195,6 +211,7 @@ mod tests {
     use crate::contact::search::Alone;
     use crate::contact::testing::{contact, flipped, model, pads_on_disc, patch_of, skin};
     use crate::element::FacetShape;
+    use crate::model::GapField;
 
     fn pads(n: usize) -> Result<(Interface, Interface, Mesh)> {
         let mesh = pads_on_disc();
@@ -282,6 +299,38 @@ mod tests {
             });
             assert!(norm(moment) < 1e-15, "{moment:?}");
         }
+    }
+
+    /// The volume of the gaps is that of the field over the contact points; a row on a reference node is its gap.
+    #[test]
+    fn a_reference_node_has_the_mean_gap_of_its_cell_or_that_of_its_own_row() {
+        let (full, reduced, mesh) = pads(12).unwrap();
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("worn.csv");
+        let row = |x: [f64; 3], gap: f64| format!("{:e},{:e},{:e},{gap:e}\n", x[0], x[1], x[2]);
+        let of_points = full.points[full.pairs[0].points.clone()].iter();
+        let rows: String = of_points.map(|point| row(point.position, 1e-4 * point.position[0].powi(2))).collect();
+        let worn = |rows: &str| {
+            std::fs::write(&file, format!("x_m,y_m,z_m,gap_m\n{rows}")).unwrap();
+            let names = ["inner", "outer"];
+            let mut contacts =
+                names.map(|name| contact(name, &format!("lining_{name}_face"), &format!("disc_{name}_face")));
+            contacts[0].gap_field = Some(GapField::read(&file, "inner").unwrap());
+            let model = model(contacts.to_vec(), true);
+            let full = Interface::build(&model, &mesh, &Alone).unwrap();
+            let worn = reduce(&model, &mesh, &full, 12).unwrap();
+            (full, worn)
+        };
+        let volume = |interface: &Interface, pair: usize| -> f64 {
+            let points = interface.points[interface.pairs[pair].points.clone()].iter();
+            points.map(|point| point.law.weight * point.field_gap).sum()
+        };
+        let (full, mean) = worn(&rows);
+        assert!(volume(&full, 0) > 0.0 && (volume(&mean, 0) / volume(&full, 0) - 1.0).abs() < 1e-12);
+        assert_eq!(volume(&mean, 1), 0.0);
+        let (_, own) = worn(&(rows + &row(reduced.points[3].position, 3e-6)));
+        assert_eq!(own.points[3].field_gap, 3e-6);
+        assert!((own.points[3].law.gap - reduced.points[3].law.gap - 3e-6).abs() < 1e-20);
     }
 
     #[test]

@@ -54,7 +54,8 @@ use crate::{Error, Result};
 use super::fixed_interface::{self, Modes};
 use super::functionals::{Functionals, retained};
 use super::linear::Linear;
-use super::projection::{PANEL, Projected, ProjectedLoad, project, project_damping, shadow};
+use super::part_samples::{Nominal, PartSamples, SampleReport};
+use super::projection::{PANEL, Projected, ProjectedLoad, shadow};
 use super::super_element::ViscoelasticTerm;
 
 /// Motions up to this part of the limit get residual modes: half of it, up to which a super-element is meant to be
@@ -94,6 +95,8 @@ pub enum Event {
     Constraint(usize, usize),
     /// The search space of the fixed-interface modes has so many vectors.
     Fixed(usize),
+    /// So many samples of other moduli and densities of so many are done.
+    Sample(usize, usize),
     /// Projects the matrices.
     Project,
 }
@@ -114,6 +117,8 @@ pub struct Costs {
     pub n_solves: usize,
     /// Residual modes and projection of M, C and K, s.
     pub projection_seconds: f64,
+    /// Samples of other moduli and densities, s.
+    pub sample_seconds: f64,
 }
 
 /// The reduced structure. Coordinates: three for each retained point, then one for each fixed-interface mode and each
@@ -135,6 +140,8 @@ pub struct Reduced {
     pub load: Vec<f64>,
     /// `T^T` times what the other contacts' forces are beside their linear part and the constant part of `F_ext`, N.
     pub preload: Vec<f64>,
+    /// What samples of other moduli and densities found.
+    pub samples: SampleReport,
     /// What it cost.
     pub costs: Costs,
 }
@@ -162,17 +169,29 @@ pub struct Reduced {
 /// [`Error::Input`] where nothing slides or retained points are not independent; [`Error::NotConverged`]; PETSc's and
 /// MUMPS's.
 pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)) -> Result<Reduced> {
+    reduce_for(structure, limit, &PartSamples::none(), progress)
+}
+
+/// As [`reduce`], in a basis that holds at other moduli and densities of the parts as well. Collective.
+///
+/// # Errors
+/// Those of [`reduce`] and of the samples.
+pub fn reduce_for(
+    structure: &Structure,
+    limit: f64,
+    samples: &PartSamples,
+    progress: &mut dyn FnMut(Event),
+) -> Result<Reduced> {
     let system = structure.system;
     let (retained, contacts) = retained(structure.interface, structure.loaded);
-    let functionals = Functionals::new(&retained, system);
-    let linear = Linear::new(structure, &retained, &contacts)?;
-    let mut costs = Costs::default();
+    let functionals = &Functionals::new(&retained, system);
+    let linear = &Linear::new(structure, &retained, &contacts)?;
 
     progress(Event::Factor);
     let mut factor = Factor::new(FactorKind::Symmetric);
     factor.factorise(&linear.supported)?;
-    costs.factor = factor.stats();
-    let interior = Interior { functionals: &functionals, factor: &factor, system };
+    let mut costs = Costs { factor: factor.stats(), ..Costs::default() };
+    let interior = Interior { functionals, factor: &factor, system };
 
     let start = Instant::now();
     let mut basis = interior.constraint_modes(progress)?;
@@ -181,29 +200,26 @@ pub fn reduce(structure: &Structure, limit: f64, progress: &mut dyn FnMut(Event)
     let start = Instant::now();
     let modes = interior.modes(&basis, limit, progress)?;
     basis.append(&modes.shapes);
-    costs.fixed_seconds = start.elapsed().as_secs_f64();
-    costs.n_solves = modes.n_solves;
+    (costs.fixed_seconds, costs.n_solves) = (start.elapsed().as_secs_f64(), modes.n_solves);
 
     progress(Event::Project);
     let start = Instant::now();
-    let coarse = Projected::default().extended(&basis, system, &linear)?;
-    let at_reference = coarse.stiffness_at_reference(&structure.viscoelastic());
-    let motions = motions(&coarse.mass, &at_reference, &linear.contacts, REACH * limit)?;
-    let residual = interior.residual_modes(&basis, &motions, &modes)?;
-    let answers = interior.viscoelastic_answers(&basis, &motions, [&modes.shapes, &residual], structure)?;
-    basis.append(&residual);
-    basis.append(&answers);
-    let projected = coarse.extended(&basis, system, &linear)?;
-    let damping = project_damping(&basis, system)?;
-    let structural = system.g.as_ref().map(|g| project(DMatrix::zeros(0, 0), &basis, g)).transpose()?;
+    let coarse = interior.add_answers(&mut basis, &modes, linear, (structure, limit))?;
     costs.projection_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let Modes { frequencies, shapes, .. } = modes;
+    drop((factor, shapes)); // samples have factors of their own
+    let nominal = Nominal { structure, functionals, linear, points: &retained, contacts: &contacts, limit };
+    let samples = nominal.extend(&mut basis, samples, progress)?;
+    costs.sample_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let projected = coarse.extended(&basis, system, linear)?;
+    let viscoelastic = projected.viscoelastic_terms(system);
+    let matrices = projected.matrices(&basis, system)?;
+    costs.projection_seconds += start.elapsed().as_secs_f64();
     let ProjectedLoad { variable: load, constant } = ProjectedLoad::new(&basis, system)?;
     let preload = shadow(&basis, &linear.preload)?.iter().zip(constant).map(|(own, constant)| own + constant).collect();
-    let frequencies = modes.frequencies;
-    let viscoelastic = projected.viscoelastic_terms(system);
-    let Projected { mass, stiffness, .. } = projected;
-    let matrices = Mck { m: mass, c: damping, k: stiffness, g: structural };
-    Ok(Reduced { retained, contacts, frequencies, basis, matrices, viscoelastic, load, preload, costs })
+    Ok(Reduced { retained, contacts, frequencies, basis, matrices, viscoelastic, load, preload, samples, costs })
 }
 
 /// The static problem with all retained points held.
@@ -229,16 +245,10 @@ impl Interior<'_> {
         Ok(psi)
     }
 
-    /// `(I - Psi B) u`, with Psi the first columns of the basis.
-    fn hold(&self, basis: &Block, u: &mut Block) {
-        let moved = self.functionals.apply(u);
-        u.axpy(-1.0, &basis.leading_combined(self.functionals.len(), &moved, u.n_columns()));
-    }
-
     /// `A r = (I - Psi B) K_s^-1 r`
     fn answer(&self, basis: &Block, r: &Block) -> Result<Block> {
         let mut u = r.solved_by(self.factor)?;
-        self.hold(basis, &mut u);
+        self.functionals.hold(basis, &mut u);
         Ok(u)
     }
 
@@ -254,8 +264,26 @@ impl Interior<'_> {
         let mut modes =
             fixed_interface::below(limit, n, mass, &start, &mut invert, &mut |size| progress(Event::Fixed(size)))?;
         // Orthogonalisation has magnified what rounding left of B Phi.
-        self.hold(psi, &mut modes.shapes);
+        self.functionals.hold(psi, &mut modes.shapes);
         Ok(modes)
+    }
+
+    /// Adds residual modes and the answers of viscoelastic materials to a basis, which was projected without them.
+    fn add_answers(
+        &self,
+        basis: &mut Block,
+        modes: &Modes,
+        linear: &Linear,
+        (structure, limit): (&Structure, f64),
+    ) -> Result<Projected> {
+        let coarse = Projected::default().extended(basis, self.system, linear)?;
+        let at_reference = coarse.stiffness_at_reference(&structure.viscoelastic());
+        let (motions, _) = motions(&coarse.mass, &at_reference, &linear.contacts, REACH * limit)?;
+        let residual = self.residual_modes(basis, &motions, modes)?;
+        let answers = self.viscoelastic_answers(basis, &motions, [&modes.shapes, &residual], structure)?;
+        basis.append(&residual);
+        basis.append(&answers);
+        Ok(coarse)
     }
 
     /// What the interior does under the inertia of some motions `Psi Y`, beside the modes: `A M Psi Y`, M-orthonormal.
@@ -269,7 +297,7 @@ impl Interior<'_> {
         let mut answer = self.answer(psi, &moved.multiplied_by(&self.system.m)?)?;
         let room = self.n_dimensions() - modes.frequencies.len();
         fixed_interface::make_orthonormal(&modes.shapes, &mut answer, &self.system.m, NEGLIGIBLE_ADDITION, room)?;
-        self.hold(psi, &mut answer);
+        self.functionals.hold(psi, &mut answer);
         Ok(answer)
     }
 
@@ -287,7 +315,7 @@ impl Interior<'_> {
             return Ok(basis.columns(0..0));
         }
         let mut answers = Block::from_columns(u.comm(), u.n_local(), u.to_vec()?);
-        self.hold(basis, &mut answers);
+        self.functionals.hold(basis, &mut answers);
         let moved = basis.combined(motions.as_slice(), motions.ncols());
         for own in laws {
             answers.append(&self.answer(basis, &moved.multiplied_by(&own.stiffness)?)?);
@@ -296,7 +324,7 @@ impl Interior<'_> {
         all.append(known[1]);
         let room = self.n_dimensions() - all.n_columns();
         fixed_interface::make_orthonormal(&all, &mut answers, &self.system.m, NEGLIGIBLE_ADDITION, room)?;
-        self.hold(basis, &mut answers);
+        self.functionals.hold(basis, &mut answers);
         Ok(answers)
     }
 }
@@ -325,13 +353,14 @@ fn arbitrary(system: &System, n_columns: usize) -> Block {
 }
 
 /// How the retained points move in the modes below `limit` (Hz) of the brake reduced so far, its contacts closed as at
-/// the equilibrium and without friction: a column of coordinates each.
-fn motions(
+/// the equilibrium and without friction: a column of coordinates each, of unit modal mass, and the squares of their
+/// angular frequencies.
+pub(super) fn motions(
     mass: &DMatrix<f64>,
     stiffness: &DMatrix<f64>,
     contacts: &[[[f64; 3]; 3]],
     limit: f64,
-) -> Result<DMatrix<f64>> {
+) -> Result<(DMatrix<f64>, Vec<f64>)> {
     let mut k = stiffness.clone();
     for (c, d) in contacts.iter().enumerate() {
         let (slave, master) = (3 * c, 3 * (contacts.len() + c));
@@ -353,5 +382,5 @@ fn motions(
     let x = l.tr_solve_lower_triangular(&y.columns(0, n_below)).expect("the diagonal of L is positive");
     let mut motions = DMatrix::zeros(mass.nrows(), n_below);
     live.iter().enumerate().for_each(|(row, &i)| motions.row_mut(i).copy_from(&x.row(row)));
-    Ok(motions)
+    Ok((motions, squares[..n_below].to_vec()))
 }

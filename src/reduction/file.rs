@@ -5,6 +5,8 @@
 //! about             text, TOML: [origin] model, mesh with hash, friction, bands, samples; [[pair]] the pairs kept;
 //!                   parts; [[part_matrices]] name, damping and viscoelastic law of each part; rest, what is in no
 //!                   part; viscoelastic, the laws of which there is a stiffness
+//! model             text, TOML: the model file, by whose keys a study changes the super-element; only where it has its
+//!                   contacts from no deck
 //! points            n_p x 3     positions of the retained points, m: slaves, masters, loads
 //! frequencies       n_m         of the fixed-interface modes, Hz
 //! mass, damping, stiffness      n x n, symmetric but for gyroscopic damping; n = 3 n_p + n_m + residual modes; kg,
@@ -19,8 +21,8 @@
 //!                   beta times these, to structural_damping its loss factor times its stiffness
 //! load, preload     n           generalised forces, N: those that a load factor multiplies; all others
 //! contacts/         one row a contact: pair, position (m), normal, direction and speed of sliding (m/s; zero:
-//!                   frictionless), weight (m2), gap (m), touching (0 or 1), displacement (m) and normal_force (N) at
-//!                   the equilibrium that it was made about
+//!                   frictionless), weight (m2), gap (m), field_gap (m, what of it is of a gap field), touching (0 or
+//!                   1), displacement (m) and normal_force (N) at the equilibrium that it was made about
 //! contacts/motion   3 n_c x n   of a Galerkin super-element alone: displacements of the contacts for a unit of each
 //!                   coordinate; it has no points and no frequencies
 //! surface/nodes     n_s x 3     corners of the outer surface, m
@@ -53,6 +55,8 @@ use super::super_element::{ContactMotion, NodeContact, Origin, SuperElement, Vis
 const FORMAT: Format =
     Format { name: "squeal super-element", version: 6, advice: "Make the super-element again with `squeal reduce`" };
 
+/// The text of the model file, which only some have.
+const MODEL: &str = "model";
 /// The matrices that only some have.
 const STRUCTURAL_DAMPING: &str = "structural_damping";
 const GEOMETRIC_STIFFNESS: &str = "geometric_stiffness";
@@ -60,6 +64,8 @@ const GEOMETRIC_STIFFNESS: &str = "geometric_stiffness";
 const VISCOELASTIC: &str = "viscoelastic_stiffnesses";
 /// The basis by nodes of the mesh, which only some have.
 const BASIS: &str = "basis";
+/// What of the gaps is of a gap field; older files do not have it.
+const FIELD_GAP: &str = "field_gap";
 /// The matrices of the parts, one after the other.
 const PART_MASSES: &str = "part_masses";
 const PART_STIFFNESSES: &str = "part_stiffnesses";
@@ -153,9 +159,10 @@ fn write_body(file: &File, element: &SuperElement, surface: &OuterSurface) -> hd
     table(&group, "basis", 3 * surface.nodes.len(), &surface.basis)
 }
 
-/// The matrices that only some have.
+/// What only some have.
 fn write_optional(file: &File, element: &SuperElement) -> hdf5::Result<()> {
     let n = element.n_coordinates();
+    element.model_text.iter().try_for_each(|model| text(file, MODEL, model))?;
     element.structural_damping.iter().try_for_each(|g| table(file, STRUCTURAL_DAMPING, n, g))?;
     element.geometric_stiffness.iter().try_for_each(|k| table(file, GEOMETRIC_STIFFNESS, n, k))?;
     let laws: Vec<f64> = element.viscoelastic.iter().flat_map(|term| term.stiffness.clone()).collect();
@@ -185,6 +192,7 @@ fn write_contacts(group: &Group, contacts: &[NodeContact]) -> hdf5::Result<()> {
     list(group, "speed", &scalars(&|c| slide(c).1))?;
     list(group, "weight", &scalars(&|c| c.point.law.weight))?;
     list(group, "gap", &scalars(&|c| c.point.law.gap))?;
+    list(group, FIELD_GAP, &scalars(&|c| c.point.field_gap))?;
     list(group, "touching", &contacts.iter().map(|c| u8::from(c.point.law.touching)).collect::<Vec<_>>())?;
     table(group, "displacement", 3, &vectors(&|c| c.displacement))?;
     list(group, "normal_force", &scalars(&|c| c.normal_force))
@@ -233,6 +241,7 @@ fn read_body(file: &File) -> hdf5::Result<SuperElement> {
     let parts = read_parts(file, about.part_matrices)?;
     Ok(SuperElement {
         origin: about.origin,
+        model_text: file.link_exists(MODEL).then(|| read_text(file, MODEL)).transpose()?,
         parts,
         rest: about.rest,
         points: triples(file, "points")?,
@@ -305,8 +314,12 @@ fn read_contacts(group: &Group, pairs: &[ContactPair], texts: &[PairText]) -> hd
     let (position, normal, direction, displacement) = (position?, normal?, direction?, displacement?);
     let [speed, weight, gap, force] = ["speed", "weight", "gap", "normal_force"].map(|name| values::<f64>(group, name));
     let (speed, weight, gap, force, touching) = (speed?, weight?, gap?, force?, values::<u8>(group, "touching")?);
+    let field_gap = match group.link_exists(FIELD_GAP) {
+        true => values::<f64>(group, FIELD_GAP)?,
+        false => vec![0.0; pair.len()],
+    };
     let lengths = [position.len(), normal.len(), direction.len(), displacement.len(), speed.len(), weight.len()];
-    if lengths.iter().chain(&[gap.len(), force.len(), touching.len()]).any(|&n| n != pair.len()) {
+    if lengths.iter().chain(&[gap.len(), field_gap.len(), force.len(), touching.len()]).any(|&n| n != pair.len()) {
         return Err("the lists of the contacts differ in length".into());
     }
     let of = |i: usize| {
@@ -327,6 +340,7 @@ fn read_contacts(group: &Group, pairs: &[ContactPair], texts: &[PairText]) -> hd
             places: vec![Place::Node(i as u32)],
             nodes: vec![i as u32],
             position: position[i],
+            field_gap: field_gap[i],
             law,
         };
         Ok(NodeContact { point, displacement: displacement[i], normal_force: force[i] })
@@ -360,8 +374,8 @@ fn inconsistency(element: &SuperElement) -> Option<String> {
     }
     let numbers = element.contacts.iter().flat_map(|contact| {
         let law = &contact.point.law;
-        let scalars = [law.weight, law.gap, contact.normal_force];
-        [law.normal, contact.point.position, contact.displacement, scalars].concat()
+        let scalars = [law.weight, law.gap, contact.point.field_gap, contact.normal_force];
+        [&law.normal[..], &contact.point.position, &contact.displacement, &scalars].concat()
     });
     if !element.points.as_flattened().iter().copied().chain(numbers).all(f64::is_finite) {
         return Some("points or contacts hold values that are not finite".into());

@@ -57,6 +57,12 @@ impl Functionals {
         self.comm.sum_all(&mut product);
         product
     }
+
+    /// `(I - Psi B) u`, with Psi the first columns of a basis. Collective.
+    pub(super) fn hold(&self, basis: &Block, u: &mut Block) {
+        let moved = self.apply(u);
+        u.axpy(-1.0, &basis.leading_combined(self.len(), &moved, u.n_columns()));
+    }
 }
 
 /// The three rows of a point.

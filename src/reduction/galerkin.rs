@@ -83,6 +83,8 @@ pub struct BasisReport {
     pub coordinates_of_equilibria: usize,
     /// Coordinates that modes gave.
     pub coordinates_of_modes: usize,
+    /// How many of them samples of other moduli and densities gave.
+    pub coordinates_of_parts: usize,
     /// Coordinates that static answers gave.
     pub coordinates_of_static_answers: usize,
     /// Spent on equilibria, s.
@@ -143,6 +145,7 @@ pub fn super_element(
     let Mck { m, c, k, g } = matrices.total();
     Ok(SuperElement {
         origin,
+        model_text: None,
         points: Vec::new(),
         frequencies: Vec::new(),
         mass: m,
@@ -174,7 +177,7 @@ mod tests {
     use crate::equilibrium::{Equilibrium, Path};
     use crate::native::{Comm, Session};
     use crate::reduction::projection::project;
-    use crate::reduction::super_element::Sample;
+    use crate::reduction::testing::origin;
 
     const N: usize = 4;
 
@@ -216,24 +219,6 @@ mod tests {
         interface.points[2].law.tangential = Tangential::Frictionless;
         let points: Vec<usize> = switching_forces(&interface, &[&first, &second]).iter().map(|force| force.0).collect();
         assert_eq!(points, [1, 1, 1, 2]);
-    }
-
-    fn origin() -> Origin {
-        Origin {
-            title: String::new(),
-            model: String::new(),
-            mesh: String::new(),
-            mesh_hash: String::new(),
-            program: String::new(),
-            friction: 0.3,
-            n_dofs: 3 * N,
-            band: [0.0, 7.0],
-            limit: 7.0,
-            friction_damping: false,
-            samples: vec![Sample::at(0.3)],
-            criterion: crate::model::InstabilityCriterion::default(),
-            prestress_friction: None,
-        }
     }
 
     fn at(system: &System, interface: &Interface, mu: f64) -> Equilibrium {

@@ -57,4 +57,15 @@ impl Linear {
         supported.declare_symmetric()?;
         Ok(Linear { stiffness, supported, preload, contacts: contacts.iter().map(|&a| frozen(a)).collect() })
     }
+    /// K with the sliding contacts closed as at the equilibrium, without friction, and with the stiffness of
+    /// viscoelastic materials at the reference frequency.
+    pub(super) fn closed(&self, structure: &Structure, contacts: &[usize]) -> Result<Matrix> {
+        let mut tangents = vec![[[0.0; 3]; 3]; structure.interface.points.len()];
+        contacts.iter().zip(&self.contacts).for_each(|(&a, &tangent)| tangents[a] = tangent);
+        let mut closed = self.stiffness.duplicate()?;
+        structure.viscoelastic().add_to(&mut closed)?;
+        Contacts::new(structure.interface, structure.system)?.add_blocks(tangents.into_iter(), &mut closed)?;
+        closed.declare_symmetric()?;
+        Ok(closed)
+    }
 }

@@ -14,9 +14,14 @@ pub mod functionals;
 pub mod galerkin;
 pub mod layout;
 mod linear;
+pub mod made_for;
 mod member;
 mod pair_text;
+pub mod part_change;
+pub mod part_samples;
 pub mod parts;
 pub mod projection;
 pub mod recovery;
 pub mod super_element;
+#[cfg(test)]
+pub(crate) mod testing;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::interface::{ContactPair, Statistics, TangentialKind};
+use crate::contact::interface::{ArchardWear, ContactPair, Statistics, TangentialKind};
 use crate::contact::{FrictionLaw, Tangential};
 use crate::model::{NormalLaw, is_pressure_table};
 
@@ -23,6 +23,8 @@ pub(super) struct PairText {
     swept: bool,
     area: f64,
     n_contacts: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    wear: Option<ArchardWear>,
     /// Without a user's own function.
     #[serde(default)]
     friction_law: FrictionLaw,
@@ -86,6 +88,7 @@ pub(super) fn pair_texts(element: &SuperElement) -> Vec<PairText> {
         swept: pair.swept,
         area: pair.statistics.area,
         n_contacts: pair.points.len(),
+        wear: pair.wear,
         friction_law: pair.friction_law.storable(),
     };
     element.pairs.iter().map(of).collect()
@@ -113,6 +116,7 @@ pub(super) fn pairs(texts: &[PairText]) -> Vec<ContactPair> {
             kind: text.kind.kind(),
             separation: text.separation,
             swept: text.swept,
+            wear: text.wear,
             points,
             statistics: Statistics { area: text.area, ..Statistics::default() },
         }

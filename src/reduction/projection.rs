@@ -6,7 +6,7 @@ use super::linear::Linear;
 use super::super_element::ViscoelasticTerm;
 use crate::Result;
 use crate::assembly::{System, ViscoelasticStiffness};
-use crate::native::{Block, Matrix, Vector};
+use crate::native::{Block, Matrix, Mck, Vector};
 use crate::stability::Viscoelastic;
 
 /// Columns in one pass over a matrix or factor.
@@ -41,6 +41,12 @@ impl Projected {
         system.viscoelastic.iter().zip(&self.viscoelastic).map(term).collect()
     }
 
+    /// All of them, with the damping.
+    pub fn matrices(self, basis: &Block, system: &System) -> Result<Mck<DMatrix<f64>>> {
+        let g = system.g.as_ref().map(|g| project(DMatrix::zeros(0, 0), basis, g)).transpose()?;
+        Ok(Mck { m: self.mass, c: project_damping(basis, system)?, k: self.stiffness, g })
+    }
+
     /// With the stiffness of viscoelastic materials at the reference frequency.
     pub fn stiffness_at_reference(&self, viscoelastic: &Viscoelastic) -> DMatrix<f64> {
         let terms = viscoelastic.stiffnesses.iter().zip(&self.viscoelastic);
@@ -68,7 +74,7 @@ pub fn project(known: DMatrix<f64>, basis: &Block, a: &Matrix) -> Result<DMatrix
 }
 
 /// `T^T C T`, which gyroscopic terms make unsymmetric.
-pub(super) fn project_damping(basis: &Block, system: &System) -> Result<DMatrix<f64>> {
+fn project_damping(basis: &Block, system: &System) -> Result<DMatrix<f64>> {
     if !system.is_gyroscopic {
         return project(DMatrix::zeros(0, 0), basis, &system.c);
     }

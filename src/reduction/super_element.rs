@@ -21,13 +21,14 @@ use crate::contact::interface::ContactPair;
 use crate::contact::{ContactPoint, GapOperator, Interface};
 use crate::mesh::Numbering;
 use crate::model::viscoelastic::ViscoelasticLaw;
-use crate::model::{InstabilityCriterion, NormalLaw, Rayleigh, names};
+use crate::model::{InstabilityCriterion, NormalLaw};
 use crate::native::{Comm, Matrix};
 use crate::{Error, Result};
 
 use super::craig_bampton::{Reduced, Structure};
+use super::made_for::MadeFor;
 use super::member::Members;
-use super::parts::{PartMatrices, add};
+use super::parts::PartMatrices;
 
 /// Where a super-element comes from.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -65,6 +66,9 @@ pub struct Origin {
     /// Friction coefficient of the equilibrium whose geometric stiffness it has, where it has one.
     #[serde(rename = "prestress_at_friction", default, skip_serializing_if = "Option::is_none")]
     pub prestress_friction: Option<f64>,
+    /// Other moduli and densities that the basis is made for, where there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_for: Option<MadeFor>,
 }
 
 /// A state of the full model at which a Galerkin super-element has its equilibrium and modes.
@@ -119,6 +123,8 @@ pub struct ViscoelasticTerm {
 pub struct SuperElement {
     /// Where it comes from.
     pub origin: Origin,
+    /// The text of the model file, by whose keys a study changes it; of a deck there is none.
+    pub model_text: Option<String>,
     /// Positions of the retained points, m: slaves, masters, loads.
     pub points: Vec<[f64; 3]>,
     /// Frequencies of the fixed-interface modes, Hz.
@@ -182,10 +188,10 @@ impl SuperElement {
         let masters = contacts.iter().map(|NodeContact { point, .. }| {
             std::array::from_fn(|i| point.position[i] - point.law.gap * point.law.normal[i])
         });
-        let points = slaves.chain(masters).chain(loaded.iter().copied()).collect();
         Ok(SuperElement {
             origin,
-            points,
+            model_text: None,
+            points: slaves.chain(masters).chain(loaded.iter().copied()).collect(),
             frequencies: reduced.frequencies.clone(),
             mass: reduced.matrices.m.as_slice().to_vec(),
             damping: reduced.matrices.c.transpose().as_slice().to_vec(),
@@ -201,21 +207,6 @@ impl SuperElement {
             contacts,
             motion: ContactMotion::Nodes,
         })
-    }
-
-    /// Gives a part another Rayleigh damping.
-    ///
-    /// # Errors
-    /// [`Error::Input`] where no part has this name.
-    pub fn set_rayleigh(&mut self, part: &str, rayleigh: Rayleigh) -> Result<()> {
-        let Some(own) = self.parts.iter_mut().find(|own| own.name == part) else {
-            let advice = names::advice(part, self.parts.iter().map(|own| own.name.as_str()));
-            return Err(Error::input(format!("no part of the super-element is called {part:?}. {advice}")));
-        };
-        let before = std::mem::replace(&mut own.rayleigh, rayleigh);
-        add(&mut self.damping, rayleigh.alpha - before.alpha, &own.mass);
-        add(&mut self.damping, rayleigh.beta - before.beta, &own.stiffness);
-        Ok(())
     }
 
     /// Whether the coordinates are those of a Galerkin basis.

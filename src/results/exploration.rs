@@ -1,7 +1,9 @@
 //! What a study of many parameters has found.
 
+use serde::Serialize;
+
 use super::About;
-use crate::explore::{Answers, Gradient, PointResult};
+use crate::explore::{Answers, Gradient, PointModel, PointResult};
 
 /// What a study of many parameters has found.
 #[derive(Debug, Clone)]
@@ -15,6 +17,23 @@ pub struct Exploration {
     pub gradients: Vec<Gradient>,
     /// Probabilities and indices over all points.
     pub answers: Answers,
-    /// The model file of the point with the largest growth rate; none of a super-element.
-    pub worst: Option<String>,
+    /// The model file of the point with the largest growth rate; none of a super-element whose parts do not change.
+    pub worst: Option<PointModel>,
+    /// Reference pairs of the layout that was analysed, where there are any.
+    pub contacts: Option<usize>,
+    /// The random fields, in the order of the study.
+    pub fields: Vec<FieldShare>,
+}
+
+/// What the modes of a random field have of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FieldShare {
+    /// Its name.
+    pub name: String,
+    /// Number of contact points that it covers.
+    pub n_points: usize,
+    /// Number of its modes.
+    pub n_modes: usize,
+    /// The share of its variance that they have together.
+    pub share: f64,
 }

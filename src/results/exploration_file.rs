@@ -227,7 +227,15 @@ mod tests {
         let none = Gradient { slopes: Vec::new(), difference: Difference::None("lost".into()) };
         let gradients = vec![Gradient { slopes, difference: Difference::Central }, none];
         let answers = Answers::new(&study, &points, &gradients, [0.0, 200.0]);
-        let found = Exploration { about: About::default(), points, gradients, answers, worst: None };
+        let found = Exploration {
+            about: About::default(),
+            points,
+            gradients,
+            answers,
+            worst: None,
+            contacts: None,
+            fields: Vec::new(),
+        };
         let path = place.path().join("results.h5");
         write(&path, &study, &found).unwrap();
         assert!(is_one(&path));

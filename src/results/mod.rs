@@ -17,7 +17,7 @@ mod verdict;
 mod wear;
 
 pub use certificate::{Certificate, CertifiedMode};
-pub use exploration::Exploration;
+pub use exploration::{Exploration, FieldShare};
 pub use external::{ExternalMode, ExternalResults, ExternalValue};
 pub use free_modes::{FreeMode, FreeModes, MeasuredComparison};
 pub use samples::spread;

@@ -16,6 +16,9 @@ pub struct Wear {
     /// The contact points of the pairs that wear.
     #[serde(skip)]
     pub points: Vec<WornPoint>,
+    /// Whether a super-element has worn, whose contacts have no faces.
+    #[serde(skip)]
+    pub is_reduced: bool,
     /// Wall-clock time, s.
     pub seconds: f64,
     /// Ranks.

@@ -2,6 +2,7 @@
 
 use crate::Result;
 use crate::assembly::{self, Connectivity, Elements, Joints, Prestress, Solids, System, TurningSolids, element_forces};
+use crate::model::Model;
 use crate::native::Comm;
 
 use super::FullModel;
@@ -54,6 +55,16 @@ impl FullModel {
         let mut system = self.assemble_families(comm, &all)?;
         system.add_constant_load(&families.turning.centrifugal_forces())?;
         Ok(system)
+    }
+
+    /// As [`FullModel::assemble`], with the materials of another model. Collective.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] where a part has no material; PETSc's.
+    pub fn assemble_as(&self, comm: &Comm, other: &Model) -> Result<System> {
+        let solids = Solids::new(other, &self.mesh)?;
+        let turning = TurningSolids::new(solids.clone(), &other.rotations);
+        self.assemble(comm, &Families { solids, turning, joints: &self.joints })
     }
 
     /// As [`FullModel::assemble`], of any families on the brake's nodes, without centrifugal loads. Collective.

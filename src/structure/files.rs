@@ -17,6 +17,16 @@ pub struct ModelFiles {
     pub mesh: Mesh,
     /// What was understood of the deck, where there is one.
     pub deck: Option<DeckSummary>,
+    /// The text of the model file; none where a deck is read.
+    pub text: Option<String>,
+}
+
+/// A model that all ranks have, and its mesh on the root.
+pub(super) struct SharedFiles {
+    pub model: Model,
+    pub mesh: Option<Mesh>,
+    pub deck: Option<DeckSummary>,
+    pub text: Option<String>,
 }
 
 impl ModelFiles {
@@ -37,7 +47,8 @@ impl ModelFiles {
             let known = KnownUnits { system: units, length: None };
             return Ok(ModelFiles::of_deck(deck::read(path, known)?, |_| true));
         }
-        let model = model::read(path)?;
+        let text = model::read_text(path)?;
+        let model = model::parse(&text, path)?;
         if let Err(reason) = File::open(&model.mesh_file) {
             let what = format!("cannot open the mesh {}: {reason}", model.mesh_file.display());
             let advice = "Give its path in [mesh] file, relative to the model file";
@@ -45,7 +56,7 @@ impl ModelFiles {
         }
         if !is_deck(&model.mesh_file) {
             let mesh = mesh::read(&model.mesh_file, model.mesh_unit)?;
-            return Ok(ModelFiles { model, mesh, deck: None });
+            return Ok(ModelFiles { model, mesh, deck: None, text: Some(text) });
         }
         let system = model.unit_system.as_deref().and_then(|name| UnitSystem::named(name).ok());
         let mut converted = deck::read(&model.mesh_file, KnownUnits { system, length: Some(model.mesh_unit) })?;
@@ -56,20 +67,22 @@ impl ModelFiles {
     fn of_deck(converted: Converted, is_of_deck: impl Fn(&model::Contact) -> bool) -> ModelFiles {
         let Converted { mut model, mesh, mut summary } = converted;
         summary.notes.extend(deck::settle(&mut model, &mesh, is_of_deck));
-        ModelFiles { model, mesh, deck: Some(summary) }
+        ModelFiles { model, mesh, deck: Some(summary), text: None }
     }
 
     /// The root reads, and gives all ranks the model; it keeps the mesh. Collective.
     ///
     /// # Errors
     /// As [`ModelFiles::read`], on all ranks.
-    pub fn shared(comm: &Comm, path: &Path) -> Result<(Model, Option<Mesh>, Option<DeckSummary>)> {
-        let root =
-            || ModelFiles::read(path, None).map(|ModelFiles { model, mesh, deck }| (Some((model, deck)), Some(mesh)));
+    pub(super) fn shared(comm: &Comm, path: &Path) -> Result<SharedFiles> {
+        let root = || {
+            let ModelFiles { model, mesh, deck, text } = ModelFiles::read(path, None)?;
+            Ok((Some((model, deck, text)), Some(mesh)))
+        };
         let (known, mesh) = comm.agree(if comm.is_root() { root() } else { Ok((None, None)) })?;
         let known = if comm.size() > 1 { comm.broadcast_value(0, known) } else { known };
-        let (model, deck) = known.ok_or_else(|| Error::input(format!("{}: no model", path.display())))?;
-        Ok((model, mesh, deck))
+        let (model, deck, text) = known.ok_or_else(|| Error::input(format!("{}: no model", path.display())))?;
+        Ok(SharedFiles { model, mesh, deck, text })
     }
 }
 

@@ -19,7 +19,7 @@ use crate::{Error, Result};
 use super::contact_surface::{ContactSurface, Fields};
 use super::digest::digest_of_text;
 use super::distribution::distribute;
-use super::files::ModelFiles;
+use super::files::{ModelFiles, SharedFiles};
 use super::{digest, free_motions, pairs, plausibility};
 
 /// A model with its mesh and contact interface. Each rank has its piece of the mesh ([`Piece`]), and all that is on
@@ -45,6 +45,8 @@ pub struct FullModel {
     pub joints: Joints,
     /// What was understood of the deck, where there is one.
     pub deck: Option<DeckSummary>,
+    /// The text of the model file as it was read; none where a deck was read, or nothing.
+    pub text: Option<String>,
 }
 
 /// An overlap of contact surfaces below this is rounding of the mesh, m: machined surfaces are rougher.
@@ -71,14 +73,14 @@ impl FullModel {
         finished: &mut dyn FnMut(&str),
         change: impl Fn(Model, Option<Mesh>) -> Result<(Model, Option<Mesh>)>,
     ) -> Result<FullModel> {
-        let (model, mesh, deck) = ModelFiles::shared(comm, path)?;
+        let SharedFiles { model, mesh, deck, text } = ModelFiles::shared(comm, path)?;
         let (model, mesh) = comm.agree(change(model, mesh))?;
         finished("reading model and mesh");
         let piece = distribute(comm, || Ok(mesh.expect("the root has read it")))?;
         finished("dividing the mesh");
         let full = comm.agree(FullModel::new(model, piece, comm))?;
         finished("finding contact points");
-        Ok(FullModel { deck, ..full })
+        Ok(FullModel { deck, text, ..full })
     }
 
     /// Reads a brake, with so many reference pairs in place of the contact points of the sliding pairs where
@@ -129,7 +131,8 @@ impl FullModel {
         let loads = assembly::loads(&model, &mesh, &sets)?;
         let weights = assembly::weights(&model, &mesh, &nodes, &sets)?;
         let joints = Joints::new(&model, &mesh, &nodes, &sets, team)?;
-        Ok(FullModel { model, mesh, nodes, interface, loads, weights, held, prescribed, joints, deck: None })
+        let (deck, text) = (None, None);
+        Ok(FullModel { model, mesh, nodes, interface, loads, weights, held, prescribed, joints, deck, text })
     }
 
     /// Refuses a brake of which a part is unconstrained, or constrained by contacts that nothing presses. Collective.
@@ -168,6 +171,18 @@ impl FullModel {
         let what = "a displacement other than zero cannot be reduced. Press the parts together by a [[load]]";
         let moved = self.model.fixes.iter().find(|fix| fix.moves());
         moved.map_or(Ok(()), |fix| Err(self.model.error(fix.place, format_args!("fix of {:?}: {what}", fix.nodes))))
+    }
+
+    /// Refuses a brake with factors on a normal law, of which a super-element keeps one a pair.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the line of the contact.
+    pub fn require_pair_laws(&self) -> Result<()> {
+        let what = "a super-element has one normal law a pair. Leave out stiffness_factor";
+        let scaled = self.model.contacts.iter().find(|contact| contact.stiffness_field.is_some());
+        let refuse =
+            |own: &model::Contact| Err(self.model.error(own.place, format_args!("contact {:?}: {what}", own.name)));
+        scaled.map_or(Ok(()), refuse)
     }
 
     /// Refuses a brake of which a part has no mass, so that it has no modes.
@@ -283,15 +298,17 @@ impl FullModel {
         super::friction::own_friction(&self.interface, &self.model.file).map(|own| own.unwrap_or(0.0))
     }
 
-    /// SHA-256 of the model's file, with its gap fields where it has any, and of the mesh's; the root has them.
-    /// Collective.
+    /// SHA-256 of the model's file, with its fields of gaps and factors where it has any, and of the mesh's; the root
+    /// has them. Collective.
     ///
     /// # Errors
     /// The system's, with the path.
     pub fn digests(&self, comm: &Comm) -> Result<[String; 2]> {
         let both = || {
-            let fields = self.model.contacts.iter().filter_map(|contact| contact.gap_field.as_ref());
-            let fields = fields.map(|field| digest(&field.file)).collect::<Result<Vec<String>>>()?;
+            let gaps = self.model.contacts.iter().filter_map(|contact| Some(&contact.gap_field.as_ref()?.file));
+            let factors =
+                self.model.contacts.iter().filter_map(|contact| Some(&contact.stiffness_field.as_ref()?.file));
+            let fields = gaps.chain(factors).map(|file| digest(file)).collect::<Result<Vec<String>>>()?;
             let model = digest(&self.model.file)?;
             let model = if fields.is_empty() { model } else { digest_of_text(&(model + &fields.concat())) };
             Ok([model, digest(&self.model.mesh_file)?])

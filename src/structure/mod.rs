@@ -43,7 +43,7 @@ pub use rigid_motions::RigidMotions;
 pub use surface_motion::{SurfaceMotion, coordinates};
 pub use variants::ModelVariants;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::assembly::{Prestress, System};
 use crate::contact::{Interface, Response};
@@ -69,6 +69,8 @@ pub struct StructureOptions {
     pub contacts: Option<usize>,
     /// Of a super-element: the normal law of its contacts.
     pub law: Option<NormalLaw>,
+    /// Of a super-element: a gap field (CSV) of its contacts in place of its model's.
+    pub gap: Option<PathBuf>,
     /// Of a super-element: a factor on its loads.
     pub load_factor: f64,
     /// A factor on the normal stiffness of the swept pairs.
@@ -89,7 +91,14 @@ pub struct PartDamping {
 impl Default for StructureOptions {
     /// The structure as its file has it.
     fn default() -> Self {
-        StructureOptions { contacts: None, law: None, load_factor: 1.0, contact_stiffness: 1.0, damping: Vec::new() }
+        StructureOptions {
+            contacts: None,
+            law: None,
+            gap: None,
+            load_factor: 1.0,
+            contact_stiffness: 1.0,
+            damping: Vec::new(),
+        }
     }
 }
 
@@ -114,8 +123,9 @@ impl Structure {
         if is_hdf5(path) {
             return Ok(Structure::Reduced(Box::new(ReducedModel::read(comm, path, options)?)));
         }
-        if options.law.is_some() || options.load_factor != 1.0 || !options.damping.is_empty() {
-            let what = "--law, --pressure and --damping are for super-elements";
+        let StructureOptions { law, gap, load_factor, damping, .. } = options;
+        if law.is_some() || gap.is_some() || *load_factor != 1.0 || !damping.is_empty() {
+            let what = "--law, --gap, --pressure and --damping are for super-elements";
             return Err(Error::input(format!("{what}; {} is a model, which has them in its file", path.display())));
         }
         let mut full = FullModel::read_with_contacts(comm, path, options.contacts)?;
@@ -207,6 +217,17 @@ impl Structure {
         match self {
             Structure::Full(full) => full.friction_values(given),
             Structure::Reduced(reduced) => reduced.friction_values(given),
+        }
+    }
+
+    /// The friction coefficient of the swept pairs in the file; 0 where no pair slides.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where they differ.
+    pub fn own_friction(&self) -> Result<f64> {
+        match self {
+            Structure::Full(full) => full.own_friction(),
+            Structure::Reduced(reduced) => reduced.own_friction(),
         }
     }
 

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::assembly::System;
 use crate::contact::{Interface, Response};
+use crate::model::GapField;
 use crate::native::{Block, Comm};
 use crate::reduction::file;
 use crate::reduction::recovery::OuterSurface;
@@ -11,6 +12,7 @@ use crate::reduction::super_element::SuperElement;
 use crate::results::{About, ContactFaces, Part};
 use crate::{Error, Result};
 
+use super::digest::digest_of_text;
 use super::{FullModel, PartDamping, StructureOptions, contact_surface, digest, nodal_basis, pairs};
 
 /// A super-element under a law and loads.
@@ -45,13 +47,13 @@ impl ReducedModel {
             let advice = "the laws of the model. Multiply their stiffness by --contact-stiffness";
             return Err(Error::input(format!("{}: {what} {advice}", path.display())));
         }
-        ReducedModel::with(path, element, surface, options)
+        comm.agree(ReducedModel::with(path, element, surface, options))
     }
 
     /// A super-element under some options.
     ///
     /// # Errors
-    /// [`Error::Input`] where it does not have a part whose damping is given.
+    /// [`Error::Input`] where it does not have a part whose damping is given, or a gap field is of another surface.
     pub fn with(
         file: &Path,
         mut element: SuperElement,
@@ -63,6 +65,7 @@ impl ReducedModel {
         }
         let mut interface = element.interface(options.law.clone());
         interface.scale_contact_stiffness(options.contact_stiffness);
+        options.gap.as_ref().map_or(Ok(()), |gap| set_gap_field(&mut interface, gap))?;
         Ok(ReducedModel { place: file.to_owned(), element, surface, interface, options: options.clone() })
     }
 
@@ -70,6 +73,11 @@ impl ReducedModel {
     pub fn new(file: &Path, element: SuperElement, surface: OuterSurface) -> ReducedModel {
         let (interface, options) = (element.interface(None), StructureOptions::default());
         ReducedModel { place: file.to_owned(), element, surface, interface, options }
+    }
+
+    /// Its file.
+    pub fn file(&self) -> &Path {
+        &self.place
     }
 
     /// Refuses a super-element that cannot be compared with its full model.
@@ -97,6 +105,8 @@ impl ReducedModel {
         let what = format!("{}: the super-element was made of another mesh. Give its model file", path.display());
         comm.agree(if is_other { Err(Error::input(what)) } else { Ok(()) })?;
         full.interface.scale_contact_stiffness(self.options.contact_stiffness);
+        let gap = self.options.gap.as_ref();
+        comm.agree(gap.map_or(Ok(()), |gap| set_gap_field(&mut full.interface, gap)))?;
         for PartDamping { part, rayleigh } in &self.options.damping {
             full.model.parts.iter_mut().filter(|own| own.name == *part).for_each(|own| own.rayleigh = *rayleigh);
         }
@@ -109,7 +119,7 @@ impl ReducedModel {
 
     pub(super) fn about(&self, comm: &Comm) -> Result<About> {
         let origin = &self.element.origin;
-        let file = if comm.is_root() && self.place.is_file() { digest(&self.place) } else { Ok(String::new()) };
+        let file = if comm.is_root() && self.place.is_file() { self.digest() } else { Ok(String::new()) };
         let is_damped = origin.friction_damping
             || self.element.structural_damping.is_some()
             || !self.element.viscoelastic.is_empty()
@@ -129,6 +139,13 @@ impl ReducedModel {
         })
     }
 
+    /// SHA-256 of the file, with its gap field where it has one. Not collective.
+    fn digest(&self) -> Result<String> {
+        let own = digest(&self.place)?;
+        let with = |gap: &PathBuf| Ok(digest_of_text(&(own.clone() + &digest(gap)?)));
+        self.options.gap.as_ref().map_or(Ok(own.clone()), with)
+    }
+
     pub(super) fn band(&self, given: Option<[f64; 2]>) -> Result<[f64; 2]> {
         let band = given.unwrap_or(self.element.origin.band);
         if let Some(warning) = self.element.require_band(band)? {
@@ -139,6 +156,10 @@ impl ReducedModel {
 
     pub(super) fn friction_values(&self, given: Option<&[f64]>) -> Result<Vec<f64>> {
         super::friction::friction_values(given, &[self.element.origin.friction], &self.interface, &self.place)
+    }
+
+    pub(super) fn own_friction(&self) -> Result<f64> {
+        super::friction::own_friction(&self.interface, &self.place).map(|own| own.unwrap_or(0.0))
     }
 
     pub(super) fn assemble(&self, comm: &Comm) -> Result<System> {
@@ -175,4 +196,18 @@ impl ReducedModel {
         };
         system.dofs.owned_nodes().flat_map(of).map(coordinate).collect()
     }
+}
+
+/// Gives the contacts that wear, or those that slide where none wears, the gaps of a table in place of those of their
+/// model's gap field.
+fn set_gap_field(interface: &mut Interface, file: &Path) -> Result<()> {
+    let wears = interface.pairs.iter().any(|pair| pair.wear.is_some());
+    for pair in interface.pairs.iter().filter(|pair| if wears { pair.wear.is_some() } else { pair.is_sliding() }) {
+        let points = &mut interface.points[pair.points.clone()];
+        let places: Vec<[f64; 3]> = points.iter().map(|point| point.position).collect();
+        let gaps = GapField::read(file, &pair.name).and_then(|field| field.at(&places));
+        let gaps = gaps.map_err(|what| Error::input(format!("--gap, contact {:?}: {what}", pair.name)))?;
+        points.iter_mut().zip(gaps).for_each(|(point, gap)| point.set_field_gap(gap));
+    }
+    Ok(())
 }

@@ -8,10 +8,11 @@ use nalgebra::DMatrix;
 use crate::Result;
 use crate::assembly::{Elements, Solids, System};
 use crate::equilibrium::Equilibrium;
-use crate::model::LoadKind;
+use crate::model::{self, LoadKind, Model};
 use crate::native::{Block, Comm, Mck};
 use crate::reduction::craig_bampton::{self, Costs, Event, Structure};
 use crate::reduction::galerkin;
+use crate::reduction::part_samples::{PartSamples, SampleReport};
 use crate::reduction::parts::{MatricesByPart, PartMatrices, Place};
 use crate::reduction::projection;
 use crate::reduction::recovery::OuterSurface;
@@ -33,18 +34,36 @@ impl FullModel {
         limit: f64,
         progress: &mut dyn FnMut(Event),
     ) -> Result<(SuperElement, OuterSurface, Costs)> {
+        let (element, surface, costs, _) =
+            self.reduce_for(comm, (system, equilibrium), limit, &PartSamples::none(), progress)?;
+        Ok((element, surface, costs))
+    }
+
+    /// As [`FullModel::reduce`], in a basis that holds at other moduli and densities as well. Collective.
+    ///
+    /// # Errors
+    /// See [`craig_bampton::reduce_for`].
+    pub fn reduce_for(
+        &self,
+        comm: &Comm,
+        (system, equilibrium): (&System, &Equilibrium),
+        limit: f64,
+        samples: &PartSamples,
+        progress: &mut dyn FnMut(Event),
+    ) -> Result<(SuperElement, OuterSurface, Costs, SampleReport)> {
         let loaded: Vec<_> = self.loaded_names().into_iter().filter_map(|name| self.mesh.node_set(name)).collect();
         let reference = TAU * self.model.band[1];
         let structure = Structure { system, interface: &self.interface, equilibrium, loaded: &loaded, reference };
-        let reduced = craig_bampton::reduce(&structure, limit, progress)?;
+        let reduced = craig_bampton::reduce_for(&structure, limit, samples, progress)?;
         let centres: Vec<[f64; 3]> = loaded.iter().map(|nodes| self.centre(nodes)).collect();
         let origin = comm.agree(self.origin(comm, system, equilibrium.friction, limit))?;
         let parts = self.project_parts(&reduced.basis)?;
         let mut element = SuperElement::new(origin, &structure, &reduced, parts, &centres)?;
         self.freeze_prestress(&mut element, system, equilibrium, &reduced.basis)?;
+        element.model_text = self.own_text().map(str::to_owned);
         let boundary = self.boundary(comm, system);
         let surface = OuterSurface::new(boundary, &self.mesh.parts, system, &reduced.basis)?;
-        Ok((element, surface, reduced.costs))
+        Ok((element, surface, reduced.costs, reduced.samples))
     }
 
     /// The brake in a basis, with all of its contact points and modes up to `limit` (Hz) at the samples. The surface's
@@ -63,7 +82,8 @@ impl FullModel {
         let origin = comm.agree(self.origin(comm, system, self.own_friction()?, limit))?;
         let origin = Origin { samples: samples.to_vec(), ..origin };
         let matrices = self.matrices_by_part(basis)?;
-        let element = galerkin::super_element(system, &self.interface, basis, matrices, origin)?;
+        let mut element = galerkin::super_element(system, &self.interface, basis, matrices, origin)?;
+        element.model_text = self.own_text().map(str::to_owned);
         let surface = OuterSurface::new(self.boundary(comm, system), &self.mesh.parts, system, basis)?;
         Ok((element, surface))
     }
@@ -118,6 +138,15 @@ impl FullModel {
         Place { nodes: &self.nodes, held: &self.held, basis }
     }
 
+    /// The text of the model file as it was read, where the model has its materials and contacts from there: not from a
+    /// deck, and not from a caller.
+    pub fn own_text(&self) -> Option<&str> {
+        let text = self.text.as_deref()?;
+        let own = model::parse(text, &self.model.file).ok()?;
+        let materials = |model: &Model| model.parts.iter().map(|part| part.material.clone()).collect::<Vec<_>>();
+        (materials(&own) == materials(&self.model)).then_some(text)
+    }
+
     /// Fixed-interface modes are kept below this, Hz: the end of the model's reduction band, else twice its band's.
     pub fn reduction_limit(&self) -> f64 {
         self.model.reduction.as_ref().map_or(2.0 * self.model.band[1], |reduction| reduction.band[1])
@@ -149,7 +178,29 @@ impl FullModel {
             friction_damping: self.model.friction_damping,
             criterion: self.model.criterion,
             prestress_friction: None,
+            made_for: None,
             samples: Vec::new(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::native::Session;
+
+    /// What comes to the model file's place during a reduction is not the model that is reduced.
+    #[test]
+    fn the_text_is_that_of_the_model_as_it_was_read() {
+        let (comm, place) = (Session::start(&[]).unwrap(), tempfile::tempdir().unwrap());
+        let text = std::fs::read_to_string("tests/data/pads_on_disc.toml").unwrap();
+        std::fs::copy("tests/data/pads_on_disc.msh", place.path().join("pads_on_disc.msh")).unwrap();
+        let file = place.path().join("brake.toml");
+        std::fs::write(&file, &text).unwrap();
+        let mut brake = FullModel::read(&comm, &file).unwrap();
+        std::fs::write(&file, text.replace("friction = 0.4", "friction = 0.6")).unwrap();
+        assert_eq!(brake.own_text(), Some(text.as_str()));
+        brake.model.parts[0].material.density *= 2.0;
+        assert_eq!(brake.own_text(), None, "a caller has changed the model");
     }
 }

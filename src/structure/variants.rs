@@ -9,7 +9,7 @@ use crate::{Error, Result};
 
 use super::FullModel;
 use super::distribution::distribute;
-use super::files::ModelFiles;
+use super::files::{ModelFiles, SharedFiles};
 
 /// A model file and this rank's piece of its mesh, of which brakes with other numbers are made.
 pub struct ModelVariants {
@@ -30,14 +30,11 @@ impl ModelVariants {
     /// # Errors
     /// [`Error::Input`] for whatever is wrong with the files, and for decks.
     pub fn read(comm: &Comm, file: &Path) -> Result<ModelVariants> {
-        let (model, mesh, deck) = ModelFiles::shared(comm, file)?;
-        if deck.is_some() {
+        let SharedFiles { model, mesh, text, .. } = ModelFiles::shared(comm, file)?;
+        let Some(text) = text else {
             let what = "a study changes the numbers of a model file with a Gmsh mesh, and this is a deck or has one";
             return Err(Error::input(format!("{}: {what}. Write it as one by squeal convert", file.display())));
-        }
-        let text = std::fs::read_to_string(file).map_err(Error::io(file));
-        let text = comm.agree(if comm.is_root() { text } else { Ok(String::new()) })?;
-        let text = comm.broadcast_value(0, text);
+        };
         let piece = distribute(comm, || Ok(mesh.expect("the root has read it")))?;
         comm.agree(model.check_against(&piece.mesh))?;
         let swept = model.swept_contacts(&piece.mesh).into_iter().map(|i| model.contacts[i].name.clone()).collect();
@@ -51,6 +48,14 @@ impl ModelVariants {
     /// [`Error::Input`] for whatever is wrong with the text, and a part that can move freely.
     pub fn brake(&self, comm: &Comm, text: &str, contacts: Option<usize>) -> Result<FullModel> {
         let model = comm.agree(model::parse(text, &self.file))?;
+        self.brake_of(comm, model, contacts)
+    }
+
+    /// As [`ModelVariants::brake`], of a model in place of its text. Collective: all ranks fail together.
+    ///
+    /// # Errors
+    /// As [`ModelVariants::brake`].
+    pub fn brake_of(&self, comm: &Comm, model: Model, contacts: Option<usize>) -> Result<FullModel> {
         let mut full = comm.agree(FullModel::new(model, self.piece.clone(), comm))?;
         contacts.map_or(Ok(()), |n| full.reduce_contacts(n))?;
         full.require_constrained(comm)?;

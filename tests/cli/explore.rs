@@ -14,7 +14,7 @@ use squeal::{Session, Structure};
 
 use crate::support::data;
 use crate::support::pad_on_disc::PadOnDisc;
-use crate::support::program::{Finished, Place, assert_refused, swap};
+use crate::support::program::{Finished, Place, assert_refused, end, signal, start, swap};
 
 /// A study of the small pad on its disc.
 const STUDY: &str = "model = \"brake.toml\"\nband = [0, 60000]\nbin = 10000\n\
@@ -26,7 +26,7 @@ const STUDY: &str = "model = \"brake.toml\"\nband = [0, 60000]\nbin = 10000\n\
 const ADAPTIVE: &str = "model = \"brake.toml\"\nband = [0, 60000]\nfollow = false\n\
     [design]\nkind = \"adaptive\"\npoints = 14\nstart = 4\nresolution = 0.04\nseed = 0\n\
     [parameter.mu]\nkey = \"friction\"\nuniform = [0.0, 0.9]\n";
-const EXPLORE: [&str; 4] = ["explore", "explore.toml", "-o", "run"];
+pub const EXPLORE: [&str; 4] = ["explore", "explore.toml", "-o", "run"];
 
 fn place_with(study: &str) -> Place {
     let place = Place::blocks();
@@ -35,27 +35,27 @@ fn place_with(study: &str) -> Place {
 }
 
 #[track_caller]
-fn done(finished: Finished) -> Finished {
+pub fn done(finished: Finished) -> Finished {
     assert_eq!(finished.code, 0, "{}{}", finished.out, finished.err);
     finished
 }
 
 /// Rows of a table by the names of its columns.
-fn table(place: &Place, file: &str) -> Vec<BTreeMap<String, String>> {
+pub fn table(place: &Place, file: &str) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(place.path(file)).unwrap();
     reader.deserialize().map(Result::unwrap).collect()
 }
 
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+pub fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column}: {:?}", row[column]))
 }
 
-fn lambda(row: &BTreeMap<String, String>) -> Complex64 {
+pub fn lambda(row: &BTreeMap<String, String>) -> Complex64 {
     Complex64::new(number(row, "growth_rate_per_s"), std::f64::consts::TAU * number(row, "frequency_hz"))
 }
 
 #[track_caller]
-fn assert_same(found: Complex64, expected: Complex64) {
+pub fn assert_same(found: Complex64, expected: Complex64) {
     assert!((found - expected).norm() < 1e-9 * expected.norm(), "{found} and {expected}");
 }
 
@@ -89,7 +89,7 @@ fn every_point_is_what_stability_finds_on_the_model_file_with_its_numbers() {
          [parameter.load]\nkey = \"load.*.force\"\nfactor = true\nuniform = [0.3, 2]\n",
     );
     let study = squeal::explore::read(&place.path("explore.toml")).unwrap();
-    let found = explore(&comm, &study, None, &mut ()).unwrap().unwrap();
+    let found = explore(&comm, &study, None, None, &mut ()).unwrap().unwrap();
     assert_eq!(found.points.len(), 17);
     for PointResult { values, outcome } in &found.points {
         let Outcome::Modes(modes) = outcome else { panic!("{outcome:?}") };
@@ -199,7 +199,11 @@ fn a_point_that_fails_is_recorded_and_the_study_continues() {
 
 /// Points that an unfinished study has finished.
 fn n_done(place: &Place) -> usize {
-    let folder = ".run.unfinished/.resume";
+    n_done_of(place, "run")
+}
+
+fn n_done_of(place: &Place, run: &str) -> usize {
+    let folder = &format!(".{run}.unfinished/.resume");
     let is_point = |name: &String| name.starts_with("point-");
     if place.path(folder).exists() { place.list(folder).iter().filter(|name| is_point(name)).count() } else { 0 }
 }
@@ -248,12 +252,10 @@ fn assert_killed_ends_the_same(study: &str, file: &str) {
     assert!(!place.path(".run.unfinished").exists());
 }
 
-#[test]
-fn two_ranks_find_what_one_finds() {
-    let place = place_with(STUDY);
-    done(place.run(&EXPLORE));
-    done(place.run_on(2, &["explore", "explore.toml", "-o", "two"]));
-    let [one, two] = ["run/modes.csv", "two/modes.csv"].map(|file| table(&place, file));
+/// That two folders have the same modes.
+#[track_caller]
+pub fn assert_same_modes(place: &Place, folders: [&str; 2]) {
+    let [one, two] = folders.map(|folder| table(place, &format!("{folder}/modes.csv")));
     assert!(one.len() == two.len() && !one.is_empty());
     for (a, b) in one.iter().zip(&two) {
         assert_same(lambda(b), lambda(a));
@@ -261,6 +263,82 @@ fn two_ranks_find_what_one_finds() {
             |row: &BTreeMap<String, String>| ["point", "mode", "unstable", "nominal_mode"].map(|c| row[c].clone());
         assert_eq!(labels(a), labels(b));
     }
+}
+
+/// Points that the ranks solve together, and points that each rank solves alone, the third of which fails.
+#[test]
+fn groups_of_ranks_find_what_one_rank_finds() {
+    let mut list = "mu,load,density\n".to_owned();
+    for (i, mu) in ["0.25", "0.8", "3", "0.7", "0.3", "0.5", "0.75"].iter().enumerate() {
+        list += &format!("{mu},{},{}\n", 1.3 - 0.1 * i as f64, 6500 + 150 * i);
+    }
+    let place = place_with(
+        &STUDY.replace("kind = \"sobol\"\npoints = 6\nseed = 2\n", "kind = \"list\"\nfile = \"points.csv\"\n"),
+    );
+    place.write("points.csv", list);
+    done(place.run(&EXPLORE));
+    done(place.run_on(2, &["explore", "explore.toml", "-o", "together"]));
+    let explore = ["explore", "explore.toml", "-v", "--ranks-per-point", "1", "-o", "apart"];
+    let finished = done(place.run_on(2, &explore));
+    assert!(finished.err.contains("8/8 point"), "the first rank reports the points of both: {}", finished.err);
+    for folder in ["together", "apart"] {
+        assert_same_modes(&place, ["run", folder]);
+        let failures =
+            table(&place, &format!("{folder}/points.csv")).iter().map(|row| row["failure"].clone()).collect();
+        let failures: Vec<String> = failures;
+        assert!(failures[3].contains("friction") && failures.iter().filter(|text| !text.is_empty()).count() == 1);
+        // Rows are in the order of their changes, some of which are rounding.
+        let [one, own] = ["run", folder].map(|folder| {
+            let mut rows = table(&place, &format!("{folder}/gradients.csv"));
+            rows.sort_by_key(|row| (row["nominal_mode"].clone(), row["parameter"].clone()));
+            rows
+        });
+        assert_eq!(one.len(), own.len());
+        for (a, b) in one.iter().zip(&own) {
+            let change =
+                |row| Complex64::new(number(row, "growth_rate_change_per_s"), number(row, "frequency_change_hz"));
+            assert!((change(a) - change(b)).norm() < 1e-5 * change(a).norm() + 1e-6, "{a:?} {b:?}");
+        }
+    }
+    let refused = place.run_on(2, &["explore", "explore.toml", "--ranks-per-point", "3"]);
+    assert_refused(&refused, &["the 2 ranks of this run cannot be divided into groups of 3", "one of 1, 2"]);
+}
+
+/// A signal to one rank stops all groups; a killed rank ends them. The study ends on one rank, although files are
+/// damaged.
+#[test]
+fn a_study_continues_on_other_ranks() {
+    let place = place_with(&STUDY.replace("points = 6", "points = 12"));
+    done(place.run(&EXPLORE));
+    let on_two = ["explore", "explore.toml", "--ranks-per-point", "1", "-o", "groups"];
+    let run_until = |n: usize, name: &str| {
+        let mut child = start(&place, 2, &on_two);
+        let patience = Instant::now() + Duration::from_secs(200);
+        while n_done_of(&place, "groups") < n && child.try_wait().unwrap().is_none() {
+            assert!(Instant::now() < patience, "{n} points do not come");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let ranks = std::fs::read_to_string(format!("/proc/{0}/task/{0}/children", child.id())).unwrap();
+        signal(name, ranks.split_whitespace().last().unwrap().parse().unwrap());
+        end(child)
+    };
+    let stopped = run_until(2, "TERM");
+    assert!(stopped.err.contains("The same command continues to groups"), "{}", stopped.err);
+    let n = n_done_of(&place, "groups");
+    assert_ne!(run_until(n + 1, "KILL").code, 0);
+    assert!((n + 1..13).contains(&n_done_of(&place, "groups")) && !place.path("groups").exists());
+    // What is damaged is computed again.
+    let folder = ".groups.unfinished/.resume";
+    let last = place.list(folder).into_iter().filter(|name| name.starts_with("point-")).max().unwrap();
+    for name in [last.as_str(), "gradients.bin"] {
+        place.write(&format!("{folder}/{name}"), [1]);
+    }
+    let finished = done(place.run(&["explore", "explore.toml", "-o", "groups"]));
+    assert!(finished.err.contains("an earlier run has finished"), "{}", finished.err);
+    assert!(finished.err.contains(&format!("{last} cannot be read")), "{}", finished.err);
+    assert_same_modes(&place, ["run", "groups"]);
+    let n_rows = |folder: &str| table(&place, &format!("{folder}/gradients.csv")).len();
+    assert!(n_rows("groups") == n_rows("run") && n_rows("run") > 0);
 }
 
 #[test]
@@ -296,8 +374,118 @@ fn a_super_element_has_friction_loads_and_contact_stiffness() {
     assert_eq!(one.len(), two.len());
     one.iter().zip(&two).for_each(|(a, b)| assert_same(lambda(a), lambda(b)));
     assert!(one.iter().zip(&two).all(|(a, b)| a["nominal_mode"] == b["nominal_mode"]));
-    place.write("explore.toml", swap(study, "\"pressure\"", "\"material.iron.young\""));
-    assert_refused(&place.run(&EXPLORE[..2]), &["a super-element has no key", "friction, pressure, contact_stiffness"]);
+    place.write("explore.toml", swap(study, "\"pressure\"", "\"load.*.force.z\""));
+    assert_refused(&place.run(&EXPLORE[..2]), &["cannot follow the key load.*.force.z", "It can follow friction"]);
+    place.write("explore.toml", swap(study, "\"pressure\"", "\"material.iron.yuong\""));
+    assert_refused(&place.run(&EXPLORE[..2]), &["explore.toml", "Did you mean \"young\""]);
+}
+
+/// A study that changes the parts of a pad on its disc, of a layout.
+const PARTS: &str = "model = \"brake.toml\"\ncontacts = 4\nband = [0, 60000]\nfollow = false\n\
+    [design]\nkind = \"sobol\"\npoints = 4\nseed = 5\n\
+    [parameter.mu]\nkey = \"friction\"\nuniform = [0.2, 0.5]\n\
+    [parameter.E]\nkey = \"material.soft.young\"\nuniform = [6.3e9, 12.6e9]\n\
+    [parameter.rho]\nkey = \"material.soft.density\"\nfactor = true\nuniform = [0.7, 1.4]\n\
+    [parameter.beta]\nkey = \"part.disc.rayleigh.beta\"\nuniform = [0, 3e-7]\n";
+
+/// The small pad of a soft material, and its disc with Rayleigh damping.
+fn soft_pad() -> Place {
+    let damping = "rayleigh = { alpha = 5.0, beta = 1e-7 }\n[part.pad]";
+    let soft = "[material.soft]\nyoung = 9e9\npoisson = 0.25\ndensity = 2600\n[part.disc]";
+    let of_pad = |text: String| {
+        let text = swap(&text, "band = [0, 20000]", "band = [0, 60000]");
+        let text = swap(&swap(&text, "[part.pad]", damping), "[part.disc]", soft);
+        swap(&text, "[part.pad]\nmaterial = \"iron\"", "[part.pad]\nmaterial = \"soft\"")
+    };
+    Place::with_blocks(of_pad, &PadOnDisc::default())
+}
+
+/// The eigenvalues at all points of a study.
+fn explored(place: &Place, study: &str) -> (Vec<Complex64>, Finished) {
+    place.write("explore.toml", study);
+    let finished = done(place.run(&[&EXPLORE[..], &["--force"]].concat()));
+    (table(place, "run/modes.csv").iter().map(lambda).collect(), finished)
+}
+
+/// Largest distance of the eigenvalues of the study of a super-element from others, and what `reduce` and `explore`
+/// print.
+fn reduced_error(place: &Place, options: &[&str], study: &str, expected: &[Complex64]) -> (f64, Finished, Finished) {
+    let reduce = ["reduce", "brake.toml", "-o", "brake.se.h5", "--force"];
+    let made = done(place.run(&[&reduce[..], options].concat()));
+    let (found, finished) = explored(place, &swap(&swap(study, "brake.toml", "brake.se.h5"), "contacts = 4\n", ""));
+    assert_eq!(found.len(), expected.len());
+    let errors = found.iter().zip(expected).map(|(found, expected)| (found - expected).norm() / expected.norm());
+    (errors.fold(0.0, f64::max), made, finished)
+}
+
+/// One study of a layout and of its super-element: eigenvalues to 2e-4. A super-element that was made for the model
+/// alone is worse, and its study says so. The worst point is a model file of the layout.
+#[test]
+fn a_study_of_a_layout_is_one_of_its_super_element() {
+    let place = soft_pad();
+    let (expected, _) = explored(&place, PARTS);
+    let layout = ["--contacts", "4", "--limit", "120000"];
+    let (plain, _, finished) = reduced_error(&place, &layout, PARTS, &expected);
+    assert!(finished.err.contains("part \"pad\"") && finished.err.contains("squeal reduce --for"), "{}", finished.err);
+    place.write("for.toml", PARTS);
+    let options = [&layout[..], &["--for", "for.toml"]].concat();
+    let (sampled, made, finished) = reduced_error(&place, &options, PARTS, &expected);
+    println!("{plain:.1e} without and {sampled:.1e} with samples\n{}", made.out);
+    assert!(sampled < 2e-4 && sampled < 0.5 * plain, "{plain} {sampled}\n{}", made.out);
+    assert!(
+        made.out.contains("made for the parts of for.toml") && made.out.contains("stiffness of pad 0.7"),
+        "{}",
+        made.out
+    );
+    assert!(!finished.err.contains("warning"), "{}", finished.err);
+    assert!(finished.out.contains("squeal stability run/worst.toml --contacts 4"), "{}", finished.out);
+    done(place.run(&["stability", "run/worst.toml", "--contacts", "4", "-o", "worst"]));
+}
+
+/// The worst point has the friction coefficient of the reduction, not the model file's.
+#[test]
+fn the_worst_point_of_a_super_element_has_its_friction_coefficient() {
+    let place = soft_pad();
+    done(place.run(&[
+        "reduce",
+        "brake.toml",
+        "-o",
+        "brake.se.h5",
+        "--contacts",
+        "4",
+        "--limit",
+        "240000",
+        "--friction",
+        "0.25",
+    ]));
+    let of_pad = "[parameter.E]\nkey = \"material.soft.young\"\nuniform = [6.3e9, 12.6e9]\n";
+    let head = PARTS.split("[parameter").next().unwrap().replace("contacts = 4\n", "");
+    let (found, finished) = explored(&place, &(swap(&head, "brake.toml", "brake.se.h5") + of_pad));
+    let command = finished.out.split("squeal stability run/worst.toml").nth(1).expect("a worst point");
+    assert!(command.starts_with(" --contacts 4"), "{command}");
+    done(place.run(&["stability", "run/worst.toml", "--contacts", "4", "-o", "worst"]));
+    let worst = table(&place, "worst/modes.csv");
+    assert!(!worst.is_empty() && worst.iter().all(|mode| number(mode, "friction") == 0.25));
+    for mode in worst.iter().map(lambda) {
+        let nearest = found.iter().map(|own| (own - mode).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-3 * mode.norm(), "{mode}: {nearest}");
+    }
+}
+
+/// The same of full contact and a Galerkin super-element: eigenvalues to 1e-3.
+#[test]
+fn a_study_of_full_contact_is_one_of_its_galerkin_super_element() {
+    let place = soft_pad();
+    let study = swap(PARTS, "contacts = 4\n", "");
+    let (expected, _) = explored(&place, &study);
+    place.write("for.toml", &study);
+    let plain = ["--galerkin", "--samples", "0.2,0.35,0.5"];
+    let study = study + "# contacts = 4\n";
+    let (without, ..) = reduced_error(&place, &plain, &study, &expected);
+    let options = [&plain[..], &["--for", "for.toml"]].concat();
+    let (sampled, made, _) = reduced_error(&place, &options, &study, &expected);
+    println!("{without:.1e} without and {sampled:.1e} with samples\n{}", made.out);
+    assert!(sampled < 1e-3 && sampled < 0.2 * without, "{without} {sampled}\n{}", made.out);
 }
 
 #[test]
@@ -330,6 +518,8 @@ fn an_adaptive_design_finds_the_boundary_on_any_number_of_ranks() {
     let json: serde_json::Value = serde_json::from_str(&place.read("run/summary.json")).unwrap();
     assert_eq!(json["unstable"]["n_points"], 4);
     done(place.run_on(2, &["explore", "explore.toml", "-o", "two"]));
-    let two = table(&place, "two/points.csv");
-    assert!(points.len() == two.len() && points.iter().zip(&two).all(|(a, b)| a["mu"] == b["mu"]));
+    done(place.run_on(2, &["explore", "explore.toml", "-o", "apart", "--ranks-per-point", "1"]));
+    for two in ["two/points.csv", "apart/points.csv"].map(|file| table(&place, file)) {
+        assert!(points.len() == two.len() && points.iter().zip(&two).all(|(a, b)| a["mu"] == b["mu"]));
+    }
 }

@@ -93,7 +93,7 @@ fn statics_and_reduction_have_documents_too() {
         &reduced,
         "title model mesh mesh_sha256 program friction dofs_of_the_model band_hz limit_hz friction_damping unstable contacts \
          retained_points fixed_interface_modes residual_modes coordinates constraint_seconds fixed_interface_seconds fixed_interface_solves \
-         projection_seconds seconds file",
+         projection_seconds sample_seconds seconds file",
     );
     assert_eq!((&reduced["contacts"], &reduced["file"]), (&Value::from(4), &Value::from("brake.se.h5")));
 }

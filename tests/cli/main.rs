@@ -5,6 +5,7 @@ mod browser;
 mod command_line;
 mod deck;
 mod explore;
+mod explore_fields;
 mod explore_page;
 mod external_matrices;
 mod joints;

@@ -152,7 +152,7 @@ fn what_a_super_element_does_not_hold_is_refused() {
         finished.err
     );
     let finished = place.run(&["stability", "brake.toml", "--law", "linear:1e9", "--output", "model"]);
-    assert_refused(&finished, &["--law, --pressure and --damping are for super-elements"]);
+    assert_refused(&finished, &["--law, --gap, --pressure and --damping are for super-elements"]);
 }
 
 #[test]

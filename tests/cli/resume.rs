@@ -10,53 +10,20 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::program::{Finished, Place, mpirun, swap};
+use crate::support::program::{Finished, Place, end, signal, start, swap};
 use squeal::results::{Results, Value, file};
 
 /// A sweep in which two modes couple between the friction values asked for.
 const SWEEP: [&str; 6] = ["stability", "brake.toml", "--band=0:1500", "--friction=0.2,0.4", "-o", "run"];
 
-/// Starts the program without waiting for it.
-fn start(place: &Place, ranks: usize, arguments: &[&str]) -> Child {
-    let program = assert_cmd::cargo::cargo_bin("squeal");
-    let mut command = if ranks == 1 {
-        Command::new(program)
-    } else {
-        let mpirun = mpirun(ranks, &program);
-        let mut command = Command::new(mpirun.get_program());
-        command.args(mpirun.get_args());
-        mpirun.get_envs().for_each(|(name, value)| {
-            command.env(name, value.unwrap_or_default());
-        });
-        command
-    };
-    command.args(arguments).current_dir(place.path("")).env("OPENBLAS_NUM_THREADS", "1").env("RUST_BACKTRACE", "0");
-    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
-}
-
 /// Values that an unfinished run has finished.
 fn n_done(place: &Place) -> usize {
-    let done = |name: &String| name.starts_with("value-");
-    let folder = place.path(".run.unfinished/.resume");
-    if folder.exists() { place.list(".run.unfinished/.resume").iter().filter(|name| done(name)).count() } else { 0 }
+    place.n_kept("value-")
 }
 
 /// Waits until so many values are done, or the run is over.
 fn wait_for(place: &Place, child: &mut Child, n: usize) {
-    let patience = Instant::now() + Duration::from_secs(200);
-    while n_done(place) < n && child.try_wait().unwrap().is_none() {
-        assert!(Instant::now() < patience, "{n} values do not come");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-}
-
-fn signal(name: &str, process: u32) {
-    let sent = Command::new("bash").args(["-c", &format!("kill -{name} {process}")]).status().unwrap();
-    assert!(sent.success());
-}
-
-fn end(child: Child) -> Finished {
-    child.wait_with_output().unwrap().into()
+    place.wait_for(child, "value-", n);
 }
 
 fn results(place: &Place, folder: &str) -> Results {
@@ -261,7 +228,7 @@ fn ctrl_c_ends_after_the_friction_at_hand() {
         let Finished { code: found, out, err } = end(child);
         assert_eq!((found, out.as_str()), (code, ""), "{err}");
         for part in [
-            "stopping after this value, or within five seconds; a second signal",
+            "stopping after this value, or within four seconds; a second signal",
             "stopped after friction coefficient 0.",
             "The same command goes on",
         ] {

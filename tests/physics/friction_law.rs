@@ -78,12 +78,14 @@ fn belt(friction_law: FrictionLaw) -> Interface {
         kind: TangentialKind::Sliding,
         separation: true,
         swept: true,
+        wear: None,
         points: 0..1,
         statistics: Statistics::default(),
     };
     let mut gap_operator = GapOperator::new();
     gap_operator.push(&[0], &[[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]]);
-    let points = vec![ContactPoint { pair: 0, places: vec![], nodes: vec![0], position: [0.0; 3], law }];
+    let points =
+        vec![ContactPoint { pair: 0, places: vec![], nodes: vec![0], position: [0.0; 3], field_gap: 0.0, law }];
     Interface { pairs: vec![pair], points, gap_operator }
 }
 

@@ -14,11 +14,14 @@ mod galerkin;
 mod gravity;
 mod joints;
 mod manufactured_solution;
+mod part_factors;
 mod prestress;
 mod reduced_terms;
 mod rotation;
 mod structural_damping;
 mod super_element;
+mod super_element_laws;
 #[path = "../support/mod.rs"]
 mod support;
 mod viscoelastic;
+mod wear;

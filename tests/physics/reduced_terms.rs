@@ -4,6 +4,7 @@
 //! Goal and, in brackets, measured: see each test.
 
 use crate::damped_pad::{FRICTION, solved, text};
+use crate::super_element::largest_error;
 use crate::support::{assert_close, brake, pressed_pad};
 use crate::viscoelastic::MATERIALS;
 use num_complex::Complex64;
@@ -27,7 +28,7 @@ fn model(folder: &TempDir, text: &str) -> FullModel {
 }
 
 /// Eigenvalues of a structure at a friction value, and what explains the first mode.
-fn solution(comm: &Comm, structure: &Structure, friction: f64) -> (Vec<Complex64>, Vec<Source>) {
+pub fn solution(comm: &Comm, structure: &Structure, friction: f64) -> (Vec<Complex64>, Vec<Source>) {
     let (system, prestress) = (structure.assemble(comm).unwrap(), structure.prestress().unwrap());
     let mut sweep = Sweep::of(structure, &system, prestress.as_ref()).unwrap();
     let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
@@ -39,14 +40,8 @@ fn solution(comm: &Comm, structure: &Structure, friction: f64) -> (Vec<Complex64
     (band.modes.iter().map(|mode| mode.lambda).collect(), sources)
 }
 
-/// Largest distance of eigenvalues over their modulus.
-fn largest_error(found: &[Complex64], exact: &[Complex64]) -> f64 {
-    assert_eq!(found.len(), exact.len());
-    found.iter().zip(exact).map(|(f, e)| (f - e).norm() / e.norm()).fold(0.0, f64::max)
-}
-
 /// The super-element of a full model as its file has it, made at [`FRICTION`].
-fn reduced(comm: &Comm, folder: &TempDir, full: &Structure, limit: f64) -> Structure {
+pub fn reduced(comm: &Comm, folder: &TempDir, full: &Structure, limit: f64) -> Structure {
     let Structure::Full(model) = full else { panic!("a model") };
     let system = full.assemble(comm).unwrap();
     let equilibrium = Sweep::new(&system, &model.interface, false).unwrap().equilibrium(FRICTION, &mut ()).unwrap();
@@ -57,7 +52,7 @@ fn reduced(comm: &Comm, folder: &TempDir, full: &Structure, limit: f64) -> Struc
 }
 
 /// With reference contacts.
-fn with_contacts(folder: &TempDir, text: &str) -> Structure {
+pub fn with_contacts(folder: &TempDir, text: &str) -> Structure {
     let mut model = model(folder, text);
     model.reduce_contacts(N_CONTACTS).unwrap();
     Structure::Full(Box::new(model))

@@ -6,8 +6,7 @@ use num_complex::Complex64;
 use squeal::Result;
 use squeal::analysis::Sweep;
 use squeal::assembly::System;
-use squeal::contact::law::{FrictionFactor, FrictionFunction};
-use squeal::contact::{FrictionLaw, Interface, Response, Status};
+use squeal::contact::{Interface, Response, Status};
 use squeal::equilibrium::Equilibrium;
 use squeal::equilibrium::{LabelledFactor, PairForces};
 use squeal::model::NormalLaw;
@@ -52,27 +51,27 @@ band = [0, 30000]
 "#;
 
 /// The whole text.
-fn model() -> String {
+pub fn model() -> String {
     format!("{}{OWN}", pressed_pad::SLIDING)
 }
 
 const N_CONTACTS: usize = 4;
-const FRICTION: f64 = 0.4;
+pub const FRICTION: f64 = 0.4;
 const BAND: [f64; 2] = [0.0, 30000.0];
 
 /// The brake with its reduced contacts.
-fn blocks(text: &str) -> FullModel {
+pub fn blocks(text: &str) -> FullModel {
     let mut brake = brake(text, pressed_pad::mesh([3, 3, 1]));
     brake.interface = contacts::reduce(&brake.model, &brake.mesh, &brake.interface, N_CONTACTS).unwrap();
     brake
 }
 
 /// The full model at its equilibrium.
-struct Full {
-    brake: FullModel,
+pub struct Full {
+    pub brake: FullModel,
     system: System,
-    equilibrium: Equilibrium,
-    eigenvalues: Vec<Complex64>,
+    pub equilibrium: Equilibrium,
+    pub eigenvalues: Vec<Complex64>,
 }
 
 fn eigenvalues(sweep: &mut Sweep, equilibrium: &Equilibrium) -> Vec<Complex64> {
@@ -82,11 +81,11 @@ fn eigenvalues(sweep: &mut Sweep, equilibrium: &Equilibrium) -> Vec<Complex64> {
 }
 
 impl Full {
-    fn new(comm: &Comm, text: &str, friction: f64) -> Full {
+    pub fn new(comm: &Comm, text: &str, friction: f64) -> Full {
         Full::of(comm, blocks(text), friction)
     }
 
-    fn of(comm: &Comm, brake: FullModel, friction: f64) -> Full {
+    pub fn of(comm: &Comm, brake: FullModel, friction: f64) -> Full {
         let system = brake.assemble(comm, &brake.families().unwrap()).unwrap();
         let mut sweep = Sweep::new(&system, &brake.interface, brake.model.friction_damping).unwrap();
         let equilibrium = sweep.equilibrium(friction, &mut ()).unwrap();
@@ -95,7 +94,7 @@ impl Full {
         Full { brake, system, equilibrium, eigenvalues }
     }
 
-    fn reduce(&self, limit: f64) -> (Reduced, SuperElement) {
+    pub fn reduce(&self, limit: f64) -> (Reduced, SuperElement) {
         let loaded = [self.brake.mesh.node_set("piston_z1").unwrap()];
         let Full { brake, system, equilibrium, .. } = self;
         let interface = &brake.interface;
@@ -115,6 +114,7 @@ impl Full {
             samples: Vec::new(),
             criterion: brake.model.criterion,
             prestress_friction: None,
+            made_for: None,
         };
         let element = SuperElement::new(origin, &structure, &reduced, Vec::new(), &[[0.0; 3]]).unwrap();
         (reduced, element)
@@ -122,7 +122,7 @@ impl Full {
 }
 
 /// Equilibrium and eigenvalues of a super-element.
-fn analyse(
+pub fn analyse(
     comm: &Comm,
     element: &SuperElement,
     law: Option<NormalLaw>,
@@ -131,7 +131,7 @@ fn analyse(
     analyse_under(comm, element, element.interface(law), friction)
 }
 
-fn analyse_under(
+pub fn analyse_under(
     comm: &Comm,
     element: &SuperElement,
     interface: Interface,
@@ -146,7 +146,7 @@ fn analyse_under(
 }
 
 /// Largest distance of eigenvalues over their modulus.
-fn largest_error(found: &[Complex64], exact: &[Complex64]) -> f64 {
+pub fn largest_error(found: &[Complex64], exact: &[Complex64]) -> f64 {
     assert_eq!(found.len(), exact.len());
     found.iter().zip(exact).map(|(f, e)| (f - e).norm() / e.norm()).fold(0.0, f64::max)
 }
@@ -368,94 +368,6 @@ fn constraint_modes_hold_rigid_motions_with_their_mass_and_inertia() {
         let force = times(reduced.matrices.k.as_slice()).iter().fold(0.0, |m: f64, f| m.max(f.abs()));
         assert!(force < 1e-10 * scale, "{force} of {scale}");
     }
-}
-
-/// At its creation point the reduced equilibrium has the full one's force at every contact, whatever the law of its
-/// contacts.
-#[test]
-fn every_contact_force_is_reproduced_under_any_law() {
-    let comm = Session::start(&[]).unwrap();
-    let full = Full::new(&comm, &model(), FRICTION);
-    let (_, element) = full.reduce(60e3);
-    let pair = &full.brake.interface.pairs[0];
-    let exact: Vec<[f64; 3]> = full.equilibrium.responses[pair.points.clone()].iter().map(|r| r.force).collect();
-    let cubic = NormalLaw::Cubic { k1: 8e8, k3: 5e19 };
-    let table = NormalLaw::Table { rows: vec![[0.0, 0.0], [1e-8, 20.0], [1e-6, 4e3]] };
-    for law in [None, Some(NormalLaw::Linear { stiffness: 3e9 }), Some(cubic), Some(table)] {
-        let (interface, equilibrium, _) = analyse(&comm, &element, law.clone(), FRICTION);
-        let xi = interface.points.iter().map(|point| point.law.correction.abs()).fold(0.0, f64::max);
-        let error = equilibrium.responses.iter().zip(&exact).flat_map(|(found, exact)| {
-            let size = exact.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
-            [0, 1, 2].map(|i| (found.force[i] - exact[i]).abs() / size)
-        });
-        let error = error.fold(0.0, f64::max);
-        println!("{law:?}: largest xi {xi:.1e} m, largest error of a force {error:.1e}");
-        assert!(error < 1e-8, "{law:?}: {error}");
-        assert_eq!(law.is_some(), xi > 1e-9);
-    }
-}
-
-/// `phi = 1 / ((1 + v) (1 + q/q_0))`, with q_0 near the pressure of the pad.
-#[derive(Debug)]
-struct Falling;
-
-impl FrictionFunction for Falling {
-    fn factor(&self, speed: f64, pressure: f64) -> FrictionFactor {
-        let q_0 = 4e6;
-        let value = 1.0 / ((1.0 + speed) * (1.0 + pressure / q_0));
-        FrictionFactor { value, by_speed: -value / (1.0 + speed), by_pressure: -value / (q_0 + pressure) }
-    }
-}
-
-/// With every mode kept, a super-element has its model's eigenvalues under a friction law of a user's own, and its
-/// forces under any normal law. Its file does not contain the law, so that it has to be given again.
-#[test]
-fn a_users_friction_law_acts_in_the_super_element_as_in_its_model() {
-    let comm = Session::start(&[]).unwrap();
-    let mut brake = blocks(&model().replace("band = ", "friction_damping = true\nband = "));
-    let law = FrictionLaw::user(Falling);
-    brake.interface.set_friction_law("disc / pad", law.clone()).unwrap();
-    let full = Full::of(&comm, brake, FRICTION);
-    let (_, element) = full.reduce(f64::INFINITY);
-    let (_, _, found) = analyse(&comm, &element, None, FRICTION);
-    let error = largest_error(&found, &full.eigenvalues);
-    let (constant, exact) = (Full::new(&comm, &model(), FRICTION).eigenvalues[0], full.eigenvalues[0]);
-    let effect = (constant - exact).norm() / exact.norm();
-    println!("largest error {error:.1e}, effect of the law on the first mode {effect:.1e}");
-    // Pressures, on which the law depends, are those of equilibria to 1e-9.
-    assert!(error < 1e-9 && effect > 1e-4, "{error} {effect}");
-
-    let (_, equilibrium, _) = analyse(&comm, &element, Some(NormalLaw::Cubic { k1: 8e8, k3: 5e19 }), FRICTION);
-    for (found, exact) in equilibrium.responses.iter().zip(&full.equilibrium.responses) {
-        assert_close("friction force", found.force[1], exact.force[1], 1e-8);
-    }
-
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("blocks.se.h5");
-    let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
-    file::write(&path, &element, &surface, None).unwrap();
-    let (read, _) = file::read(&path).unwrap();
-    let mut interface = read.interface(None);
-    let refused = read.assemble(&comm, &interface, 1.0).err().unwrap().to_string();
-    assert!(refused.starts_with("contact \"disc / pad\": its friction law was a program's own"), "{refused}");
-    assert!(interface.set_friction_law("disc", law.clone()).unwrap_err().to_string().contains("disc / pad"));
-    interface.set_friction_law("disc / pad", law).unwrap();
-    let (_, _, again) = analyse_under(&comm, &read, interface, FRICTION);
-    assert!(largest_error(&again, &found) < 1e-12);
-}
-
-#[test]
-fn the_file_of_a_super_element_contains_the_friction_curve() {
-    let comm = Session::start(&[]).unwrap();
-    let table = "{ by = [\"speed\"], table = [[0.4, 0], [0.3, 2]] }";
-    let (_, element) =
-        Full::new(&comm, &model().replace("friction = 0.4", &format!("friction = {table}")), FRICTION).reduce(60e3);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("blocks.se.h5");
-    let surface = OuterSurface { parts: vec![], nodes: vec![], triangles: vec![], part: vec![], basis: vec![] };
-    file::write(&path, &element, &surface, None).unwrap();
-    let laws = [&element, &file::read(&path).unwrap().0].map(|element| format!("{:?}", element.pairs[0].friction_law));
-    assert!(laws[0].contains("Table") && laws[0] == laws[1], "{laws:?}");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The real program, alone and under mpirun, in a folder of its own.
 
 use std::path::{Path, PathBuf};
-use std::process::Output;
-use std::time::Duration;
+use std::process::{Child, Command as Process, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
 use assert_cmd::cargo::cargo_bin;
@@ -102,6 +102,22 @@ impl Place {
         names
     }
 
+    /// Number of files with this beginning that an unfinished run into the folder `run` keeps.
+    pub fn n_kept(&self, beginning: &str) -> usize {
+        let folder = ".run.unfinished/.resume";
+        let is_kept = |name: &String| name.starts_with(beginning);
+        if self.path(folder).exists() { self.list(folder).iter().filter(|name| is_kept(name)).count() } else { 0 }
+    }
+
+    /// Waits until a run keeps so many of these files, or is over.
+    pub fn wait_for(&self, child: &mut Child, beginning: &str, n: usize) {
+        let patience = Instant::now() + Duration::from_secs(200);
+        while self.n_kept(beginning) < n && child.try_wait().unwrap().is_none() {
+            assert!(Instant::now() < patience, "{n} files {beginning} do not come");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
     /// The program, ready for arguments.
     pub fn command(&self) -> Command {
         let mut command = Command::new(cargo_bin("squeal"));
@@ -118,6 +134,35 @@ impl Place {
         let mut command = mpirun(ranks, &cargo_bin("squeal"));
         command.current_dir(self.folder.path()).args(arguments).output().unwrap().into()
     }
+}
+
+/// Starts the program without waiting for it.
+pub fn start(place: &Place, ranks: usize, arguments: &[&str]) -> Child {
+    let program = cargo_bin("squeal");
+    let mut command = if ranks == 1 {
+        Process::new(program)
+    } else {
+        let mpirun = mpirun(ranks, &program);
+        let mut command = Process::new(mpirun.get_program());
+        command.args(mpirun.get_args());
+        mpirun.get_envs().for_each(|(name, value)| {
+            command.env(name, value.unwrap_or_default());
+        });
+        command
+    };
+    command.args(arguments).current_dir(place.path("")).env("OPENBLAS_NUM_THREADS", "1").env("RUST_BACKTRACE", "0");
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Sends a signal to a process.
+pub fn signal(name: &str, process: u32) {
+    let sent = Process::new("bash").args(["-c", &format!("kill -{name} {process}")]).status().unwrap();
+    assert!(sent.success());
+}
+
+/// The end of a run that was started.
+pub fn end(child: Child) -> Finished {
+    child.wait_with_output().unwrap().into()
 }
 
 /// The message with which the program refused its input: exit code 2, nothing printed, and one error.

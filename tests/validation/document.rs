@@ -6,8 +6,8 @@ use squeal::native::{Comm, Session};
 
 use super::table::{Case, document};
 use super::{
-    annulus, cattaneo_mindlin, contact_patch, hertz, konter, minimal_models, nafems_fv52, pads_on_disc, sandwich_beam,
-    td1, wear,
+    annulus, cattaneo_mindlin, contact_patch, hertz, konter, minimal_models, nafems_fv52, oberst_beam, pads_on_disc,
+    sandwich_beam, td1, wear,
 };
 
 /// What the document begins with.
@@ -22,7 +22,7 @@ where a number is no longer the one below.
 ";
 
 /// The cases in the order of the document, but for TD-1.
-const CASES: [fn(&Comm) -> Vec<Case>; 10] = [
+const CASES: [fn(&Comm) -> Vec<Case>; 11] = [
     minimal_models::cases,
     pads_on_disc::cases,
     nafems_fv52::cases,
@@ -33,6 +33,7 @@ const CASES: [fn(&Comm) -> Vec<Case>; 10] = [
     konter::cases,
     wear::cases,
     sandwich_beam::cases,
+    oberst_beam::cases,
 ];
 
 /// Writes the document. `make validation` runs it; it takes minutes.

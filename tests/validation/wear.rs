@@ -22,6 +22,7 @@ use squeal::analysis::{WearGoal, WearOptions, wear};
 use squeal::mesh::Mesh;
 use squeal::native::{Comm, Session};
 use squeal::results::WearEnd;
+use squeal::structure::Structure;
 
 const MODEL: &str = r#"
 [material.iron]
@@ -73,8 +74,8 @@ fn worn(comm: &Comm, law: &str, goal: WearGoal) -> squeal::results::Wear {
     let mut mesh = Mesh::default();
     ring("disc", [3, 20, 1], [0.09, 0.14], [-0.012, 0.0], &mut mesh);
     ring("pad", [3, 24, 1], RADII, [0.0, 0.01], &mut mesh);
-    let mut brake = brake(&MODEL.replace("LAW", law), mesh);
-    wear(comm, &mut brake, &WearOptions { friction: None, goal }, None, &mut ()).unwrap()
+    let mut brake = Structure::Full(Box::new(brake(&MODEL.replace("LAW", law), mesh)));
+    wear(comm, &mut brake, &WearOptions { friction: None, goal, output: None }, &mut ()).unwrap()
 }
 
 fn annular_pad(comm: &Comm) -> Case {

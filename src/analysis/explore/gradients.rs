@@ -13,12 +13,13 @@ use num_complex::Complex64;
 
 use crate::analysis::observer::{Event, Observer};
 use crate::explore::{Difference, Gradient};
-use crate::native::{Block, Comm};
+use crate::native::Block;
 use crate::stability::{Approximation, QuadraticProblem};
 use crate::{Error, Result};
 
 use super::Run;
-use super::point::{at_equilibrium, is_of_point};
+use super::groups::Groups;
+use super::point::{at_equilibrium, of_point};
 
 /// The nominal modes, with what turns a change of the matrices into one of the eigenvalues.
 pub struct NominalVectors {
@@ -78,7 +79,8 @@ impl NominalVectors {
 }
 
 impl Run<'_> {
-    /// The derivatives by each parameter, from the displacements of the nominal equilibrium. Collective.
+    /// The derivatives by parameters that the groups share out, with their numbers, from the displacements of the
+    /// nominal equilibrium. Collective in the group.
     ///
     /// # Errors
     /// Those that are not of a point.
@@ -87,40 +89,43 @@ impl Run<'_> {
         vectors: &NominalVectors,
         displacements: &[f64],
         observer: &mut dyn Observer,
-    ) -> Result<Vec<Gradient>> {
-        let nominal = &self.values[0];
+    ) -> Result<Vec<(usize, Gradient)>> {
+        let (nominal, comm) = (&self.values[0], &self.groups.own);
+        let is_own = |i: usize| i % self.groups.n_groups() == self.groups.number();
         let mut gradients = Vec::new();
-        for (i, parameter) in self.study.parameters.iter().enumerate() {
+        for (i, parameter) in self.study.parameters.iter().enumerate().filter(|(i, _)| is_own(*i)) {
             let Some(step) = parameter.step(nominal[i]) else {
                 let difference = Difference::None("the parameter is 0 everywhere".to_owned());
-                gradients.push(Gradient { slopes: Vec::new(), difference });
+                gradients.push((i, Gradient { slopes: Vec::new(), difference }));
                 continue;
             };
             let mut forms = |sign: f64| {
                 observer.event(Event::Stage(&format!("derivatives by {}", parameter.name)));
                 let mut values = nominal.clone();
                 values[i] += sign * step;
-                let found = self.subject.structure(&self.comm, &values).and_then(|(structure, friction)| {
+                let found = self.subject.structure(comm, &values).and_then(|(structure, friction)| {
                     let brake = (&structure, friction);
-                    at_equilibrium(&self.comm, brake, Some(displacements), observer, |sweep, equilibrium, _| {
+                    at_equilibrium(comm, brake, Some(displacements), observer, |sweep, equilibrium, _| {
                         sweep.linearise(equilibrium, |problem| vectors.forms_of(problem))
                     })
                 });
-                unless_fatal(&self.comm, found)
+                unless_fatal(&self.groups, found)
             };
             let (below, above) = (forms(-1.0)?, forms(1.0)?);
-            gradients.push(vectors.gradient(step, below, above));
+            gradients.push((i, vectors.gradient(step, below, above)));
         }
         Ok(gradients)
     }
 }
 
 /// A result whose error is that of a point, or the error that ends the study.
-fn unless_fatal<T>(comm: &Comm, found: Result<T>) -> Result<Result<T>> {
+fn unless_fatal<T>(groups: &Groups, found: Result<T>) -> Result<Result<T>> {
     match found {
         // A reason is the same on all ranks.
-        Err(error) if is_of_point(comm, &error) => Ok(Err(Error::input(comm.broadcast_value(0, error.to_string())))),
-        Err(error) => Err(error),
+        Err(error) => {
+            let reason = of_point(groups, error)?.to_string();
+            Ok(Err(Error::input(groups.own.broadcast_value(0, reason))))
+        }
         Ok(found) => Ok(Ok(found)),
     }
 }
@@ -166,9 +171,10 @@ mod tests {
     #[test]
     fn an_error_of_a_point_continues_and_a_full_disk_ends_the_study() {
         let comm = Session::start(&[]).unwrap();
-        assert!(unless_fatal::<()>(&comm, Err(Error::input("density"))).unwrap().is_err());
-        assert!(unless_fatal(&comm, Ok(1)).unwrap().is_ok());
+        let groups = Groups::new(&comm, 1).unwrap();
+        assert!(unless_fatal::<()>(&groups, Err(Error::input("density"))).unwrap().is_err());
+        assert!(unless_fatal(&groups, Ok(1)).unwrap().is_ok());
         let full = Error::io("disc".as_ref())(std::io::ErrorKind::StorageFull.into());
-        assert!(unless_fatal::<()>(&comm, Err(full)).is_err());
+        assert!(unless_fatal::<()>(&groups, Err(full)).is_err());
     }
 }

@@ -2,18 +2,24 @@
 //!
 //! The nominal point is the first one; then come the points of the design, each with a system and factors of its own,
 //! so that a point depends on nothing but its values and the state that it starts from: an equilibrium nearby. So a
-//! study that was interrupted ends with the same numbers.
+//! study that was interrupted ends with the same numbers. Groups of ranks solve points at the same time ([`groups`]).
 
 mod checkpoint;
+mod fields;
+mod files;
 mod gradients;
+mod groups;
+mod nominal;
 mod point;
+mod reduced_subject;
+mod rounds;
 mod subject;
 
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::explore::{Answers, Distribution, Outcome, PointResult, Refinement, Study, standing_alone};
+use crate::explore::{Answers, Distribution, Refinement, Study, standing_alone, with_tables, write_tables};
 use crate::hdf::is_hdf5;
 use crate::native::Comm;
 use crate::output::explore::{Document, PAGE, WORST, write};
@@ -22,10 +28,12 @@ use crate::results::{About, Exploration};
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer, stop_signal};
-use super::start::{Output, about, announce, identity};
+use super::start::{Earlier, N_RANKS, Output, about, announce, identity, open_folder};
 
-use checkpoint::Points;
-use point::{NominalModes, Request, is_of_point, solve};
+use checkpoint::{Points, UNIT};
+use groups::Groups;
+use point::Request;
+use rounds::require_progress;
 use subject::Subject;
 
 /// A folder that a study writes, with its page.
@@ -38,46 +46,50 @@ pub struct ExploreOutput {
 }
 
 /// Finds the modes at the points of a study, follows them to the nominal point, and computes the probability of squeal
-/// and the influence of each parameter. A point that fails is recorded with its reason. With `output` the study is
-/// written to a folder, and continues where an earlier run has ended. Only the root gets the result. Collective.
+/// and the influence of each parameter. A point that fails is recorded with its reason. Groups of `ranks_per_point`
+/// ranks solve points at the same time; where it is not given, all ranks solve each point together, or each has points
+/// of its own where the study is of a super-element. With `output` the study is written to a folder, and continues
+/// where an earlier run has ended, also on other ranks. Only the root gets the result. Collective.
 ///
 /// ```no_run
 /// use squeal::analysis::explore;
 ///
 /// let comm = squeal::Session::start(&[])?;
 /// let study = squeal::explore::read("explore.toml".as_ref())?;
-/// let found = explore(&comm, &study, None, &mut ())?.expect("this is the root");
+/// let found = explore(&comm, &study, None, None, &mut ())?.expect("this is the root");
 /// println!("unstable with a probability of {:.2}", found.answers.unstable.value);
 /// # Ok::<(), squeal::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Input`] for a study, model or folder that cannot be used; [`Error::Interrupted`]; the system's.
+/// [`Error::Input`] for a study, model or folder that cannot be used, and for ranks that cannot be divided so;
+/// [`Error::Interrupted`]; the system's.
 pub fn explore(
     comm: &Comm,
     study: &Study,
+    ranks_per_point: Option<usize>,
     output: Option<&ExploreOutput>,
     observer: &mut dyn Observer,
 ) -> Result<Option<Exploration>> {
-    let found = Run::new(comm, study, output.map(|own| &own.output))?.run(output, observer)?;
+    let groups = groups_for(comm, study, ranks_per_point)?;
+    let found = Run::new(groups, study, output.map(|own| &own.output))?.run(output, observer)?;
     Ok(comm.is_root().then_some(found))
 }
 
-/// Displacements are kept of so many bytes.
-const STATES_BYTES: usize = 1 << 30;
-/// Displacements are kept of at most so many points.
-const MAX_STATES: usize = 1000;
-
-/// A point with this rank's displacements.
-type Solved = (PointResult, Option<Vec<f64>>);
+/// The groups that a study works in. The few dofs of a super-element are not worth sharing.
+fn groups_for(world: &Comm, study: &Study, ranks_per_point: Option<usize>) -> Result<Groups> {
+    let is_reduced = is_hdf5(&study.model);
+    let n_ranks = ranks_per_point.unwrap_or(if is_reduced { 1 } else { world.size() });
+    if is_reduced && n_ranks > 1 {
+        let what = "is a super-element, of which each rank has points of its own. Leave --ranks-per-point out";
+        return Err(Error::input(format!("{} {what}", study.model.display())));
+    }
+    Groups::new(world, n_ranks)
+}
 
 /// A study under way.
 struct Run<'s> {
-    /// All ranks.
-    world: Comm,
-    /// The ranks of a point: all of them, or each alone where the study is of a super-element, whose few dofs are not
-    /// worth sharing.
-    comm: Comm,
+    groups: Groups,
     study: &'s Study,
     subject: Subject<'s>,
     about: About,
@@ -93,13 +105,12 @@ struct Run<'s> {
 
 impl<'s> Run<'s> {
     /// Reads and checks everything before anything is computed. Collective.
-    fn new(world: &Comm, study: &'s Study, output: Option<&Output>) -> Result<Run<'s>> {
-        let open = |output: &Output| Folder::open(&output.folder, output.force).map(Some);
-        let folder = world.agree(output.filter(|_| world.is_root()).map_or(Ok(None), open))?;
-        let comm = if is_hdf5(&study.model) { world.alone() } else { world.clone() };
-        let subject = world.agree(Subject::read(&comm, study))?;
+    fn new(groups: Groups, study: &'s Study, output: Option<&Output>) -> Result<Run<'s>> {
+        let (world, comm) = (&groups.world, &groups.own);
+        let folder = open_folder(world, output)?;
+        let subject = groups.agree(Subject::read(comm, study))?;
         let nominal = subject.nominal();
-        let (structure, _) = subject.structure(&comm, &nominal)?;
+        let (structure, _) = groups.agree(subject.structure(comm, &nominal))?;
         structure.require_mass()?;
         // The root alone prints a warning.
         let band = world.agree(if world.is_root() { structure.band(study.band) } else { Ok([0.0; 2]) })?;
@@ -107,36 +118,35 @@ impl<'s> Run<'s> {
         let criterion = study.criterion.unwrap_or(structure.criterion());
         let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
         let design = study.design.points(&distributions, &nominal)?;
-        let about = About { n_ranks: world.size(), band, criterion, ..about(&comm, &structure, output)? };
+        let about = groups.agree(about(comm, &structure, output))?;
+        let about = About { n_ranks: world.size(), band, criterion, ..about };
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
         let request = Request { band, criterion, follow: study.follow, gradients: study.gradients };
         let scales = scales(&values);
         let refinement = Refinement::new(study)?;
-        Ok(Run { world: world.clone(), comm, study, subject, about, request, values, refinement, scales, folder })
+        Ok(Run { groups, study, subject, about, request, values, refinement, scales, folder })
     }
 
     /// Solves the points, and writes the folder. Collective.
     fn run(mut self, output: Option<&ExploreOutput>, observer: &mut dyn Observer) -> Result<Exploration> {
         let place = output.map(|own| own.output.folder.as_path());
-        let (mut points, mut nominal) = self.open(output.map(|own| &own.output))?;
+        let mut points = self.open(output.map(|own| &own.output))?;
         self.announce(&points, place, observer);
+        let nominal = self.nominal(&mut points, observer)?;
         while self.has_next(&points, observer)? {
-            for (point, state) in self.next(&mut points, &mut nominal, observer)? {
-                let n_dofs = self.comm.sum(state.as_ref().map_or(0, Vec::len));
-                let room = (STATES_BYTES / 8 / n_dofs.max(1)).clamp(1, MAX_STATES);
-                let number = points.done.len();
-                points.commit(point, state.filter(|_| points.n_states() < room))?;
-                self.folder.iter().for_each(Folder::keep);
-                observer.event(Event::Point { number, point: &points.done[number], is_replayed: false });
-            }
-            self.stop_if_asked(points.done.len() - 1, place, observer)?;
+            let n_missing = |points: &Points| points.missing(self.values.len()).len();
+            let n_before = n_missing(&points);
+            self.round(&mut points, nominal.as_ref(), observer)?;
+            self.stop_if_asked(&points, place, observer)?;
+            require_progress(n_before, n_missing(&points))?;
         }
-        self.about.n_dofs = self.comm.sum(points.n_own_dofs());
-        let answers = Answers::new(self.study, &points.done, &points.gradients, self.request.band);
-        let worst = answers.worst.map_or(Ok(None), |number| self.subject.text(&points.done[number].values))?;
-        let Points { done, gradients, .. } = points;
-        let found = Exploration { about: self.about, points: done, gradients, answers, worst };
-        self.world.agree(match (self.folder.take(), output) {
+        self.about.n_dofs = self.groups.own.sum(points.n_own_dofs());
+        let (done, gradients) = (points.all(), points.gradients);
+        let answers = Answers::new(self.study, &done, &gradients, self.request.band);
+        let worst = answers.worst.map_or(Ok(None), |number| self.subject.model(&done[number].values))?;
+        let (contacts, fields) = (self.subject.contacts(), self.subject.field_shares());
+        let found = Exploration { about: self.about, points: done, gradients, answers, worst, contacts, fields };
+        self.groups.world.agree(match (self.folder.take(), output) {
             (Some(folder), Some(output)) => finish(folder, self.study, &found, output),
             _ => Ok(()),
         })?;
@@ -145,119 +155,60 @@ impl<'s> Run<'s> {
 
     /// Whether there is another point; where all so far are finished, an adaptive design may add some.
     fn has_next(&mut self, points: &Points, observer: &mut dyn Observer) -> Result<bool> {
-        while let Some(refinement) = self.refinement.as_mut().filter(|_| points.done.len() >= self.values.len()) {
-            let added = refinement.next(&points.done[1..self.values.len()])?;
+        let is_finished = |n| points.missing(n).is_empty();
+        while let Some(refinement) = self.refinement.as_mut().filter(|_| is_finished(self.values.len())) {
+            let added = refinement.next(&points.all()[1..self.values.len()])?;
             if added.is_empty() {
                 break;
             }
             added.iter().for_each(|_| observer.event(Event::Inserted));
             self.values.extend(added);
         }
-        Ok(points.done.len() < self.values.len())
+        Ok(!is_finished(self.values.len()))
     }
 
-    /// The points that an earlier run has finished, and its nominal modes, on all ranks. Collective.
-    fn open(&self, output: Option<&Output>) -> Result<(Points, Option<NominalModes>)> {
+    /// The points that an earlier run has finished. Collective.
+    fn open(&self, output: Option<&Output>) -> Result<Points> {
         let (identity, force) = (self.identity(output), output.is_some_and(|output| output.force));
-        // A rank alone does not write.
-        let is_writer = self.world.is_root() || !self.is_divided();
-        let place = output.filter(|_| is_writer).map(|output| output.folder.as_path());
-        let mut points = self.world.agree(Points::open(&self.comm, self.folder.as_ref(), place, &identity, force))?;
-        let mut nominal = self.world.agree(points.nominal())?;
-        if self.is_divided() {
-            points.share(&self.world);
-            nominal = NominalModes::shared(&self.world, &self.comm, nominal);
-        }
-        Ok((points, nominal))
+        let place = output.map(|output| output.folder.as_path());
+        Points::open(&self.groups, self.folder.as_ref(), place, &identity, force)
     }
 
-    /// Whether each rank has points of its own.
-    fn is_divided(&self) -> bool {
-        self.comm.size() < self.world.size()
-    }
-
-    /// Solves the next points: one, or one for each rank where each rank has points of its own. All ranks need the
-    /// nominal point, and each solves it. Collective.
-    fn next(
-        &self,
-        points: &mut Points,
-        nominal: &mut Option<NominalModes>,
-        observer: &mut dyn Observer,
-    ) -> Result<Vec<Solved>> {
-        let first = points.done.len();
-        if first == 0 || !self.is_divided() {
-            let solved = self.point(first, points, nominal, observer);
-            return Ok(vec![if self.is_divided() { self.world.agree(solved)? } else { solved? }]);
-        }
-        let own = first + self.world.rank();
-        let solved = (own < self.values.len()).then(|| self.point(own, points, nominal, observer));
-        let solved = self.world.agree(solved.transpose())?;
-        Ok(self.world.join_values(solved).into_iter().flatten().collect())
-    }
-
-    /// Solves one point; what fails is its result. Collective.
-    fn point(
-        &self,
-        number: usize,
-        points: &mut Points,
-        nominal: &mut Option<NominalModes>,
-        observer: &mut dyn Observer,
-    ) -> Result<Solved> {
-        let values = self.values[number].clone();
-        let start = points.nearest(&values, &self.scales);
-        let found = self.subject.structure(&self.comm, &values).and_then(|(structure, friction)| {
-            let brake = (&structure, friction);
-            solve(&self.comm, brake, &self.request, start, nominal.as_ref(), observer)
-        });
-        match found {
-            Ok(found) => {
-                if number == 0 {
-                    let vectors = found.vectors.as_ref();
-                    let gradients =
-                        vectors.map(|own| self.gradients(own, &found.displacements, observer)).transpose()?;
-                    gradients.map_or(Ok(()), |gradients| points.keep_gradients(gradients))?;
-                    found.nominal.iter().try_for_each(|modes| points.keep_nominal(modes))?;
-                    *nominal = found.nominal;
-                }
-                let outcome = Outcome::Modes(found.modes);
-                Ok((PointResult { values, outcome }, Some(found.displacements)))
-            }
-            Err(error) if is_of_point(&self.comm, &error) => {
-                // A reason is the same on all ranks.
-                let reason = self.comm.broadcast_value(0, error.to_string());
-                Ok((PointResult { values, outcome: Outcome::Failed(reason) }, None))
-            }
-            Err(error) => Err(error),
-        }
-    }
-
-    /// All that the numbers depend on, by name.
+    /// All that the numbers depend on, by name; ranks and groups are none of it.
     fn identity(&self, output: Option<&Output>) -> Vec<(&'static str, String)> {
-        let study = format!("{:?}", (&self.study.parameters, &self.study.design, self.request, self.study.contacts));
+        let Study { parameters, fields, design, contacts, .. } = self.study;
+        let study = format!("{:?}", (parameters, fields, design, self.request, contacts));
         let digest: String = Sha256::digest(study).iter().map(|byte| format!("{byte:02x}")).collect();
         let own = [
             ("SHA-256 of parameters and design", digest),
             ("band", format!("{:?}", self.request.band)),
             ("unstable", self.request.criterion.to_string()),
         ];
-        identity("explore".to_owned(), own, output, &self.about)
+        let mut identity = identity("explore".to_owned(), own, output, &self.about);
+        identity.retain(|(name, _)| *name != N_RANKS);
+        identity
     }
 
     /// Reports what is known before anything is computed.
     fn announce(&self, points: &Points, place: Option<&Path>, observer: &mut dyn Observer) {
-        announce(&self.about, self.values.len(), place, points.done.len(), observer);
-        for (number, point) in points.done.iter().enumerate() {
+        let earlier = Earlier { n: points.iter().count(), unit: UNIT };
+        announce(&self.about, self.values.len(), place, earlier, observer);
+        let warnings = self.subject.warnings(&self.values);
+        points.warnings.iter().chain(&warnings).for_each(|warning| observer.event(Event::Warning(warning)));
+        for (number, point) in points.iter() {
             observer.event(Event::Point { number, point, is_replayed: true });
         }
     }
 
     /// Ends the work where a signal has asked any rank for it. Collective.
-    fn stop_if_asked(&self, number: usize, place: Option<&Path>, observer: &mut dyn Observer) -> Result<()> {
-        let Some(signal) = stop_signal(&self.world, observer).filter(|_| number + 1 < self.values.len()) else {
+    fn stop_if_asked(&self, points: &Points, place: Option<&Path>, observer: &mut dyn Observer) -> Result<()> {
+        let n_missing = points.missing(self.values.len()).len();
+        let Some(signal) = stop_signal(&self.groups.world, observer).filter(|_| n_missing > 0) else {
             return Ok(());
         };
         let to = place.map_or_else(String::new, |place| format!(" to {}", place.display()));
-        let text = format!("stopped after point {number} of {}. The same command continues{to}", self.values.len() - 1);
+        let n = self.values.len() - 1;
+        let text = format!("stopped after {} of {n} points. The same command continues{to}", n - n_missing);
         Err(Error::Interrupted { signal, text })
     }
 }
@@ -270,9 +221,12 @@ fn finish(folder: Folder, study: &Study, found: &Exploration, output: &ExploreOu
     let page = (output.page)(study, found)?;
     folder.write(PAGE, |out| out.write_all(page.as_bytes()))?;
     if let Some(worst) = &found.worst {
-        let text = document.worst_head()
-            + &standing_alone(worst, &study.model, &mesh_from(place, &found.about.mesh), found.about.band)?;
+        let text = standing_alone(&worst.text, &study.model, &mesh_from(place, &found.about.mesh), found.about.band)?;
+        let text = document.worst_head() + &with_tables(&text, &worst.tables)?;
         folder.write(WORST, |out| out.write_all(text.as_bytes()))?;
+        for quantity in worst.quantities() {
+            folder.write(quantity.file(), |out| write_tables(out, quantity, &worst.tables))?;
+        }
     }
     folder.finish()
 }

@@ -14,6 +14,7 @@ use crate::structure::Structure;
 use crate::{Error, ErrorKind, Result};
 
 use super::gradients::NominalVectors;
+use super::groups::Groups;
 
 /// What is computed at every point.
 #[derive(Debug, Clone, Copy)]
@@ -36,16 +37,6 @@ pub struct NominalModes {
     pub right: Block,
     /// `y^H M x` of each mode.
     pub own: Vec<Complex64>,
-}
-
-impl NominalModes {
-    /// The modes that the first rank has, on every rank, each of which has whole vectors. Collective.
-    pub fn shared(world: &Comm, alone: &Comm, own: Option<NominalModes>) -> Option<NominalModes> {
-        let raw = own.map(|own| (own.left.n_local(), own.left.values().to_vec(), own.right.values().to_vec(), own.own));
-        let (n, left, right, own) = world.broadcast_value(0, raw)?;
-        let block = |values| Block::from_columns(alone, n, values);
-        Some(NominalModes { left: block(left), right: block(right), own })
-    }
 }
 
 /// Equilibrium and modes of a point.
@@ -210,12 +201,25 @@ fn hermitian(y: &Block, x: &Block) -> DMatrix<Complex64> {
     DMatrix::from_fn(m / 2, n / 2, |i, j| complex_product(&products, (i, false), (j, false)))
 }
 
-/// Whether an error is that of a point, which the study records and continues: of a kind that all ranks have together.
-pub fn is_of_point(comm: &Comm, error: &Error) -> bool {
+/// An error that is that of a point, which the study records and continues: of a kind that all ranks have together.
+/// Short memory is one only where all ranks solve the point: otherwise it is that of the points at the same time.
+///
+/// # Errors
+/// Any other error, which ends the study.
+pub fn of_point(groups: &Groups, error: Error) -> Result<Error> {
+    unless_fatal([groups.n_groups(), groups.own.size()], error)
+}
+
+fn unless_fatal([n_groups, n_ranks]: [usize; 2], error: Error) -> Result<Error> {
     match error.kind() {
-        ErrorKind::Input | ErrorKind::NotConverged | ErrorKind::OutOfMemory | ErrorKind::Singular => true,
-        ErrorKind::Library => comm.size() == 1,
-        ErrorKind::Io | ErrorKind::Interrupted { .. } => false,
+        ErrorKind::OutOfMemory if n_groups > 1 => {
+            let what = format!("{error}. {n_groups} points are in memory at the same time, one a group of ranks");
+            let text = format!("{what}. Give a larger --ranks-per-point than {n_ranks}, or fewer ranks to mpirun");
+            Err(Error::Agreed { kind: error.kind(), text })
+        }
+        ErrorKind::Input | ErrorKind::NotConverged | ErrorKind::OutOfMemory | ErrorKind::Singular => Ok(error),
+        ErrorKind::Library if n_ranks == 1 => Ok(error),
+        ErrorKind::Library | ErrorKind::Io | ErrorKind::Interrupted { .. } => Err(error),
     }
 }
 
@@ -267,10 +271,22 @@ mod tests {
 
     #[test]
     fn a_point_fails_by_what_all_ranks_see() {
-        let comm = Session::start(&[]).unwrap();
-        assert!(is_of_point(&comm, &Error::input("density")) && is_of_point(&comm, &Error::not_converged("0.3")));
-        assert!(is_of_point(&comm, &Error::Singular { found_by: "MUMPS".into() }));
-        assert!(!is_of_point(&comm, &Error::Interrupted { signal: 2, text: String::new() }));
-        assert!(!is_of_point(&comm, &Error::io("disc".as_ref())(std::io::ErrorKind::StorageFull.into())));
+        let is_of_point = |groups, error| unless_fatal(groups, error).is_ok();
+        let short = || Error::OutOfMemory { what: "the factor".into(), needed_mb: None };
+        for groups in [[1, 4], [2, 2], [4, 1]] {
+            for error in [Error::input("density"), Error::not_converged("0.3")] {
+                assert!(is_of_point(groups, error));
+            }
+            assert!(is_of_point(groups, Error::Singular { found_by: "MUMPS".into() }));
+            assert!(!is_of_point(groups, Error::Interrupted { signal: 2, text: String::new() }));
+            assert!(!is_of_point(groups, Error::io("disc".as_ref())(std::io::ErrorKind::StorageFull.into())));
+        }
+        let library = || Error::library("x")("y");
+        assert!(is_of_point([4, 1], library()) && !is_of_point([2, 2], library()));
+        assert!(is_of_point([1, 4], short()), "more ranks do not help");
+        let error = unless_fatal([2, 2], short()).unwrap_err();
+        assert!(
+            error.kind() == ErrorKind::OutOfMemory && error.to_string().contains("larger --ranks-per-point than 2")
+        );
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::contact::search::Alone;
 use crate::contact::testing::{contact, flipped, model, pads_on_disc, patch, skin};
-use crate::model::{Contact, GapField};
+use crate::model::{Contact, GapField, NormalLaw, StiffnessField};
 use nalgebra::Vector3;
 
 /// The two pads on their disc.
@@ -78,6 +78,13 @@ fn a_gap_field_is_added_to_the_gaps_and_leaves_what_touches_touching() {
     }
     let [low, high] = worn.pairs[0].statistics.gap;
     assert!(low < 2e-6 && high > 22e-6 && high - low < 24e-6, "{low} {high}");
+    std::fs::write(&file, "x_mm,y_mm,factor\n".to_owned() + &rows.replace(",0\n", ",0.5\n")).unwrap();
+    let factors = StiffnessField::read(&file, "pad").unwrap();
+    let contact = Contact { stiffness_field: Some(factors.clone()), ..pad() };
+    let scaled = Interface::build(&model(vec![contact], true), &mesh, &Alone).unwrap();
+    for (own, factor) in scaled.points.iter().zip(factors.at(&positions).unwrap()) {
+        assert_eq!(own.law.normal_law, NormalLaw::Linear { stiffness: factor * 2e13 });
+    }
     let elsewhere = Contact { gap_field: Some(field), ..pad() };
     let message = refused(elsewhere, true, &translated(plates(0.0), 1e3));
     assert!(message.starts_with("brake.toml:12: contact \"pad\": ") && message.contains("worn.csv: no row lies"));

@@ -30,6 +30,7 @@ pub use tangential::{Tangential, respond};
 
 use crate::model::NormalLaw;
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A contact point as its law sees it.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +57,7 @@ pub struct PointLaw {
 }
 
 /// State of a contact point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// No contact, no force.
     Open,
@@ -67,7 +68,7 @@ pub enum Status {
 }
 
 /// What a contact point answers to a relative displacement.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Response {
     /// Force f on the slave, N.
     pub force: [f64; 3],

@@ -32,6 +32,7 @@ impl<'d> Conversion<'d> {
             }
             contacts.push(Contact {
                 gap_field: None,
+                stiffness_field: None,
                 wear: None,
                 name,
                 slave,

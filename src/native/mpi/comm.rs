@@ -1,6 +1,7 @@
 //! The communicator: reductions, gathers and messages of numbers.
 
 use std::ffi::{c_char, c_int, c_void};
+use std::mem::MaybeUninit;
 use std::rc::Rc;
 
 use squeal_sys as sys;
@@ -83,6 +84,23 @@ impl Comm {
         // SAFETY: a constant handle.
         let raw = unsafe { sys::squeal_comm_self() };
         Comm { raw, own: self.session.alone, rank: 0, size: 1, session: self.session.clone() }
+    }
+
+    /// The communicators of groups of ranks that follow each other, of so many ranks each: gives that of this rank's
+    /// group, on which PETSc's objects may live. The last group has the rest.
+    pub fn groups_of(&self, n_ranks: usize) -> Comm {
+        let colour = (self.rank / n_ranks) as c_int;
+        let split = |from: sys::MPI_Comm| {
+            let mut group = from;
+            // SAFETY: a valid communicator; ranks of one colour keep their order.
+            self.check("MPI_Comm_split", unsafe { sys::MPI_Comm_split(from, colour, self.rank as c_int, &mut group) });
+            self.session.groups.borrow_mut().push(group);
+            group
+        };
+        // A group has the way of its whole to answer errors.
+        let (raw, own) = (split(self.raw), split(self.own));
+        let size = n_ranks.min(self.size - colour as usize * n_ranks);
+        Comm { raw, own, rank: self.rank % n_ranks, size, session: self.session.clone() }
     }
 
     /// This process's number, from 0. Not collective.
@@ -311,6 +329,24 @@ impl Comm {
         self.check("MPI_Barrier", unsafe { sys::MPI_Barrier(self.own) });
     }
 
+    /// Waits for all ranks, and calls `meanwhile` again and again until they are there; it sends no messages of this
+    /// communicator.
+    pub fn barrier_with(&self, mut meanwhile: impl FnMut()) {
+        let mut request = MaybeUninit::uninit();
+        // SAFETY: a valid communicator; MPI writes the request.
+        self.check("MPI_Ibarrier", unsafe { sys::MPI_Ibarrier(self.own, request.as_mut_ptr()) });
+        let (mut is_complete, mut status) = (0, sys::MPI_Status::default());
+        loop {
+            // SAFETY: the request is MPI's, and stays where it is until it is complete.
+            let code = unsafe { sys::MPI_Test(request.as_mut_ptr(), &mut is_complete, &mut status) };
+            self.check("MPI_Test", code);
+            if is_complete != 0 {
+                return;
+            }
+            meanwhile();
+        }
+    }
+
     /// The result on all ranks if none has an error; else the error of the first rank that has one, so that none is
     /// left waiting and any of them can print it.
     ///
@@ -326,10 +362,10 @@ impl Comm {
         Err(Error::Agreed { kind, text })
     }
 
-    /// Ends all ranks at once with this exit code. Not collective.
+    /// Ends all ranks of the program, those of other groups among them, at once with this exit code. Not collective.
     pub fn abort(&self, code: i32) -> ! {
-        // SAFETY: a valid communicator; the call does not return.
-        unsafe { sys::MPI_Abort(self.raw, code) };
+        // SAFETY: a constant handle of all ranks, whatever the group; the call does not return.
+        unsafe { sys::MPI_Abort(sys::squeal_comm_world(), code) };
         std::process::exit(code)
     }
 }
@@ -355,5 +391,8 @@ mod tests {
         assert_eq!(comm.join(&[1_u8, 2]), [1, 2]);
         assert_eq!(comm.exchange(&[vec![7_i64]]), [[7]]);
         assert_eq!(comm.broadcast(0, vec![0.5_f32]), [0.5]);
+        comm.barrier_with(|| ());
+        let group = comm.groups_of(1);
+        assert_eq!((group.rank(), group.size(), group.sum(3_usize)), (0, 1, 3));
     }
 }

@@ -1,5 +1,6 @@
 //! MPI, PETSc and SLEPc from start to end.
 
+use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::ptr;
 use std::rc::Rc;
@@ -17,6 +18,8 @@ pub struct Session {
     /// Copies of MPI's communicators of all ranks and of this rank alone, on which MPI returns its errors.
     pub(super) world: sys::MPI_Comm,
     pub(super) alone: sys::MPI_Comm,
+    /// Those of groups of ranks, which end with the session.
+    pub(super) groups: RefCell<Vec<sys::MPI_Comm>>,
 }
 
 /// Whether a session is alive.
@@ -66,7 +69,8 @@ impl Session {
         check(unsafe { sys::PetscPushErrorHandler(Some(collect), ptr::null_mut()) })?;
         // SAFETY: MPI runs; both are constant handles.
         let [world, alone] = unsafe { [sys::squeal_comm_world(), sys::squeal_comm_self()] };
-        Ok(Rc::new(Session { world: with_codes(world)?, alone: with_codes(alone)? }))
+        let groups = RefCell::default();
+        Ok(Rc::new(Session { world: with_codes(world)?, alone: with_codes(alone)?, groups }))
     }
 }
 
@@ -74,6 +78,9 @@ impl Drop for Session {
     fn drop(&mut self) {
         // SAFETY: every handle holds this session, so none is alive any more; the copies are its own.
         unsafe {
+            for group in self.groups.get_mut() {
+                sys::MPI_Comm_free(group);
+            }
             sys::MPI_Comm_free(&mut self.alone);
             sys::MPI_Comm_free(&mut self.world);
             sys::PetscPopErrorHandler();

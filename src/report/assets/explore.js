@@ -105,15 +105,20 @@ function solvedPoints() {
   return solved.sort((a, b) => data.points[a].growth - data.points[b].growth);
 }
 
+/** The axis of the values that these points have of a parameter. */
+function parameterAxis(points, parameter, range) {
+  return axis(
+    points.map((n) => data.points[n].values[parameter]),
+    range,
+  );
+}
+
 function drawScatter() {
   const i = Number(byId("scatter-x").value);
   const solved = solvedPoints();
   if (!solved.length) return;
   const { left, top, width, height } = AREA;
-  const x = axis(
-    solved.map((n) => data.points[n].values[i]),
-    [left, left + width],
-  );
+  const x = parameterAxis(solved, i, [left, left + width]);
   // Rounding does not fill the figure.
   const y = axis([-0.05, 0.05, ...solved.map((n) => data.points[n].growth)], [top + height, top]);
   const svg = panel(byId("scatter"), "Largest growth rate over a parameter", x, y, [
@@ -138,14 +143,8 @@ function drawMap() {
   const solved = solvedPoints();
   if (!solved.length) return;
   const { left, top, width, height } = AREA;
-  const x = axis(
-    solved.map((n) => data.points[n].values[i]),
-    [left, left + width],
-  );
-  const y = axis(
-    solved.map((n) => data.points[n].values[j]),
-    [top + height, top],
-  );
+  const x = parameterAxis(solved, i, [left, left + width]);
+  const y = parameterAxis(solved, j, [top + height, top]);
   const svg = panel(byId("map"), "Stability over two parameters", x, y, [data.parameters[i], data.parameters[j]]);
   if (data.grid && i !== j) {
     const rates = data.points.slice(1).map((point) => (point.growth === null ? null : verdictRate(point)));

@@ -1,0 +1,226 @@
+//! A super-element whose numbers a study changes.
+//!
+//! Friction, loads and contact stiffness are those of the options of `squeal stability`. All other keys are those of
+//! the model file, whose text the super-element has ([`PartKeys`]).
+
+use std::path::Path;
+
+use crate::analysis::part_keys::PartKeys;
+use crate::explore::{Nominal, Parameter, Study, Template, standing_alone};
+use crate::model::names;
+use crate::reduction::file;
+use crate::reduction::made_for::{MadeFor, PartRange};
+use crate::reduction::recovery::OuterSurface;
+use crate::reduction::super_element::SuperElement;
+use crate::structure::{ReducedModel, StructureOptions};
+use crate::{Error, Result};
+
+/// Keys that a super-element has without a model file.
+const KEYS: [&str; 3] = ["friction", "pressure", "contact_stiffness"];
+/// A super-element, the parameters of a study, and the model file for those that change its parts.
+pub struct ReducedSubject<'s> {
+    place: &'s Path,
+    element: SuperElement,
+    parameters: &'s [Parameter],
+    parts: Option<PartKeys>,
+}
+
+/// What no part has.
+struct SharedValues {
+    friction: f64,
+    pressure: f64,
+    contact_stiffness: f64,
+}
+
+impl<'s> ReducedSubject<'s> {
+    /// Reads the super-element of a study, and finds what its parameters change.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a file that cannot be used, and for keys that a super-element cannot follow.
+    pub fn read(study: &'s Study) -> Result<ReducedSubject<'s>> {
+        if study.contacts.is_some() {
+            let what = "a super-element has its contacts already; contacts is for models";
+            return Err(Error::input(format!("{}: {what}", study.file.display())));
+        }
+        study.require_no_fields()?;
+        ReducedSubject::of(study, file::read_element(&study.model)?)
+    }
+
+    fn of(study: &'s Study, element: SuperElement) -> Result<ReducedSubject<'s>> {
+        let in_study = |error: Error| Error::input(format!("{}: {error}", study.file.display()));
+        let parts = part_keys(&element, &study.parameters).map_err(in_study)?;
+        if parts.as_ref().is_some_and(|parts| parts.changes_matrices) {
+            element.require_no_prestress().map_err(in_study)?;
+        }
+        Ok(ReducedSubject { place: &study.model, element, parameters: &study.parameters, parts })
+    }
+
+    /// The parameters' values that the super-element was made with.
+    pub fn nominal(&self) -> Vec<f64> {
+        let of = |parameter: &Parameter| match parameter.shared_key() {
+            Some("friction") => self.element.origin.friction,
+            _ => 1.0,
+        };
+        let mut values: Vec<f64> = self.parameters.iter().map(of).collect();
+        if let Some(parts) = &self.parts {
+            parts.set_nominal(&mut values);
+        }
+        values
+    }
+
+    /// The super-element at a point, and its friction coefficient there.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it cannot have these values.
+    pub fn structure(&self, values: &[f64]) -> Result<(ReducedModel, f64)> {
+        let SharedValues { friction, pressure, contact_stiffness } = self.shared(values)?;
+        let mut element = self.element.clone();
+        for (part, change) in self.parts.as_ref().map_or(Ok(Vec::new()), |parts| parts.changes(values))? {
+            element.change_part(&part, &change)?;
+        }
+        let options = StructureOptions { load_factor: pressure, contact_stiffness, ..StructureOptions::default() };
+        Ok((ReducedModel::with(self.place, element, OuterSurface::default(), &options)?, friction))
+    }
+
+    /// Where the samples of the super-element did not agree, and what points have far outside the moduli and densities
+    /// that it is made for: a line a part.
+    pub fn warnings(&self, points: &[Vec<f64>]) -> Vec<String> {
+        let Some(parts) = &self.parts else { return Vec::new() };
+        let made_for = self.element.origin.made_for.as_ref();
+        let made = made_for.map_or(&[][..], |own| &own.parts);
+        let own = |part: &str| made.iter().find(|own| own.part == part).cloned();
+        let line = |range: PartRange| {
+            let own = own(&range.part).unwrap_or(PartRange::nominal(&range.part));
+            range.is_far_outside(&own).then(|| outside(&range, &own))
+        };
+        let samples = made_for.and_then(MadeFor::warning);
+        samples.into_iter().chain(parts.ranges(points).into_iter().filter_map(line)).collect()
+    }
+
+    /// Reference pairs of its layout; a Galerkin super-element has all contact points.
+    pub fn contacts(&self) -> Option<usize> {
+        (!self.element.is_galerkin()).then_some(self.element.contacts.len())
+    }
+
+    /// The text of the model file at a point, as it stands beside the super-element's; none where no part changes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the model cannot have these values.
+    pub fn text(&self, values: &[f64]) -> Result<Option<String>> {
+        let (Some(parts), Some(own)) = (&self.parts, &self.element.model_text) else { return Ok(None) };
+        let swept = self.element.pairs.iter().filter(|pair| pair.swept).map(|pair| pair.name.clone());
+        let swept: Vec<String> = swept.collect();
+        let (file, origin) = (&parts.own().file, &self.element.origin);
+        let template = Template::new(own, self.parameters, Nominal { model: parts.own(), swept: &swept })?;
+        let text = template.text(values, Some(self.shared(values)?.friction), file)?;
+        standing_alone(&text, file, &origin.mesh, origin.band).map(Some)
+    }
+
+    fn shared(&self, values: &[f64]) -> Result<SharedValues> {
+        let of = |key: &str, otherwise: f64| {
+            let place = self.parameters.iter().position(|parameter| parameter.shared_key() == Some(key));
+            place.map_or(otherwise, |i| values[i])
+        };
+        let [friction, pressure, contact_stiffness] =
+            [of(KEYS[0], self.element.origin.friction), of(KEYS[1], 1.0), of(KEYS[2], 1.0)];
+        if friction < 0.0 || pressure <= 0.0 || contact_stiffness <= 0.0 {
+            let what = format!("friction {friction}, pressure {pressure}, contact stiffness {contact_stiffness}");
+            return Err(Error::input(format!("{what}: friction is 0 or above, the factors are above 0")));
+        }
+        Ok(SharedValues { friction, pressure, contact_stiffness })
+    }
+}
+
+fn outside(range: &PartRange, own: &PartRange) -> String {
+    let text = |[from, to]: [f64; 2]| format!("{from:.3} to {to:.3}");
+    let factors = |range: &PartRange| format!("stiffness {} and mass {}", text(range.stiffness), text(range.mass));
+    format!(
+        "factors of the study on the part {:?}: {}; the super-element is made for {}. Modes far outside are less exact: \
+         make one by `squeal reduce --for` with this study",
+        range.part,
+        factors(range),
+        factors(own)
+    )
+}
+
+/// The parameters that change parts; none where there is none.
+fn part_keys(element: &SuperElement, parameters: &[Parameter]) -> Result<Option<PartKeys>> {
+    let Some(first) = parameters.iter().find(|parameter| parameter.shared_key().is_none()) else { return Ok(None) };
+    let text = element.model_text.as_deref().ok_or_else(|| unknown(first))?;
+    PartKeys::new(text, Path::new(&element.origin.model), parameters)
+}
+
+/// A key of a super-element that has no model file.
+fn unknown(parameter: &Parameter) -> Error {
+    let text = parameter.keys.first().map_or("", |key| key.text());
+    let what = format!(
+        "parameter {:?}: this super-element has no key {text:?}, as its file has no model file",
+        parameter.name
+    );
+    let advice = "One that `squeal reduce` makes of a model file with a Gmsh mesh has those of its parts, too";
+    Error::input(format!("{what}. {} {advice}", names::advice(text, KEYS)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explore;
+    use crate::native::Mck;
+    use crate::reduction::parts::MatricesByPart;
+    use crate::reduction::testing;
+
+    fn study(key: &str) -> Study {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("soft.toml");
+        let text =
+            "model = \"a.se.h5\"\n[design]\nkind = \"grid\"\n[parameter.x]\nfactor = true\nuniform = [0.9, 1.1]\n";
+        std::fs::write(&file, format!("{text}key = \"{key}\"\n")).unwrap();
+        explore::read(&file).unwrap()
+    }
+
+    fn element(text: Option<&str>) -> SuperElement {
+        let rest = Mck { m: vec![1.0], c: vec![0.0], k: vec![1.0], g: None };
+        let by_part = MatricesByPart { parts: Vec::new(), rest, rest_name: "joints".into() };
+        SuperElement { model_text: text.map(str::to_owned), ..testing::element(1, by_part) }
+    }
+
+    const LINING: &str = "material.lining.young";
+
+    fn model() -> String {
+        let text = std::fs::read_to_string("tests/data/pads_on_disc.toml").unwrap();
+        text.replace("[part.disc]", "[part.disc]\nrayleigh = { alpha = 1, beta = 0 }")
+    }
+
+    #[test]
+    fn an_element_without_a_model_file_has_no_keys_of_parts() {
+        let message = ReducedSubject::of(&study(LINING), element(None)).err().unwrap().to_string();
+        assert!(message.contains("soft.toml") && message.contains("no key \"material.lining.young\""), "{message}");
+        assert!(message.contains("that `squeal reduce` makes of a model file"), "{message}");
+    }
+
+    /// When the study is read, not at each of its points.
+    #[test]
+    fn a_study_of_moduli_of_a_prestressed_element_is_refused() {
+        let prestressed = || SuperElement { geometric_stiffness: Some(vec![0.0]), ..element(Some(&model())) };
+        let message = ReducedSubject::of(&study(LINING), prestressed()).err().unwrap().to_string();
+        assert!(message.contains("soft.toml: the super-element has the geometric stiffness of one"), "{message}");
+        assert!(ReducedSubject::of(&study("part.disc.rayleigh.alpha"), prestressed()).is_ok());
+        assert!(ReducedSubject::of(&study(LINING), element(Some(&model()))).is_ok());
+    }
+
+    #[test]
+    fn samples_that_did_not_agree_are_reported_again() {
+        let study = study(LINING);
+        let mut subject = ReducedSubject::of(&study, element(Some(&model()))).unwrap();
+        let lining = |part: &str| PartRange { stiffness: [0.5, 1.0], ..PartRange::nominal(part) };
+        let parts = ["lining_inner", "lining_outer"].map(lining).to_vec();
+        let made_for =
+            |errors: [f64; 2]| MadeFor { sample_errors: errors.to_vec(), parts: parts.clone(), ..MadeFor::default() };
+        subject.element.origin.made_for = Some(made_for([0.02, 0.01]));
+        let warnings = subject.warnings(&[vec![0.6], vec![2.0]]);
+        assert_eq!(warnings.len(), 3, "{warnings:?}");
+        assert!(warnings[0].contains("still differ by 2.00 %") && warnings[1].contains("lining_inner"), "{warnings:?}");
+        subject.element.origin.made_for = Some(made_for([1e-6, 1e-6]));
+        assert!(subject.warnings(&[vec![0.6]]).is_empty());
+    }
+}
