@@ -50,7 +50,7 @@ impl Explore {
 pub fn run(shell: &Shell, arguments: &Explore) -> Result<()> {
     let study = shell.comm.agree(explore::read(&arguments.study))?;
     let output = arguments.output(shell, &study);
-    let mut watch = Watch::with_signals(shell, arguments.verbose)?;
+    let mut watch = Watch::with_signals(shell, arguments.verbose);
     let found = analysis::explore(shell.comm, &study, arguments.ranks_per_point, Some(&output), &mut watch);
     watch.finish();
     let Some(found) = found? else { return Ok(()) };

@@ -2,56 +2,82 @@
 //! the finished values are on the disk, and the analysis can continue later.
 
 use std::sync::atomic::{AtomicI32, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
-use signal_hook::low_level::exit;
+use nix::sys::signal::{SigSet, Signal};
 
+use crate::native::end_process;
 use crate::{Error, ErrorKind, Result};
 
 /// Seconds that the value at hand has after a signal. A factorisation or a search for modes, which may take hours,
 /// cannot be interrupted; but a finished value is written as a whole, so that the process may end at any moment.
 const GRACE: Duration = Duration::from_secs(4);
 
-/// Receives the signals that ask a run to stop.
+/// Receives the signals that ask a program to stop.
+#[derive(Clone)]
 pub struct Interrupt {
-    signal: Arc<AtomicI32>,
+    received: Arc<Received>,
+}
+
+#[derive(Default)]
+struct Received {
+    /// The number of the first signal, or zero.
+    signal: AtomicI32,
+    answer: OnceLock<Answer>,
+}
+
+/// What is said when a signal comes, and when [`GRACE`] ends.
+struct Answer {
+    notice: Box<dyn Fn() + Send + Sync>,
+    farewell: Box<dyn Fn() + Send + Sync>,
 }
 
 impl Interrupt {
-    /// From now on the first SIGINT or SIGTERM is kept, and answered by `notice`. The second ends the process at once,
-    /// and so does the end of [`GRACE`], after `farewell`.
+    /// From now on SIGINT and SIGTERM reach a thread of this object and no handler: METIS has one of its own while it
+    /// works, which leaves METIS by a jump. To be called before the program has other threads, which inherit what is
+    /// blocked. A signal ends the process until [`Self::listen`] is called.
     ///
     /// # Errors
     /// The system's.
-    pub fn listen(notice: impl Fn() + Send + 'static, farewell: impl Fn() + Send + 'static) -> Result<Interrupt> {
-        let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(Error::library("no handler for signals"))?;
-        let signal = Arc::new(AtomicI32::new(0));
-        let received = signal.clone();
-        let farewell = Arc::new(Mutex::new(farewell));
+    pub fn receive() -> Result<Interrupt> {
+        let signals = SigSet::from_iter([Signal::SIGINT, Signal::SIGTERM]);
+        signals.thread_block().map_err(Error::library("signals cannot be blocked"))?;
+        let received = Arc::new(Received::default());
+        let inner = received.clone();
         std::thread::spawn(move || {
-            for number in signals.forever() {
-                if received.swap(number, Ordering::Relaxed) != 0 {
-                    exit(ErrorKind::SIGNAL + number);
-                }
-                notice();
-                let farewell = farewell.clone();
-                std::thread::spawn(move || {
-                    std::thread::sleep(GRACE);
-                    if let Ok(farewell) = farewell.lock() {
-                        farewell();
-                    }
-                    exit(ErrorKind::SIGNAL + number);
-                });
+            while let Ok(signal) = signals.wait() {
+                inner.receive(signal as i32);
             }
         });
-        Ok(Interrupt { signal })
+        Ok(Interrupt { received })
+    }
+
+    /// From now on the first signal is kept, and answered by `notice`. The second ends the process at once, and so does
+    /// the end of [`GRACE`], after `farewell`. Only the first call counts.
+    pub fn listen(&self, notice: impl Fn() + Send + Sync + 'static, farewell: impl Fn() + Send + Sync + 'static) {
+        let _ = self.received.answer.set(Answer { notice: Box::new(notice), farewell: Box::new(farewell) });
     }
 
     /// The signal that this process has received, if any.
     pub fn signal(&self) -> Option<i32> {
-        Some(self.signal.load(Ordering::Relaxed)).filter(|&signal| signal > 0)
+        Some(self.received.signal.load(Ordering::Relaxed)).filter(|&signal| signal > 0)
+    }
+}
+
+impl Received {
+    fn receive(self: &Arc<Self>, number: i32) {
+        let is_first = self.signal.swap(number, Ordering::Relaxed) == 0;
+        let answer = self.answer.get().filter(|_| is_first);
+        let Some(answer) = answer else { end_process(ErrorKind::SIGNAL + number) };
+        (answer.notice)();
+        let later = self.clone();
+        std::thread::spawn(move || {
+            std::thread::sleep(GRACE);
+            if let Some(answer) = later.answer.get() {
+                (answer.farewell)();
+            }
+            end_process(ErrorKind::SIGNAL + number);
+        });
     }
 }

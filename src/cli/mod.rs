@@ -42,6 +42,7 @@ use crate::output::text::printable;
 use crate::results::Results;
 use crate::structure::{PartDamping, StructureOptions};
 use crate::{Error, Result};
+use interrupt::Interrupt;
 use values::{PetscOptions, Values};
 
 /// Predicts disc-brake squeal: contact equilibrium and complex modes of a finite element brake.
@@ -70,6 +71,7 @@ static LONG_VERSION: LazyLock<String> = LazyLock::new(|| format!("{}\n{}", env!(
 /// What every command runs with.
 struct Shell<'a> {
     comm: &'a Comm,
+    interrupt: &'a Interrupt,
     /// Options for PETSc as typed.
     petsc: &'a [String],
     /// Whether results are printed as JSON.
@@ -269,9 +271,9 @@ pub fn main() -> i32 {
         Ok(parsed) => parsed,
         Err(usage) => return print_usage(&usage),
     };
-    match Session::start(&options) {
-        Ok(comm) => {
-            let shell = Shell { comm: &comm, petsc: &arguments.petsc, json: arguments.json };
+    match Interrupt::receive().and_then(|interrupt| Ok((interrupt, Session::start(&options)?))) {
+        Ok((interrupt, comm)) => {
+            let shell = Shell { comm: &comm, interrupt: &interrupt, petsc: &arguments.petsc, json: arguments.json };
             guard_as(&comm, shell.json, || {
                 run(&arguments.command, &shell)?;
                 shell.warn_of_unused(&options)

@@ -73,7 +73,7 @@ impl Progress {
     }
 
     /// Something that prints a line whenever it is called, from any thread; nothing but on the first rank.
-    pub fn notice(&self, line: &'static str) -> impl Fn() + Send + 'static {
+    pub fn notice(&self, line: &'static str) -> impl Fn() + Send + Sync + 'static {
         let (bar, is_root) = (self.bar.clone(), self.is_root);
         move || {
             if is_root {

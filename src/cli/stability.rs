@@ -52,7 +52,7 @@ pub fn run(shell: &Shell, arguments: &Stability) -> Result<()> {
         certify: arguments.certify.clone(),
         output: Some(run.output(shell, "stability")),
     };
-    let mut watch = Watch::with_signals(shell, run.verbose)?;
+    let mut watch = Watch::with_signals(shell, run.verbose);
     let outcome = stability(shell.comm, &structure, &options, &mut watch);
     watch.finish();
     shell.print_results(&outcome?, &run.folder("stability"), summary::stability)

@@ -31,7 +31,7 @@ pub fn run(shell: &Shell, arguments: &States) -> Result<()> {
     let stem = file.model.file_stem().unwrap_or_default().to_string_lossy();
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-states")));
     let options = StatesOptions { folder, command: command_line(), identity: shell.petsc.join(" ") };
-    let mut watch = Watch::with_signals(shell, arguments.verbose)?;
+    let mut watch = Watch::with_signals(shell, arguments.verbose);
     let found = analysis::states(shell.comm, &file, &options, &mut watch);
     watch.finish();
     let made = found?.map(|found| {

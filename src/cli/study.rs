@@ -57,7 +57,7 @@ pub fn run(shell: &Shell, arguments: &Study) -> Result<()> {
         folder: arguments.place(),
         identity: shell.petsc.join(" "),
     };
-    let mut watch = Watch::with_signals(shell, arguments.verbose)?;
+    let mut watch = Watch::with_signals(shell, arguments.verbose);
     let found = study(shell.comm, &options, &mut watch);
     watch.finish();
     let Some(found) = found? else { return Ok(()) };

@@ -1,6 +1,5 @@
 //! What a person sees of an analysis: events as a progress line, and Ctrl-C as a request to stop.
 
-use crate::Result;
 use crate::analysis::{Event, Observer};
 use crate::explore::{Outcome, PointResult};
 use crate::model::ProposedStiffness;
@@ -28,17 +27,15 @@ impl Watch {
     }
 
     /// The same, for an analysis that stops when a signal asks for it: after the value at hand, or within seconds.
-    ///
-    /// # Errors
-    /// The system's.
-    pub fn with_signals(shell: &Shell, verbose: bool) -> Result<Watch> {
+    pub fn with_signals(shell: &Shell, verbose: bool) -> Watch {
         let watch = Watch::new(shell, verbose);
         let notice =
             watch.progress.notice("stopping after this value, or within four seconds; a second signal stops at once");
         let farewell = watch.progress.notice(
             "stopped within a value, which is lost; finished values are kept. The same command goes on from there",
         );
-        Ok(Watch { interrupt: Some(Interrupt::listen(notice, farewell)?), ..watch })
+        shell.interrupt.listen(notice, farewell);
+        Watch { interrupt: Some(shell.interrupt.clone()), ..watch }
     }
 
     /// Removes the progress line.

@@ -52,7 +52,7 @@ pub fn run(shell: &Shell, arguments: &Wear) -> Result<()> {
     let friction = arguments.friction()?;
     let mut structure = Structure::read(shell.comm, &run.model, &run.structure_options())?;
     let options = WearOptions { friction, goal: arguments.goal(), output: Some(run.output(shell, "wear")) };
-    let mut watch = Watch::with_signals(shell, run.verbose)?;
+    let mut watch = Watch::with_signals(shell, run.verbose);
     let outcome = analysis::wear(shell.comm, &mut structure, &options, &mut watch);
     watch.finish();
     let found = outcome?;

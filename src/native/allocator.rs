@@ -3,9 +3,9 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::Write;
 
-use signal_hook::low_level::exit;
-
 use crate::ErrorKind;
+
+use super::end_process;
 
 /// The system's allocator, which ends the process with a message where there is no memory: Rust's own aborts it, and
 /// Open MPI prints the stack of a process that aborts.
@@ -53,5 +53,5 @@ fn end(size: usize) -> ! {
     );
     let n_left = rest.len();
     let _ = std::io::stderr().write_all(&text[..text.len() - n_left]);
-    exit(ErrorKind::OutOfMemory.exit_code())
+    end_process(ErrorKind::OutOfMemory.exit_code())
 }

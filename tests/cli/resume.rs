@@ -346,3 +346,19 @@ fn a_signal_within_a_long_value_ends_the_run_within_five_seconds() {
     assert_eq!(code, 143, "{err}");
     assert!(err.contains("stopped within a value") && !place.path("run").exists(), "{err}");
 }
+
+/// `reduce` has no values that could be kept.
+#[test]
+fn a_signal_ends_at_once_what_cannot_go_on() {
+    let place = Place::pads();
+    for (name, code) in [("INT", 130), ("TERM", 143)] {
+        let mut child = start(&place, 1, &["reduce", "brake.toml", "--galerkin", "--output", "brake.se.h5"]);
+        std::thread::sleep(Duration::from_secs(1));
+        assert!(child.try_wait().unwrap().is_none(), "the reduction is long enough");
+        let sent = Instant::now();
+        signal(name, child.id());
+        let Finished { code: found, err, .. } = end(child);
+        assert!(found == code && sent.elapsed().as_secs_f64() < 1.0, "{found}: {err}");
+        assert!(!place.path("brake.se.h5").exists());
+    }
+}

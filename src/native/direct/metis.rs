@@ -2,8 +2,7 @@
 
 use std::ptr;
 
-use signal_hook::consts::SIGTERM;
-use signal_hook::low_level::raise;
+use nix::sys::signal::{SigSet, SigmaskHow, Signal};
 use squeal_sys as sys;
 
 use crate::native::petsc::int;
@@ -35,7 +34,7 @@ pub fn partition(elements: Lists, n_nodes: usize, n_parts: usize, n_common: i32)
     let (mut of_elements, mut of_nodes) = (vec![0_i32; n_elements as usize], vec![0_i32; n_nodes]);
     let (mut common, mut cut) = (n_common, 0);
     // SAFETY: the arrays have the lengths that METIS expects; null means "default" for the optional ones.
-    let status = through_signals(|| unsafe {
+    let status = undisturbed(|| unsafe {
         sys::METIS_PartMeshDual(
             &mut n_elements,
             &mut n,
@@ -62,29 +61,22 @@ pub fn partition(elements: Lists, n_nodes: usize, n_parts: usize, n_common: i32)
 
 /// What METIS returns where all is well.
 const OK: i32 = 1;
-/// What it returns where it failed, or a SIGTERM came, which it takes for a failure of its own.
-const ERROR: i32 = -4;
-
-/// Calls METIS, once more where a SIGTERM has ended it: METIS does the same each time. The signal is then raised again.
-fn through_signals(mut call: impl FnMut() -> i32) -> i32 {
-    let mut guarded = || {
-        // SAFETY: it reads handlers alone; METIS runs on one thread.
-        unsafe { sys::squeal_keep_handlers() };
-        let status = call();
-        // SAFETY: the handlers that were kept.
-        unsafe { sys::squeal_restore_handlers() };
-        status
-    };
-    let status = guarded();
-    if status != ERROR {
-        return status;
+/// Calls METIS with SIGTERM blocked for this thread: METIS has a handler of its own while it works, which takes the
+/// signal for a failure and leaves METIS by a jump, from wherever it is. A signal waits until METIS has ended.
+///
+/// The handler is the process's: a program with several threads has to block the signal in the others, too.
+fn undisturbed(call: impl FnOnce() -> i32) -> i32 {
+    let before = SigSet::from(Signal::SIGTERM).thread_swap_mask(SigmaskHow::SIG_BLOCK);
+    // SAFETY: it reads handlers alone; METIS runs on one thread.
+    unsafe { sys::squeal_keep_handlers() };
+    let status = call();
+    // SAFETY: the handlers that were kept.
+    unsafe { sys::squeal_restore_handlers() };
+    if let Ok(before) = before {
+        // It fails for sets that are none only.
+        let _ = before.thread_set_mask();
     }
-    let repeated = guarded();
-    if repeated == OK {
-        // It fails for numbers that are no signals only.
-        let _ = raise(SIGTERM);
-    }
-    repeated
+    status
 }
 
 /// Who is whose neighbour, compressed.
@@ -127,7 +119,7 @@ pub(in crate::native) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Re
     let (mut order, mut places) = (vec![0_i32; weights.len()], vec![0_i32; weights.len()]);
     // SAFETY: METIS reads the graph and the weights, and writes the two permutations; null means "default" for the
     // options.
-    let status = through_signals(|| unsafe {
+    let status = undisturbed(|| unsafe {
         sys::METIS_NodeND(
             &mut n,
             graph.offsets.as_ptr().cast_mut(),
@@ -146,50 +138,42 @@ pub(in crate::native) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Re
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::atomic::{AtomicUsize, Ordering};
     use std::time::Duration;
+
+    use nix::sys::pthread::{pthread_kill, pthread_self};
+    use nix::sys::signal::{SigHandler, signal};
 
     use super::*;
 
     /// A square of 400 by 400 vertices, which takes METIS about a second; the signal goes to the thread on which METIS
-    /// works, as the system sends it to the first thread of a program.
+    /// works.
     #[test]
-    fn a_signal_that_comes_while_metis_works_is_kept() {
+    fn a_signal_that_comes_while_metis_works_waits_for_its_end() {
         const N: u32 = 400;
+        static N_CAME: AtomicUsize = AtomicUsize::new(0);
+        extern "C" fn count(_: i32) {
+            N_CAME.fetch_add(1, Ordering::Relaxed);
+        }
         let neighbours = |v: u32| {
             let right = (v % N + 1 < N).then_some(v + 1);
             right.into_iter().chain((v + N < N * N).then_some(v + N)).collect()
         };
         let graph = Graph::undirected(&(0..N * N).map(neighbours).collect::<Vec<_>>()).unwrap();
-        let came = Arc::new(AtomicBool::new(false));
-        signal_hook::flag::register(SIGTERM, came.clone()).unwrap();
-        for delay in [100, 200] {
-            came.store(false, Ordering::Relaxed);
+        // SAFETY: the handler counts and does nothing else.
+        unsafe { signal(Signal::SIGTERM, SigHandler::Handler(count)) }.unwrap();
+        for n_came in 1..=2 {
             std::thread::scope(|scope| {
-                // SAFETY: it has no conditions.
-                let metis = unsafe { libc::pthread_self() };
+                let metis = pthread_self();
                 scope.spawn(move || {
-                    std::thread::sleep(Duration::from_millis(delay));
-                    // SAFETY: that thread outlives this one.
-                    assert_eq!(unsafe { libc::pthread_kill(metis, SIGTERM) }, 0);
+                    std::thread::sleep(Duration::from_millis(100));
+                    pthread_kill(metis, Signal::SIGTERM).unwrap();
                 });
                 let order = nested_dissection(&graph, &vec![1; (N * N) as usize]).unwrap();
                 assert_eq!(order.len(), (N * N) as usize);
             });
-            assert!(came.load(Ordering::Relaxed));
+            assert_eq!(N_CAME.load(Ordering::Relaxed), n_came);
         }
-    }
-
-    /// What METIS cannot do is its error, signal or not.
-    #[test]
-    fn a_failure_that_repeats_is_metis_own() {
-        let mut n_calls = 0;
-        let status = through_signals(|| {
-            n_calls += 1;
-            ERROR
-        });
-        assert_eq!((status, n_calls), (ERROR, 2));
     }
 
     /// A chain of tetrahedra, each with a face in common with the next: the six nodes that all but the first and last
