@@ -5,8 +5,9 @@ use serde::Serialize;
 use super::adaptive::BoundaryPair;
 use super::design::DesignKind;
 use super::gradient::{Gradient, MissingDerivative, Tornado, missing_derivatives, tornados};
+use super::predicted::Prediction;
 use super::result::{PointMode, PointResult};
-use super::sensitivity::{Bar, Indices, sobol_indices, tornado};
+use super::sensitivity::{Bar, Estimate, Indices, sobol_indices, tornado};
 use super::statistics::{Probability, quantile};
 use super::study::Study;
 
@@ -64,6 +65,8 @@ pub struct Instability {
     pub nominal_growth_rate_per_s: Option<f64>,
     /// That it is unstable.
     pub probability: Probability,
+    /// The same from points and derivatives together, where its interval is narrower.
+    pub by_derivatives: Option<Estimate>,
     /// Smallest and largest frequency where it is unstable, Hz.
     pub frequency_range_hz: [f64; 2],
     /// Its largest growth rate, 1/s.
@@ -119,7 +122,12 @@ impl Answers {
             is_sample: study.design.is_sample(),
             unstable: Probability::of(n_unstable, sample.len()),
             growth_rate: FRACTIONS.iter().filter_map(at).collect(),
-            instabilities: instabilities(nominal, &solved, &sample),
+            instabilities: instabilities(
+                nominal,
+                &solved,
+                &sample,
+                Prediction::new(study, gradients, &nominal.values).as_ref(),
+            ),
             bins: bins(&sample, band, study.bin),
             indices: indices(study, own),
             tornado: bars(study, nominal, &solved),
@@ -163,6 +171,7 @@ fn instabilities(
     nominal: &PointResult,
     solved: &[(usize, &PointResult)],
     sample: &[(usize, &PointResult)],
+    prediction: Option<&Prediction>,
 ) -> Vec<Instability> {
     let unstable = |points: &[(usize, &PointResult)], of: Option<usize>| -> Vec<(usize, PointMode)> {
         let own = |mode: &&PointMode| mode.unstable && mode.link.map(|link| link.nominal) == of;
@@ -181,11 +190,14 @@ fn instabilities(
         where_unstable.dedup();
         let frequencies = || found.iter().map(|(_, mode)| mode.frequency());
         let own = of.and_then(|number| nominal.modes()?.get(number - 1));
+        let probability = Probability::of(where_unstable.len(), sample.len());
+        let by_derivatives = |mode| prediction?.probability((of? - 1, mode), sample, probability);
         Some(Instability {
             nominal: of,
             nominal_frequency_hz: own.map(PointMode::frequency),
             nominal_growth_rate_per_s: own.map(PointMode::growth_rate),
-            probability: Probability::of(where_unstable.len(), sample.len()),
+            probability,
+            by_derivatives: own.and_then(by_derivatives),
             frequency_range_hz: [
                 frequencies().fold(f64::INFINITY, f64::min),
                 frequencies().fold(f64::NEG_INFINITY, f64::max),
@@ -262,7 +274,7 @@ mod tests {
             band: None,
             criterion: None,
             bin: 100.0,
-            follow: true,
+            follow: Some(2),
             gradients: true,
         }
     }

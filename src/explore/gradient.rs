@@ -178,8 +178,21 @@ impl Tornado {
     }
 }
 
+/// `a_1 = a_0 + sum_i a'_i (p_i - p_i0)`, the growth rate of first order of the nominal mode with the number `i`, from
+/// 0; none where a parameter has no derivative.
+pub(super) fn first_order(
+    (i, mode): (usize, &PointMode),
+    gradients: &[Gradient],
+    nominal: &[f64],
+    values: &[f64],
+) -> Option<f64> {
+    let terms = gradients.iter().zip(values.iter().zip(nominal));
+    let change = |(gradient, (p, p0)): (&Gradient, (&f64, &f64))| Some(gradient.slopes.get(i)?.re * (p - p0));
+    terms.map(change).sum::<Option<f64>>().map(|change| mode.growth_rate() + change)
+}
+
 /// `1 - sum (a - a_1)^2 / sum (a - mean)^2` over the points at which a mode is recognised without doubt, with the
-/// growth rate `a_1 = a_0 + sum_i a'_i (p_i - p_i0)` of first order.
+/// growth rate `a_1` of first order.
 fn linear_share(
     i: usize,
     mode: &PointMode,
@@ -187,14 +200,10 @@ fn linear_share(
     nominal: &[f64],
     points: &[PointResult],
 ) -> Option<f64> {
-    let linear = |values: &[f64]| {
-        let terms = gradients.iter().zip(values.iter().zip(nominal));
-        let change = |(gradient, (p, p0)): (&Gradient, (&f64, &f64))| Some(gradient.slopes.get(i)?.re * (p - p0));
-        terms.map(change).sum::<Option<f64>>().map(|change| mode.growth_rate() + change)
-    };
     let growth = |point: &PointResult| {
         let is_own = |mode: &&PointMode| mode.link.is_some_and(|link| link.nominal == i + 1 && !link.doubtful);
-        Some([point.modes()?.iter().find(is_own)?.growth_rate(), linear(&point.values)?])
+        let own = point.modes()?.iter().find(is_own)?.growth_rate();
+        Some([own, first_order((i, mode), gradients, nominal, &point.values)?])
     };
     let pairs: Vec<[f64; 2]> = points.iter().filter_map(growth).collect();
     let mean = pairs.iter().map(|pair| pair[0]).sum::<f64>() / pairs.len() as f64;

@@ -21,6 +21,7 @@ mod field;
 mod gradient;
 mod key;
 mod linking;
+mod predicted;
 mod random_field;
 mod result;
 mod sensitivity;

@@ -36,8 +36,9 @@ pub struct Study {
     pub criterion: Option<InstabilityCriterion>,
     /// Width of the bins of the squeal probability over frequency, Hz.
     pub bin: f64,
-    /// Whether modes are followed to the nominal point, which needs their left vectors.
-    pub follow: bool,
+    /// How often the straight line to the nominal point is bisected where modes are not recognised without doubt; none
+    /// where modes are not followed, which needs their left vectors.
+    pub follow: Option<usize>,
     /// Whether the derivatives of the nominal modes are found, which needs their left vectors.
     pub gradients: bool,
 }
@@ -93,6 +94,7 @@ struct Keys {
     bin: Option<f64>,
     #[serde(default = "yes")]
     follow: bool,
+    bisections: Option<usize>,
     #[serde(default = "yes")]
     gradients: bool,
     contacts: Option<usize>,
@@ -156,6 +158,8 @@ struct LogNormalTable {
 
 /// Width of frequency bins where none is given, Hz.
 const BIN: f64 = 500.0;
+/// Bisections of the line to the nominal point where none are given: three more solutions a point at most.
+const BISECTIONS: usize = 2;
 
 /// Reads and checks the file of a study; the model that it names is looked for beside it.
 ///
@@ -182,6 +186,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
         .and_then(|design| correlated(design, &keys.correlation, &parameters))
         .map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
     let bin = keys.bin.unwrap_or(BIN);
+    let bisections = keys.bisections.unwrap_or(BISECTIONS);
     let [from, to] = keys.band.unwrap_or([0.0, 1.0]);
     let mistakes = [
         keys.unstable.and_then(InstabilityCriterion::mistake),
@@ -204,7 +209,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
         band: keys.band,
         criterion: keys.unstable,
         bin,
-        follow: keys.follow,
+        follow: keys.follow.then_some(bisections),
         gradients: keys.gradients && keys.follow,
     };
     study.contacts.map_or(Ok(()), |_| study.require_no_fields())?;
@@ -293,12 +298,14 @@ mod tests {
     #[test]
     fn a_file_is_read() {
         let study = parse(TEXT, "a/explore.toml".as_ref()).unwrap();
-        assert_eq!((study.model.as_path(), study.bin, study.follow), ("a/brake.toml".as_ref(), 250.0, true));
+        assert_eq!((study.model.as_path(), study.bin, study.follow), ("a/brake.toml".as_ref(), 250.0, Some(2)));
         assert_eq!(study.design, Design { kind: DesignKind::Sobol { n_points: 8 }, seed: 3, correlation: None });
         let [mu, modulus] = &study.parameters[..] else { panic!("two parameters, in the order of the file") };
         assert_eq!((mu.name.as_str(), mu.shared_key(), mu.is_factor), ("mu", Some("friction"), false));
         assert_eq!((modulus.keys.len(), modulus.shared_key(), modulus.is_factor), (2, None, true));
         assert!(matches!(modulus.distribution, Distribution::Normal { from: 0.5, to: f64::INFINITY, .. }));
+        let follow = |keys: &str| parse(&TEXT.replace("bin = 250", keys), "explore.toml".as_ref()).unwrap().follow;
+        assert_eq!((follow("bisections = 5"), follow("follow = false")), (Some(5), None));
     }
 
     #[test]

@@ -281,7 +281,14 @@ fn instabilities(all: &[Instability]) -> String {
     };
     let heading = "mode at the\t\t\t95 %\t95 %\tfrequency where unstable\t\tlargest\tat\n\
                    nominal point\tHz\t%\tfrom\tto\tfrom\tto\tgrowth, 1/s\tpoint";
-    if all.is_empty() { String::new() } else { aligned(heading, all.iter().map(row)) }
+    let better = |own: &Instability| {
+        let Estimate { value, low, high } = own.by_derivatives?;
+        let [value, low, high] = [value, low, high].map(|p| 100.0 * p);
+        let number = own.nominal?;
+        Some(format!("mode {number} by points and derivatives: {value:.1} % (95 %: {low:.1} to {high:.1})\n"))
+    };
+    let better: String = all.iter().filter_map(better).collect();
+    if all.is_empty() { String::new() } else { aligned(heading, all.iter().map(row)) + &better }
 }
 
 /// A line for each random field.

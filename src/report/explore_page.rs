@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::explore_plots as plots;
 use super::frame::frame;
-use crate::explore::{Instability, Outcome, PointMode, PointResult, Study};
+use crate::explore::{Estimate, Instability, Outcome, PointMode, PointResult, Study};
 use crate::output::text::plural;
 use crate::results::Exploration;
 use crate::{Error, Result};
@@ -179,25 +179,28 @@ fn cautions(study: &Study, found: &Exploration) -> Markup {
 
 fn instabilities(found: &Exploration) -> Markup {
     let what = if found.answers.is_sample { "probability, %" } else { "points, %" };
+    let has_better = found.answers.instabilities.iter().any(|own| own.by_derivatives.is_some());
     html! {
         div.over {
             table {
                 thead {
                     tr {
                         th { "mode" } th { "nominal, Hz" } th { "nominal growth, 1/s" } th { (what) } th { "95 %" }
+                        @if has_better { th { "with derivatives, %" } th { "95 %" } }
                         th { "unstable at, Hz" } th { "largest growth, 1/s" } th { "at point" } th { "doubtful links" }
                     }
                 }
-                tbody { @for own in &found.answers.instabilities { (instability(own, found)) } }
+                tbody { @for own in &found.answers.instabilities { (instability(own, found, has_better)) } }
             }
         }
         p.hint { "Modes have the numbers of the nominal point. A dash: modes that are none of it." }
     }
 }
 
-fn instability(own: &Instability, found: &Exploration) -> Markup {
+fn instability(own: &Instability, found: &Exploration, has_better: bool) -> Markup {
     let dash = || "\u{2013}".to_owned();
     let p = own.probability;
+    let range = |own: Estimate| format!("{:.1}\u{2013}{:.1}", 100.0 * own.low, 100.0 * own.high);
     let [from, to] = own.frequency_range_hz;
     let modes = found.points.iter().filter_map(PointResult::modes).flatten();
     let n_doubtful =
@@ -209,6 +212,10 @@ fn instability(own: &Instability, found: &Exploration) -> Markup {
             td { (own.nominal_growth_rate_per_s.map_or_else(dash, |a| format!("{a:+.2}"))) }
             td { (format!("{:.1}", 100.0 * p.value)) }
             td { (format!("{:.1}\u{2013}{:.1}", 100.0 * p.low, 100.0 * p.high)) }
+            @if has_better {
+                td { (own.by_derivatives.map_or_else(dash, |own| format!("{:.1}", 100.0 * own.value))) }
+                td { (own.by_derivatives.map_or_else(dash, range)) }
+            }
             td { (format!("{from:.1}\u{2013}{to:.1}")) }
             td { (format!("{:+.1}", own.largest_growth_rate_per_s)) }
             td { button type="button" data-point=(own.worst) { (own.worst) } }

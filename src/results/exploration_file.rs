@@ -168,9 +168,11 @@ fn write_answers(file: &Group, found: &Exploration) -> hdf5::Result<()> {
         let nominal = one.nominal.map_or(f64::NAN, |n| n as f64);
         let frequency = one.nominal_frequency_hz.unwrap_or(f64::NAN);
         let numbers = [nominal, frequency, lowest, highest, one.largest_growth_rate_per_s, one.worst as f64];
-        [&numbers[..], &own(&one.probability)].concat()
+        let by_derivatives = one.by_derivatives.map_or([f64::NAN; 3], |own| [own.value, own.low, own.high]);
+        [&numbers[..], &own(&one.probability), &by_derivatives].concat()
     };
-    let columns = [format!("{of_mode},{names}"), format!("-,Hz,Hz,Hz,1/s,-,{units}")];
+    let by_derivatives = "by_derivatives,by_derivatives_low,by_derivatives_high";
+    let columns = [format!("{of_mode},{names},{by_derivatives}"), format!("-,Hz,Hz,Hz,1/s,-,{units},-,-,-")];
     let rows: Vec<Vec<f64>> = answers.instabilities.iter().map(instability).collect();
     named(file, "instabilities", columns.each_ref().map(String::as_str), &rows)?;
     let quantiles = answers.growth_rate.iter().map(|own| vec![own.fraction, own.growth_rate_per_s]);

@@ -10,6 +10,7 @@ mod files;
 mod gradients;
 mod groups;
 mod nominal;
+mod path;
 mod point;
 mod reduced_subject;
 mod rounds;

@@ -28,8 +28,8 @@ impl Run<'_> {
     pub(super) fn nominal(&self, points: &mut Points, observer: &mut dyn Observer) -> Result<Option<NominalModes>> {
         let kept = points.nominal();
         let earlier = points.get(0).cloned();
-        let lacks_gradients = self.request.follow && self.request.gradients && points.gradients.is_empty();
-        let lacks = points.n_states() == 0 || lacks_gradients || self.request.follow && kept.is_none();
+        let lacks_gradients = self.request.follow.is_some() && self.request.gradients && points.gradients.is_empty();
+        let lacks = points.n_states() == 0 || lacks_gradients || self.request.follow.is_some() && kept.is_none();
         let has_modes = |point: &PointResult| point.modes().is_some_and(|modes| !modes.is_empty());
         if earlier.as_ref().is_some_and(|point| !lacks || !has_modes(point)) {
             return Ok(kept);
@@ -52,18 +52,18 @@ impl Run<'_> {
         }
         let Some(found) = found else { return Ok(None) };
         points.keep_state(0, Some(found.displacements));
-        Ok(found.nominal)
+        Ok(found.own)
     }
 
     /// Keeps what belongs to the nominal point, before the point: the first group's modes, and the derivatives where
     /// they are missing. Collective.
     fn keep(&self, found: &mut PointSolution, points: &mut Points, observer: &mut dyn Observer) -> Result<()> {
-        if let Some(nominal) = found.nominal.take() {
+        if let Some(nominal) = found.own.take() {
             let nominal = shared(&self.groups, nominal)?;
             self.groups.agree(points.keep_nominal(&nominal))?;
-            found.nominal = Some(nominal);
+            found.own = Some(nominal);
         }
-        let Some(vectors) = &found.vectors else { return Ok(()) };
+        let Some(vectors) = &found.for_gradients else { return Ok(()) };
         let gradients = self.groups.agree(self.gradients(vectors, &found.displacements, observer))?;
         self.groups.agree(points.keep_gradients(in_order(self.groups.join(gradients))))
     }

@@ -23,13 +23,14 @@ pub struct Request {
     pub band: [f64; 2],
     /// What counts as an unstable mode.
     pub criterion: InstabilityCriterion,
-    /// Whether modes are followed to the nominal point.
-    pub follow: bool,
-    /// Whether the vectors of the nominal modes serve derivatives.
+    /// How often the line to the nominal point is bisected where modes are not recognised without doubt; none where
+    /// modes are not followed.
+    pub follow: Option<usize>,
+    /// Whether the modes' vectors serve derivatives.
     pub gradients: bool,
 }
 
-/// The modes of the nominal point with M, so that those of other points are recognised.
+/// The modes of a point with its M, by which those of other points are recognised.
 pub struct NominalModes {
     /// `M y`, two columns a mode: real and imaginary part.
     pub left: Block,
@@ -45,15 +46,16 @@ pub struct PointSolution {
     pub modes: Vec<PointMode>,
     /// This rank's part of the displacements of the equilibrium.
     pub displacements: Vec<f64>,
-    /// For the points that follow, where modes are followed and this is the nominal one.
-    pub nominal: Option<NominalModes>,
-    /// For the derivatives, where this is the nominal point and they are asked for.
-    pub vectors: Option<NominalVectors>,
+    /// By which others are recognised, where modes are followed.
+    pub own: Option<NominalModes>,
+    /// For the derivatives, where they are asked for; otherwise `vectors` has them.
+    pub for_gradients: Option<NominalVectors>,
+    /// By which the modes are recognised.
+    vectors: Option<Vectors>,
 }
 
 /// The modes of a structure about its equilibrium at a friction coefficient, which is sought from the displacements
-/// `start` where these are given and it converges from there, else from rest. Without `nominal` this is the nominal
-/// point. Collective.
+/// `start` where these are given and it converges from there, else from rest. Collective.
 ///
 /// # Errors
 /// Those of equilibrium and modes.
@@ -62,7 +64,6 @@ pub fn solve(
     (structure, friction): (&Structure, f64),
     request: &Request,
     start: Option<&[f64]>,
-    nominal: Option<&NominalModes>,
     observer: &mut dyn Observer,
 ) -> Result<PointSolution> {
     structure.require_mass()?;
@@ -76,9 +77,9 @@ pub fn solve(
         };
         let modes = found.iter().map(mode).collect();
         let displacements = equilibrium.u.to_vec()?;
-        let mut solution = PointSolution { modes, displacements, nominal: None, vectors: None };
-        if request.follow && !found.is_empty() {
-            solution.follow(sweep, equilibrium, &found, request, nominal)?;
+        let mut solution = PointSolution { modes, displacements, own: None, for_gradients: None, vectors: None };
+        if request.follow.is_some() && !found.is_empty() {
+            solution.keep_vectors(sweep, equilibrium, &found, request.gradients)?;
         }
         Ok(solution)
     })
@@ -109,33 +110,44 @@ const LINK_ACCURACY: f64 = 1e-4;
 const DERIVATIVE_ACCURACY: f64 = 1e-7;
 
 impl PointSolution {
-    /// Recognises the modes, or keeps what recognises those of other points where this is the nominal one. Collective.
-    fn follow(
+    /// Keeps left and right vectors of the modes, for derivatives or to recognise modes. Collective.
+    fn keep_vectors(
         &mut self,
         sweep: &mut Sweep,
         equilibrium: &Equilibrium,
         found: &[Mode],
-        request: &Request,
-        nominal: Option<&NominalModes>,
+        differentiates: bool,
     ) -> Result<()> {
-        let differentiates = request.gradients && nominal.is_none();
         let accuracy = if differentiates { DERIVATIVE_ACCURACY } else { LINK_ACCURACY };
         let vectors = Vectors { left: sweep.left_vectors(found, |_| accuracy)?, right: sweep.right_vectors(found)? };
-        let weighted = vectors.weighted(&sweep.system.m)?;
-        if let Some(nominal) = nominal {
-            vectors.follow(nominal, &weighted, &mut self.modes);
+        self.own = Some(vectors.weighted(&sweep.system.m)?);
+        if !differentiates {
+            self.vectors = Some(vectors);
             return Ok(());
         }
-        for (nominal, mode) in (1..).zip(&mut self.modes) {
+        let lambdas = found.iter().map(|mode| mode.lambda).collect();
+        let own = |problem: &QuadraticProblem| NominalVectors::new(problem, lambdas, [vectors.left, vectors.right]);
+        self.for_gradients = Some(sweep.linearise(equilibrium, own)?);
+        Ok(())
+    }
+
+    /// Says that the modes are those of the nominal point, where modes are followed.
+    pub fn are_nominal(&mut self) {
+        for (nominal, mode) in (1..).zip(&mut self.modes).filter(|_| self.own.is_some()) {
             mode.link = Some(Link { nominal, share: 1.0, doubtful: false });
         }
-        self.nominal = Some(weighted);
-        if differentiates {
-            let lambdas = found.iter().map(|mode| mode.lambda).collect();
-            let own = |problem: &QuadraticProblem| NominalVectors::new(problem, lambdas, [vectors.left, vectors.right]);
-            self.vectors = Some(sweep.linearise(equilibrium, own)?);
-        }
-        Ok(())
+    }
+
+    /// The modes of another point that the modes are. Collective.
+    pub fn links(&self, other: &NominalModes) -> Vec<Option<Link>> {
+        let (Some(vectors), Some(own)) = (&self.vectors, &self.own) else { return vec![None; self.modes.len()] };
+        let products = ModeProducts {
+            nominal_left: hermitian(&other.left, &vectors.right),
+            nominal_right: hermitian(&vectors.left, &other.right),
+            nominal_own: other.own.clone(),
+            own: own.own.clone(),
+        };
+        link(&products.shares())
     }
 }
 
@@ -178,19 +190,6 @@ impl Vectors {
         let n = right.n_columns() / 2;
         let whole = hermitian(&self.left, &right);
         Ok(NominalModes { left, right, own: (0..n).map(|i| whole[(i, i)]).collect() })
-    }
-
-    /// Recognises the modes.
-    fn follow(&self, nominal: &NominalModes, weighted: &NominalModes, modes: &mut [PointMode]) {
-        let products = ModeProducts {
-            nominal_left: hermitian(&nominal.left, &self.right),
-            nominal_right: hermitian(&self.left, &nominal.right),
-            nominal_own: nominal.own.clone(),
-            own: weighted.own.clone(),
-        };
-        for (mode, link) in modes.iter_mut().zip(link(&products.shares())) {
-            mode.link = link;
-        }
     }
 }
 

@@ -61,7 +61,8 @@ impl Run<'_> {
                 continue;
             }
             let start = points.nearest(&self.values[number], &self.scales);
-            let (point, found) = self.point(number, &self.request, start, nominal, observer)?;
+            let request = Request { gradients: false, ..self.request };
+            let (point, found) = self.point(number, &request, start, nominal, observer)?;
             points.commit(number, point, found.map(|found| found.displacements))?;
             self.folder.iter().for_each(Folder::keep);
             points.look_for(if turns.has_others() && self.groups.world.is_root() { numbers } else { &[] });
@@ -76,7 +77,8 @@ impl Run<'_> {
         }
     }
 
-    /// Solves one point; what fails is its result. Collective in the group.
+    /// Solves one point, and recognises its modes; without `nominal` it is the nominal one. What fails is its result.
+    /// Collective in the group.
     pub(super) fn point(
         &self,
         number: usize,
@@ -85,21 +87,35 @@ impl Run<'_> {
         nominal: Option<&NominalModes>,
         observer: &mut dyn Observer,
     ) -> Result<(PointResult, Option<PointSolution>)> {
-        let (values, comm) = (self.values[number].clone(), &self.groups.own);
-        let found = self
-            .subject
-            .structure(comm, &values)
-            .and_then(|(structure, friction)| solve(comm, (&structure, friction), request, start, nominal, observer));
-        match found {
+        let values = self.values[number].clone();
+        match self.solved(&values, request, start, observer)? {
             Ok(mut found) => {
+                match nominal {
+                    Some(nominal) => self.follow(&values, &mut found, nominal, observer)?,
+                    None => found.are_nominal(),
+                }
                 let outcome = Outcome::Modes(std::mem::take(&mut found.modes));
                 Ok((PointResult { values, outcome }, Some(found)))
             }
-            Err(error) => {
-                // A reason is the same on all ranks.
-                let reason = comm.broadcast_value(0, of_point(&self.groups, error)?.to_string());
-                Ok((PointResult { values, outcome: Outcome::Failed(reason) }, None))
-            }
+            Err(reason) => Ok((PointResult { values, outcome: Outcome::Failed(reason) }, None)),
+        }
+    }
+
+    /// Equilibrium and modes with some values, or why there are none. Collective in the group.
+    pub(super) fn solved(
+        &self,
+        values: &[f64],
+        request: &Request,
+        start: Option<&[f64]>,
+        observer: &mut dyn Observer,
+    ) -> Result<std::result::Result<PointSolution, String>> {
+        let comm = &self.groups.own;
+        let structure = self.subject.structure(comm, values);
+        let found = structure.and_then(|(brake, friction)| solve(comm, (&brake, friction), request, start, observer));
+        match found {
+            Ok(found) => Ok(Ok(found)),
+            // A reason is the same on all ranks.
+            Err(error) => Ok(Err(comm.broadcast_value(0, of_point(&self.groups, error)?.to_string()))),
         }
     }
 }
