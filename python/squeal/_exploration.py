@@ -29,7 +29,7 @@ class Exploration:
     gradients: np.ndarray
     """Derivatives of the nominal eigenvalues by each parameter, complex, k x m; NaN where there is none."""
     answers: dict
-    """Tables of numbers (unstable, instabilities, bins, growth_rate, indices): a dictionary of columns each."""
+    """Tables of numbers (unstable, instabilities, hopf, bins, growth_rate, indices): a dictionary of columns each."""
 
     def largest_growth(self) -> np.ndarray:
         """The largest growth rate of each point, 1/s; NaN where it failed."""
@@ -55,7 +55,7 @@ def read_exploration(path) -> Exploration:
             modes=file["modes"][...],
             gradients=slopes[..., 0] + 1j * slopes[..., 1],
             answers={
-                name: _columns(file[name]) for name in ("unstable", "instabilities", "bins", "growth_rate", "indices")
+                name: _columns(file[name]) for name in ("unstable", "instabilities", "hopf", "bins", "growth_rate", "indices")
             },
         )
 

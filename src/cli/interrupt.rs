@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use nix::sys::signal::{SigSet, Signal};
-
-use crate::native::end_process;
-use crate::{Error, ErrorKind, Result};
+use crate::native::signals::{end_by_signal, end_process, receive_stop_signals};
+use crate::{ErrorKind, Result};
 
 /// Seconds that the value at hand has after a signal. A factorisation or a search for modes, which may take hours,
 /// cannot be interrupted; but a finished value is written as a whole, so that the process may end at any moment.
 const GRACE: Duration = Duration::from_secs(4);
+/// Time to say so: nobody may be reading.
+const LAST_WORDS: Duration = Duration::from_millis(200);
 
 /// Receives the signals that ask a program to stop.
 #[derive(Clone)]
@@ -34,22 +34,15 @@ struct Answer {
 }
 
 impl Interrupt {
-    /// From now on SIGINT and SIGTERM reach a thread of this object and no handler: METIS has one of its own while it
-    /// works, which leaves METIS by a jump. To be called before the program has other threads, which inherit what is
-    /// blocked. A signal ends the process until [`Self::listen`] is called.
+    /// From now on SIGINT and SIGTERM are received. To be called before the program starts threads. A signal ends the
+    /// process until [`Self::listen`] is called.
     ///
     /// # Errors
     /// The system's.
     pub fn receive() -> Result<Interrupt> {
-        let signals = SigSet::from_iter([Signal::SIGINT, Signal::SIGTERM]);
-        signals.thread_block().map_err(Error::library("signals cannot be blocked"))?;
         let received = Arc::new(Received::default());
-        let inner = received.clone();
-        std::thread::spawn(move || {
-            while let Ok(signal) = signals.wait() {
-                inner.receive(signal as i32);
-            }
-        });
+        let own = received.clone();
+        receive_stop_signals(move |number| own.receive(number))?;
         Ok(Interrupt { received })
     }
 
@@ -67,17 +60,18 @@ impl Interrupt {
 
 impl Received {
     fn receive(self: &Arc<Self>, number: i32) {
-        let is_first = self.signal.swap(number, Ordering::Relaxed) == 0;
-        let answer = self.answer.get().filter(|_| is_first);
-        let Some(answer) = answer else { end_process(ErrorKind::SIGNAL + number) };
-        (answer.notice)();
+        let Some(answer) = self.answer.get() else { end_by_signal(number) };
+        if self.signal.compare_exchange(0, number, Ordering::Relaxed, Ordering::Relaxed).is_err() {
+            end_process(ErrorKind::SIGNAL + number);
+        }
         let later = self.clone();
+        // Before anything is printed, which may wait for a reader.
         std::thread::spawn(move || {
             std::thread::sleep(GRACE);
-            if let Some(answer) = later.answer.get() {
-                (answer.farewell)();
-            }
+            std::thread::spawn(move || later.answer.get().map(|answer| (answer.farewell)()));
+            std::thread::sleep(LAST_WORDS);
             end_process(ErrorKind::SIGNAL + number);
         });
+        (answer.notice)();
     }
 }

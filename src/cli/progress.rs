@@ -2,6 +2,7 @@
 //! nothing.
 
 use std::cell::Cell;
+use std::io::{Write, stderr};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -61,14 +62,14 @@ impl Progress {
         self.printed.set(Instant::now());
         if self.has_lines {
             let elapsed = self.start.elapsed().as_secs_f64();
-            self.bar.suspend(|| eprintln!("[{elapsed:.0} s] {text}"));
+            self.bar.suspend(|| write_line(&format!("[{elapsed:.0} s] {text}")));
         }
     }
 
     /// Prints a line for everybody, on the first rank.
     pub fn print(&self, line: &str) {
         if self.is_root {
-            self.bar.suspend(|| eprintln!("{}", printable(line)));
+            self.bar.suspend(|| write_line(&printable(line)));
         }
     }
 
@@ -77,7 +78,7 @@ impl Progress {
         let (bar, is_root) = (self.bar.clone(), self.is_root);
         move || {
             if is_root {
-                bar.suspend(|| eprintln!("{line}"));
+                bar.suspend(|| write_line(line));
             }
         }
     }
@@ -149,10 +150,16 @@ impl<'a> Stages<'a> {
         }
         let peak_gb = peak_mb(self.comm) / 1024.0;
         if self.comm.is_root() {
-            eprintln!("{stage}: {:.1} s, peak memory {peak_gb:.2} GB", self.last.elapsed().as_secs_f64());
+            let seconds = self.last.elapsed().as_secs_f64();
+            write_line(&format!("{stage}: {seconds:.1} s, peak memory {peak_gb:.2} GB"));
         }
         self.last = Instant::now();
     }
+}
+
+/// Writes a line to standard error. That nobody reads it any more is no error.
+fn write_line(line: &str) {
+    let _ = writeln!(stderr(), "{line}");
 }
 
 #[cfg(test)]

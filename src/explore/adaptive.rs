@@ -42,7 +42,7 @@ pub struct BoundaryPair {
 
 /// The points of an adaptive design as they come.
 #[derive(Debug, Clone)]
-pub struct Refinement {
+pub struct BoundarySearch {
     design: Design,
     rule: AdaptiveRule,
     distributions: Vec<Distribution>,
@@ -58,17 +58,17 @@ struct Edge {
     square: f64,
 }
 
-impl Refinement {
+impl BoundarySearch {
     /// With the points of the start; none for a design that is not adaptive.
     ///
     /// # Errors
     /// [`crate::Error::Input`] for more dimensions than the Sobol sequence has.
-    pub fn new(study: &Study) -> Result<Option<Refinement>> {
+    pub(super) fn new(study: &Study) -> Result<Option<BoundarySearch>> {
         let DesignKind::Adaptive(rule) = study.design.kind else { return Ok(None) };
         let distributions: Vec<Distribution> = study.parameters.iter().map(|own| own.distribution.clone()).collect();
         let coordinates = study.design.sobol(rule.n_start, distributions.len())?;
         let n_of_sequence = rule.n_start;
-        Ok(Some(Refinement { design: study.design.clone(), rule, distributions, coordinates, n_of_sequence }))
+        Ok(Some(BoundarySearch { design: study.design.clone(), rule, distributions, coordinates, n_of_sequence }))
     }
 
     /// Adds the points of the next round, and gives the values of their parameters; none at the end. `points` are those
@@ -79,7 +79,7 @@ impl Refinement {
     ///
     /// # Panics
     /// Where there are fewer points than were given.
-    pub fn next(&mut self, points: &[PointResult]) -> Result<Vec<Vec<f64>>> {
+    pub(super) fn next(&mut self, points: &[PointResult]) -> Result<Vec<Vec<f64>>> {
         let n = ROUND.min(self.rule.n_points - self.coordinates.len());
         if n == 0 {
             return Ok(Vec::new());
@@ -161,7 +161,7 @@ impl Refinement {
 impl Study {
     /// Neighbours of opposite verdict among the finished points of an adaptive design, the widest apart first.
     pub(super) fn boundary(&self, points: &[PointResult]) -> Vec<BoundaryPair> {
-        let Ok(Some(mut refinement)) = Refinement::new(self) else { return Vec::new() };
+        let Ok(Some(mut refinement)) = BoundarySearch::new(self) else { return Vec::new() };
         while refinement.coordinates.len() < points.len() {
             let n = refinement.coordinates.len();
             match refinement.next(&points[..n]) {
@@ -217,7 +217,7 @@ mod tests {
 
     /// All points of a study.
     fn run(study: &Study, growth: impl Fn(&[f64]) -> Option<f64>) -> Vec<PointResult> {
-        let mut refinement = Refinement::new(study).unwrap().unwrap();
+        let mut refinement = BoundarySearch::new(study).unwrap().unwrap();
         let mut added: Vec<Vec<f64>> = refinement.coordinates.iter().map(|point| refinement.values(point)).collect();
         let mut points = Vec::new();
         while !added.is_empty() {
@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn a_round_bisects_and_has_the_next_point_of_the_sequence() {
         let study = study(RULE, 2);
-        let mut refinement = Refinement::new(&study).unwrap().unwrap();
+        let mut refinement = BoundarySearch::new(&study).unwrap().unwrap();
         let start: Vec<Vec<f64>> = refinement.coordinates.iter().map(|point| refinement.values(point)).collect();
         let points: Vec<PointResult> = start.iter().map(|values| point(values, Some(values[0] - 0.5))).collect();
         let added = refinement.next(&points).unwrap();

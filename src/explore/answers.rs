@@ -5,9 +5,11 @@ use serde::Serialize;
 use super::adaptive::BoundaryPair;
 use super::design::DesignKind;
 use super::gradient::{Gradient, MissingDerivative, Tornado, missing_derivatives, tornados};
+use super::hopf::HopfCurves;
+use super::instability::{Instability, instabilities};
 use super::predicted::Prediction;
 use super::result::{PointMode, PointResult};
-use super::sensitivity::{Bar, Estimate, Indices, sobol_indices, tornado};
+use super::sensitivity::{Bar, Indices, sobol_indices, tornado};
 use super::statistics::{Probability, quantile};
 use super::study::Study;
 
@@ -41,6 +43,8 @@ pub struct Answers {
     pub missing_derivatives: Vec<MissingDerivative>,
     /// Neighbours with opposite verdicts of an adaptive design, the widest apart first.
     pub boundary: Vec<BoundaryPair>,
+    /// Where modes turn unstable on a map.
+    pub hopf: HopfCurves,
     /// The point with the largest growth rate.
     pub worst: Option<usize>,
 }
@@ -52,27 +56,6 @@ pub struct Quantile {
     pub fraction: f64,
     /// Growth rate, 1/s.
     pub growth_rate_per_s: f64,
-}
-
-/// A mode that is unstable at one point at least.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Instability {
-    /// Number of the nominal mode, from 1; none for modes that were not recognised.
-    pub nominal: Option<usize>,
-    /// Its frequency at the nominal point, Hz.
-    pub nominal_frequency_hz: Option<f64>,
-    /// Its growth rate there, 1/s.
-    pub nominal_growth_rate_per_s: Option<f64>,
-    /// That it is unstable.
-    pub probability: Probability,
-    /// The same from points and derivatives together, where its interval is narrower.
-    pub by_derivatives: Option<Estimate>,
-    /// Smallest and largest frequency where it is unstable, Hz.
-    pub frequency_range_hz: [f64; 2],
-    /// Its largest growth rate, 1/s.
-    pub largest_growth_rate_per_s: f64,
-    /// The point of that.
-    pub worst: usize,
 }
 
 /// That a mode is unstable in a range of frequencies.
@@ -115,6 +98,9 @@ impl Answers {
         let n_unstable = sample.iter().filter(|(_, point)| point.is_unstable()).count();
         let growth = |(number, point): &(usize, &PointResult)| Some((*number, quantity(point)?));
         let worst = solved.iter().filter_map(growth).max_by(|a, b| a.1.total_cmp(&b.1));
+        let n_counted = (0..own.len()).filter(|index| study.is_independent(*index)).count();
+        let is_complete = sample.len() == n_counted;
+        let prediction = Prediction::new(study, gradients, &nominal.values).filter(|_| is_complete);
         Answers {
             n_points: own.len(),
             n_failed: own.len() - solved.len(),
@@ -122,18 +108,14 @@ impl Answers {
             is_sample: study.design.is_sample(),
             unstable: Probability::of(n_unstable, sample.len()),
             growth_rate: FRACTIONS.iter().filter_map(at).collect(),
-            instabilities: instabilities(
-                nominal,
-                &solved,
-                &sample,
-                Prediction::new(study, gradients, &nominal.values).as_ref(),
-            ),
+            instabilities: instabilities(nominal, &solved, &sample, prediction.as_ref()),
             bins: bins(&sample, band, study.bin),
             indices: indices(study, own),
             tornado: bars(study, nominal, &solved),
             gradients: may_squeal(study, gradients, points),
             missing_derivatives: missing_derivatives(&study.parameters, gradients),
             boundary: study.boundary(own),
+            hopf: study.hopf(own),
             worst: worst.map(|(number, _)| number),
         }
     }
@@ -141,19 +123,20 @@ impl Answers {
 
 impl Study {
     /// Whether a point is independent of the others, so that it counts for probabilities: of a design for Sobol indices
-    /// only A and B, of an adaptive design only those that it starts with.
+    /// only A and B, of a design that adds points only those that it starts with.
     pub fn is_independent(&self, index: usize) -> bool {
         match self.design.kind {
             DesignKind::Saltelli { .. } => index % (self.parameters.len() + 2) < 2,
-            DesignKind::Adaptive(rule) => index < rule.n_start,
-            _ => true,
+            _ => self.design.n_start().is_none_or(|n_start| index < n_start),
         }
     }
 
-    /// The levels of the two parameters of a grid; none of another design.
+    /// The levels of the two parameters of a grid or map; none of another design.
     pub fn plane(&self) -> Option<[Vec<f64>; 2]> {
         match (&self.design.kind, &self.parameters[..]) {
-            (DesignKind::Grid { n_levels }, [a, b]) => Some([a, b].map(|own| own.distribution.levels(*n_levels))),
+            (DesignKind::Grid { n_levels } | DesignKind::Map { n_levels }, [a, b]) => {
+                Some([a, b].map(|own| own.distribution.levels(*n_levels)))
+            }
             _ => None,
         }
     }
@@ -165,50 +148,6 @@ impl Study {
 
 fn doubtful(point: &PointResult) -> impl Iterator<Item = &PointMode> {
     point.modes().into_iter().flatten().filter(|mode| mode.link.is_some_and(|link| link.doubtful))
-}
-
-fn instabilities(
-    nominal: &PointResult,
-    solved: &[(usize, &PointResult)],
-    sample: &[(usize, &PointResult)],
-    prediction: Option<&Prediction>,
-) -> Vec<Instability> {
-    let unstable = |points: &[(usize, &PointResult)], of: Option<usize>| -> Vec<(usize, PointMode)> {
-        let own = |mode: &&PointMode| mode.unstable && mode.link.map(|link| link.nominal) == of;
-        let modes = |(number, point): &(usize, &PointResult)| {
-            let number = *number;
-            point.modes().into_iter().flatten().filter(own).map(move |mode| (number, *mode)).collect::<Vec<_>>()
-        };
-        points.iter().flat_map(modes).collect()
-    };
-    let n_nominal = nominal.modes().map_or(0, <[PointMode]>::len);
-    let instability = |of: Option<usize>| {
-        let found = unstable(solved, of);
-        let (worst, largest) =
-            found.iter().max_by(|a, b| a.1.growth_rate().total_cmp(&b.1.growth_rate())).map(|(n, mode)| (*n, *mode))?;
-        let mut where_unstable: Vec<usize> = unstable(sample, of).iter().map(|(number, _)| *number).collect();
-        where_unstable.dedup();
-        let frequencies = || found.iter().map(|(_, mode)| mode.frequency());
-        let own = of.and_then(|number| nominal.modes()?.get(number - 1));
-        let probability = Probability::of(where_unstable.len(), sample.len());
-        let by_derivatives = |mode| prediction?.probability((of? - 1, mode), sample, probability);
-        Some(Instability {
-            nominal: of,
-            nominal_frequency_hz: own.map(PointMode::frequency),
-            nominal_growth_rate_per_s: own.map(PointMode::growth_rate),
-            probability,
-            by_derivatives: own.and_then(by_derivatives),
-            frequency_range_hz: [
-                frequencies().fold(f64::INFINITY, f64::min),
-                frequencies().fold(f64::NEG_INFINITY, f64::max),
-            ],
-            largest_growth_rate_per_s: largest.growth_rate(),
-            worst,
-        })
-    };
-    let mut all: Vec<Instability> = (1..=n_nominal).map(Some).chain([None]).filter_map(instability).collect();
-    all.sort_by(|a, b| b.probability.value.total_cmp(&a.probability.value));
-    all
 }
 
 fn bins(sample: &[(usize, &PointResult)], band: [f64; 2], width: f64) -> Vec<Bin> {

@@ -40,7 +40,12 @@ pub enum DesignKind {
         /// Number n of base points; there are n (k + 2) points for k parameters.
         n_base: usize,
     },
-    /// Points that close in on the boundary between stable and unstable ([`super::Refinement`]).
+    /// A grid of two parameters, and points of its edges at which a mode turns unstable ([`super::HopfCurves`]).
+    Map {
+        /// Levels of each parameter.
+        n_levels: usize,
+    },
+    /// Points that close in on the boundary between stable and unstable ([`super::BoundaryPair`]).
     Adaptive(AdaptiveRule),
 }
 
@@ -92,7 +97,7 @@ impl Design {
             return Err(Error::input(format!("a study has 1 to {MAX_POINTS} points, not {n}. {advice}")));
         }
         Ok(match &self.kind {
-            DesignKind::Grid { n_levels } => grid(parameters, *n_levels),
+            DesignKind::Grid { n_levels } | DesignKind::Map { n_levels } => grid(parameters, *n_levels),
             DesignKind::OneAtATime { n_levels } => one_at_a_time(parameters, nominal, *n_levels),
             DesignKind::List(points) => points.clone(),
             DesignKind::LatinHypercube { n_points } => {
@@ -113,6 +118,7 @@ impl Design {
     pub fn name(&self) -> &'static str {
         match self.kind {
             DesignKind::Grid { .. } => "grid",
+            DesignKind::Map { .. } => "map",
             DesignKind::OneAtATime { .. } => "one parameter at a time",
             DesignKind::List(_) => "list of points",
             DesignKind::LatinHypercube { .. } => "Latin hypercube",
@@ -124,13 +130,15 @@ impl Design {
 
     /// Whether the points represent the distributions of the parameters, so that their fractions are probabilities.
     pub fn is_sample(&self) -> bool {
-        !matches!(self.kind, DesignKind::Grid { .. } | DesignKind::OneAtATime { .. })
+        !matches!(self.kind, DesignKind::Grid { .. } | DesignKind::Map { .. } | DesignKind::OneAtATime { .. })
     }
 
-    /// Points that an adaptive design starts with, and that its probabilities are of; none of another design.
+    /// Points that a design starts with before it adds others, and that its fractions are of; none of a design that
+    /// adds none.
     pub fn n_start(&self) -> Option<usize> {
         match self.kind {
             DesignKind::Adaptive(rule) => Some(rule.n_start),
+            DesignKind::Map { n_levels } => Some(n_levels * n_levels),
             _ => None,
         }
     }
@@ -138,7 +146,9 @@ impl Design {
     fn n_points(&self, parameters: &[&Distribution]) -> usize {
         let levels = |n: usize| parameters.iter().map(move |parameter| parameter.levels(n).len());
         match &self.kind {
-            DesignKind::Grid { n_levels } => levels(*n_levels).fold(1, usize::saturating_mul),
+            DesignKind::Grid { n_levels } | DesignKind::Map { n_levels } => {
+                levels(*n_levels).fold(1, usize::saturating_mul)
+            }
             DesignKind::OneAtATime { n_levels } => levels(*n_levels).sum(),
             DesignKind::List(points) => points.len(),
             DesignKind::LatinHypercube { n_points } | DesignKind::Sobol { n_points } => *n_points,
@@ -284,6 +294,9 @@ mod tests {
         let rule = |n_points: usize| DesignKind::Adaptive(AdaptiveRule { n_points, n_start: 4, resolution: 0.1 });
         assert_eq!(points(rule(MAX_POINTS), 2), points(DesignKind::Sobol { n_points: 4 }, 2));
         assert_eq!(Design { kind: rule(9), seed: 7, correlation: None }.n_start(), Some(4));
+        let map = Design { kind: DesignKind::Map { n_levels: 3 }, seed: 7, correlation: None };
+        assert_eq!((map.n_start(), map.is_sample()), (Some(9), false));
+        assert_eq!(map.points(&[&UNIT; 2], &[0.5; 2]).unwrap(), points(DesignKind::Grid { n_levels: 3 }, 2));
         let too_many = Design { kind: rule(MAX_POINTS + 1), seed: 7, correlation: None };
         assert!(too_many.points(&[&UNIT], &[0.5]).unwrap_err().to_string().contains("65537"));
     }

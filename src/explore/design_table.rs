@@ -33,7 +33,7 @@ pub(super) struct CorrelationTable {
 }
 
 /// Kinds of designs by their names.
-const KINDS: [&str; 7] = ["grid", "one-at-a-time", "list", "latin-hypercube", "sobol", "saltelli", "adaptive"];
+const KINDS: [&str; 8] = ["grid", "map", "one-at-a-time", "list", "latin-hypercube", "sobol", "saltelli", "adaptive"];
 /// Levels of a parameter in a grid where none are given.
 const GRID_LEVELS: usize = 5;
 /// An adaptive design starts with this part of its points where no number is given,
@@ -85,6 +85,7 @@ pub(super) fn design(table: &DesignTable, parameters: &[Parameter], path: &Path)
             let file = table.file.as_ref().ok_or_else(missing)?;
             Ok(DesignKind::List(read_points(&beside(path, file), parameters)?))
         }),
+        "map" => own(&["levels"]).and_then(|()| map(count(table.levels.or(Some(GRID_LEVELS)), "levels")?, parameters)),
         "adaptive" => own(&["points", "start", "resolution"])
             .and_then(|()| adaptive(table, count(table.points, "points")?, parameters)),
         kind => own(&["points"]).and_then(|()| match kind {
@@ -110,13 +111,26 @@ fn adaptive(table: &DesignTable, n_points: usize, parameters: &[Parameter]) -> R
         let what = "kind \"adaptive\" has start from 1 to points, and a resolution between 0 and 1";
         return Err(Error::input(what));
     }
-    match parameters.iter().find(|own| matches!(own.distribution, Distribution::Values(_))) {
-        Some(own) => Err(Error::input(format!(
-            "kind \"adaptive\" bisects, and parameter {:?} has a list of values. Give it a range or a distribution",
-            own.name
-        ))),
-        None => Ok(DesignKind::Adaptive(AdaptiveRule { n_points, n_start, resolution })),
+    require_ranges("adaptive", parameters)?;
+    Ok(DesignKind::Adaptive(AdaptiveRule { n_points, n_start, resolution }))
+}
+
+/// A map of two parameters.
+fn map(n_levels: usize, parameters: &[Parameter]) -> Result<DesignKind> {
+    require_ranges("map", parameters)?;
+    if parameters.len() != 2 || n_levels < 2 {
+        let what = format!("kind \"map\" has two parameters and two or more levels, not {}", parameters.len());
+        return Err(Error::input(format!("{what} and {n_levels}. Give these, or kind = \"grid\"")));
     }
+    Ok(DesignKind::Map { n_levels })
+}
+
+/// That no parameter has a list of values.
+fn require_ranges(kind: &str, parameters: &[Parameter]) -> Result<()> {
+    let list = parameters.iter().find(|own| matches!(own.distribution, Distribution::Values(_)));
+    let what = |own: &Parameter| format!("kind {kind:?} looks between points, and parameter {:?} has a list", own.name);
+    let refused = |own| Err(Error::input(format!("{}. Give it a range or a distribution", what(own))));
+    list.map_or(Ok(()), refused)
 }
 
 /// A design with the correlations of its parameters.

@@ -160,6 +160,8 @@ struct LogNormalTable {
 const BIN: f64 = 500.0;
 /// Bisections of the line to the nominal point where none are given: three more solutions a point at most.
 const BISECTIONS: usize = 2;
+/// n of them take `2^n - 1` solutions a point.
+const MAX_BISECTIONS: usize = 6;
 
 /// Reads and checks the file of a study; the model that it names is looked for beside it.
 ///
@@ -187,6 +189,10 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
         .map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
     let bin = keys.bin.unwrap_or(BIN);
     let bisections = keys.bisections.unwrap_or(BISECTIONS);
+    if bisections > MAX_BISECTIONS || keys.bisections.is_some() && !keys.follow {
+        let what = format!("bisections is a number from 0 to {MAX_BISECTIONS}, and goes with follow = true");
+        return Err(Error::input(format!("{}: {what}", path.display())));
+    }
     let [from, to] = keys.band.unwrap_or([0.0, 1.0]);
     let mistakes = [
         keys.unstable.and_then(InstabilityCriterion::mistake),
@@ -322,6 +328,8 @@ mod tests {
             ("uniform = [0.3, 0.6]", "", ["parameter \"mu\"", "give one of values"]),
             ("uniform", "unifrom", ["explore.toml:9", "unknown field"]),
             ("key = \"friction\"", "key = \"friction\"\nfactor = true", ["parameter \"mu\"", "friction is not"]),
+            ("bin = 250", "bisections = 7", ["explore.toml", "from 0 to 6"]),
+            ("bin = 250", "follow = false\nbisections = 2", ["explore.toml", "goes with follow = true"]),
             ("bin = 250", "bin = 0", ["explore.toml", "bin is not above 0. Give"]),
             ("bin = 250", "band = [3000, 0]", ["explore.toml", "band is not [from, to]"]),
             ("\"friction\"", "\"a..b\"", ["explore.toml:7", "no key of a model file"]),

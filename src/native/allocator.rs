@@ -5,7 +5,7 @@ use std::io::Write;
 
 use crate::ErrorKind;
 
-use super::end_process;
+use super::signals::end_process;
 
 /// The system's allocator, which ends the process with a message where there is no memory: Rust's own aborts it, and
 /// Open MPI prints the stack of a process that aborts.

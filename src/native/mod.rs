@@ -10,6 +10,7 @@
 //! | [`block`] | blocks of vectors and the sparse kernels that multiply them |
 //! | [`machine`] | memory that is left |
 //! | [`blas`] | the kernels of OpenBLAS |
+//! | [`signals`] | SIGINT and SIGTERM, received by one thread |
 //!
 //! Every handle holds the session through its [`Comm`], so that finalisation comes last by construction; there is one
 //! session at a time. Every code that a library returns is looked at: PETSc's and SLEPc's by `petsc::error::check`,
@@ -26,18 +27,13 @@ pub mod machine;
 mod mck;
 pub mod mpi;
 pub mod petsc;
+pub mod signals;
 
 pub use allocator::Allocator;
 pub use block::{Block, Noise, Orthonormal};
 pub use direct::{Factor, FactorKind, FactorStats, Lists, Precision, partition};
 pub use mck::Mck;
 pub use mpi::{Comm, MaxLoc, Session, all_libraries, libraries, unused_options};
-/// Ends the process at once, without destructors: from any thread, and in any state of the libraries.
-pub fn end_process(code: i32) -> ! {
-    // SAFETY: it has no conditions.
-    unsafe { nix::libc::_exit(code) }
-}
-
 pub use petsc::{Csr, Gather, Matrix, Rows, Vector};
 
 #[cfg(test)]

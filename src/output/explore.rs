@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::explore_tables::{write_boundary, write_gradients, write_modes, write_points};
+use super::explore_tables::{write_boundary, write_gradients, write_hopf, write_modes, write_points};
 use super::folder::Folder;
 use super::results_folder::RESULTS;
 use super::text::{aligned, files, or_dash, plural};
@@ -39,7 +39,7 @@ pub struct Document<'a> {
     #[serde(skip)]
     tables: Vec<&'static str>,
     folder: String,
-    /// Points that an adaptive design starts with.
+    /// Points that a design starts with before it adds others.
     #[serde(skip)]
     n_start: Option<usize>,
 }
@@ -160,10 +160,15 @@ impl<'a> Document<'a> {
         )
     }
 
-    /// The boundary of an adaptive design, and which of its points the probabilities are of.
+    /// What a design has found that adds points, and which of its points the probabilities are of.
     fn boundary(&self) -> String {
         let Some(n_start) = self.n_start else { return String::new() };
-        let start = format!("probabilities are of the first {n_start} points, with which the design starts\n");
+        let what = if self.answers.is_sample { "probabilities" } else { "fractions" };
+        let start = format!("{what} are of the first {n_start} points, with which the design starts\n");
+        let n_hopf = self.answers.hopf.points.len();
+        if n_hopf > 0 {
+            return start + &format!("{n_hopf} Hopf point{} between points of the grid (hopf.csv)\n", plural(n_hopf));
+        }
         let n = self.answers.boundary.len();
         let pairs = self.answers.boundary.first().map_or_else(String::new, |widest| {
             let (s, distance) = (plural(n), widest.distance);
@@ -214,6 +219,9 @@ impl<'a> Document<'a> {
         if !self.answers.boundary.is_empty() {
             list.push(("boundary.csv", "points between stable and unstable neighbours"));
         }
+        if !self.answers.hopf.points.is_empty() {
+            list.push(("hopf.csv", "where modes turn unstable between points of the grid"));
+        }
         if self.worst_point.as_ref().is_some_and(|worst| worst.command.contains(WORST)) {
             list.push((WORST, "the model file of the worst point"));
         }
@@ -249,6 +257,9 @@ pub fn write(folder: &Folder, study: &Study, document: &Document, found: &Explor
     folder.write("gradients.csv", |out| write_gradients(out, &study.parameters, &found.gradients, points))?;
     if !found.answers.boundary.is_empty() {
         folder.write("boundary.csv", |out| write_boundary(out, &names, &found.answers.boundary))?;
+    }
+    if !found.answers.hopf.points.is_empty() {
+        folder.write("hopf.csv", |out| write_hopf(out, &names, &found.answers.hopf.points))?;
     }
     folder.write("summary.json", |out| out.write_all(super::json::text(document).as_bytes()))?;
     folder.write("summary.txt", |out| out.write_all(document.text().as_bytes()))

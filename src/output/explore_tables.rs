@@ -3,7 +3,8 @@
 use std::io::{Result as IoResult, Write};
 
 use crate::explore::{
-    BoundaryPair, Gradient, Link, Outcome, Parameter, PointMode, PointResult, Tornado, missing_derivatives, tornados,
+    BoundaryPair, Gradient, HopfPoint, Link, Outcome, Parameter, PointMode, PointResult, Tornado, missing_derivatives,
+    tornados,
 };
 
 /// A row for each point: values, largest growth rate, and why it has failed where it has.
@@ -76,6 +77,17 @@ pub(super) fn write_boundary(out: &mut dyn Write, names: &[&str], pairs: &[Bound
     for BoundaryPair { stable, unstable, distance, middle } in pairs {
         let ends = [shown(*distance), stable.to_string(), unstable.to_string()];
         table.write_record(middle.iter().map(|value| shown(*value)).chain(ends))?;
+    }
+    table.flush()
+}
+
+/// A row for each Hopf point of a map; the mode is empty where it was not recognised.
+pub(super) fn write_hopf(out: &mut dyn Write, names: &[&str], points: &[HopfPoint]) -> IoResult<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(names.iter().chain(&["frequency_hz", "nominal_mode"]))?;
+    for HopfPoint { nominal, values, frequency_hz } in points {
+        let numbers = values.iter().chain([frequency_hz]).map(|number| shown(*number));
+        table.write_record(numbers.chain([nominal.map_or_else(String::new, |number| number.to_string())]))?;
     }
     table.flush()
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::explore_plots as plots;
 use super::frame::frame;
-use crate::explore::{Estimate, Instability, Outcome, PointMode, PointResult, Study};
+use crate::explore::{Estimate, HopfCurves, Instability, Outcome, PointMode, PointResult, Study};
 use crate::output::text::plural;
 use crate::results::Exploration;
 use crate::{Error, Result};
@@ -26,6 +26,8 @@ struct Data<'a> {
     points: Vec<PointData<'a>>,
     /// Levels of each of two parameters, where the design is their grid.
     grid: Option<[Vec<f64>; 2]>,
+    /// Hopf points on a map, and the pairs of them that lines join.
+    hopf: &'a HopfCurves,
 }
 
 #[derive(Serialize)]
@@ -57,6 +59,7 @@ impl<'a> Data<'a> {
             parameters: study.parameters.iter().map(|own| own.name.as_str()).collect(),
             points: found.points.iter().map(point).collect(),
             grid: study.plane(),
+            hopf: &found.answers.hopf,
         }
     }
 }
@@ -159,7 +162,11 @@ fn cautions(study: &Study, found: &Exploration) -> Markup {
         }
         @if let Some(n_start) = study.design.n_start() {
             p.hint {
-                "Probabilities are of the first " (n_start) " points, with which the design starts."
+                @if answers.is_sample { "Probabilities" } @else { "Fractions" }
+                " are of the first " (n_start) " points, with which the design starts."
+                @if !answers.hopf.points.is_empty() {
+                    " The others close in on the " (answers.hopf.points.len()) " Hopf points between them (hopf.csv)."
+                }
                 @if let Some(widest) = answers.boundary.first() {
                     " Most of the others lie near the boundary, of which " (answers.boundary.len())
                     " pairs of neighbours are known, at most " (format!("{:.1e}", widest.distance)) " apart."
@@ -310,7 +317,11 @@ fn points_hint(study: &Study, found: &Exploration) -> Markup {
             @if is_shortened(&found.points, MAX_MODES) {
                 " There are more than " (MAX_MODES) " modes: only the unstable ones are listed here, and all of them in modes.csv."
             }
-            @if study.plane().is_some() { " The line is where the largest growth rate is 0, between the points." }
+            @if !found.answers.hopf.points.is_empty() {
+                " Squares are Hopf points, located by solutions; lines join those of one mode."
+            } @else if study.plane().is_some() {
+                " The line is where the largest growth rate is 0, between the points."
+            }
         }
     }
 }

@@ -13,7 +13,7 @@
 //!                  doubtful (0 or 1)
 //! gradients        k x m x 2   derivatives of the m nominal modes by each parameter: growth rate (1/s) and omega
 //!                  (rad/s) per unit of the parameter; NaN where there is none
-//! unstable, instabilities, bins, growth_rate, indices
+//! unstable, instabilities, hopf, bins, growth_rate, indices
 //!                  the answers: tables of numbers, NaN where there is none, whose attributes `columns` and `units`
 //!                  have a word a column
 //! ```
@@ -28,7 +28,9 @@ use serde::Serialize;
 
 use super::Exploration;
 use crate::Result;
-use crate::explore::{Estimate, Indices, Instability, Outcome, Parameter, PointMode, PointResult, Probability, Study};
+use crate::explore::{
+    Estimate, HopfPoint, Indices, Instability, Outcome, Parameter, PointMode, PointResult, Probability, Study,
+};
 use crate::hdf::{self, Format, array, list, table, text};
 
 const FORMAT: Format =
@@ -94,6 +96,9 @@ struct FailureText {
 pub fn is_one(path: &Path) -> bool {
     hdf::is_of(path, &FORMAT)
 }
+
+/// Bytes of an attribute: the names or units of a table's columns.
+const MAX_ATTRIBUTE_LENGTH: usize = 256;
 
 /// Writes what a study has found; the file appears when it is complete. Not collective.
 ///
@@ -175,6 +180,12 @@ fn write_answers(file: &Group, found: &Exploration) -> hdf5::Result<()> {
     let columns = [format!("{of_mode},{names},{by_derivatives}"), format!("-,Hz,Hz,Hz,1/s,-,{units},-,-,-")];
     let rows: Vec<Vec<f64>> = answers.instabilities.iter().map(instability).collect();
     named(file, "instabilities", columns.each_ref().map(String::as_str), &rows)?;
+    let hopf = |own: &HopfPoint| {
+        let nominal = own.nominal.map_or(f64::NAN, |n| n as f64);
+        [&own.values[..], &[own.frequency_hz, nominal]].concat()
+    };
+    let rows: Vec<Vec<f64>> = answers.hopf.points.iter().map(hopf).collect();
+    named(file, "hopf", ["first_parameter,second_parameter,frequency,nominal", "-,-,Hz,-"], &rows)?;
     let quantiles = answers.growth_rate.iter().map(|own| vec![own.fraction, own.growth_rate_per_s]);
     named(file, "growth_rate", ["fraction,growth_rate", "-,1/s"], &quantiles.collect::<Vec<_>>())?;
     let three = |own: &Estimate| [own.value, own.low, own.high];
@@ -192,8 +203,9 @@ fn named(file: &Group, name: &str, [columns, units]: [&str; 2], rows: &[Vec<f64>
 
 /// An attribute of an array.
 fn word(file: &Group, name: &str, attribute: &str, value: &str) -> hdf5::Result<()> {
-    let value: FixedUnicode<160> = value.parse().map_err(|reason| hdf5::Error::from(format!("{reason:?}")))?;
-    file.dataset(name)?.new_attr::<FixedUnicode<160>>().create(attribute)?.write_scalar(&value)
+    let value: FixedUnicode<MAX_ATTRIBUTE_LENGTH> =
+        value.parse().map_err(|reason| hdf5::Error::from(format!("{reason:?}")))?;
+    file.dataset(name)?.new_attr::<FixedUnicode<MAX_ATTRIBUTE_LENGTH>>().create(attribute)?.write_scalar(&value)
 }
 
 /// Keeps a record as TOML.
@@ -250,7 +262,7 @@ mod tests {
         let slopes = numbers("gradients");
         assert!(slopes[..2] == [1.0, -3.0] && slopes[2..].iter().all(|slope| slope.is_nan()));
         assert_eq!(numbers("bins")[..5], [0.0, 100.0, 1.0, 1.0, 1.0]);
-        let columns: FixedUnicode<160> =
+        let columns: FixedUnicode<MAX_ATTRIBUTE_LENGTH> =
             file.dataset("instabilities").unwrap().attr("columns").unwrap().read_scalar().unwrap();
         let n_columns = columns.split(',').count();
         assert_eq!(file.dataset("instabilities").unwrap().shape(), [2, n_columns]);

@@ -6,6 +6,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use num_complex::Complex64;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 use squeal::analysis::{StabilityOptions, explore, stability};
 use squeal::explore::{Outcome, PointResult};
@@ -28,7 +30,7 @@ const ADAPTIVE: &str = "model = \"brake.toml\"\nband = [0, 60000]\nfollow = fals
     [parameter.mu]\nkey = \"friction\"\nuniform = [0.0, 0.9]\n";
 pub const EXPLORE: [&str; 4] = ["explore", "explore.toml", "-o", "run"];
 
-fn place_with(study: &str) -> Place {
+pub fn place_with(study: &str) -> Place {
     let place = Place::blocks();
     place.write("explore.toml", study);
     place
@@ -218,26 +220,30 @@ fn an_adaptive_study_that_is_killed_ends_with_the_same_files() {
     assert_killed_ends_the_same(ADAPTIVE, "boundary.csv");
 }
 
-/// Kills a study twice, and compares its files, one more among them, with those of a study that was not interrupted.
-fn assert_killed_ends_the_same(study: &str, file: &str) {
+/// Kills a study ten times, once it has two points and then at random moments, and compares its files, one more among
+/// them, with those of a study that was not interrupted.
+pub fn assert_killed_ends_the_same(study: &str, file: &str) {
     let place = place_with(study);
+    let begun = Instant::now();
     done(place.run(&EXPLORE));
+    let (whole, mut chance) = (begun.elapsed().as_secs_f64(), Pcg64::seed_from_u64(7));
     let files = ["points.csv", "modes.csv", file, "summary.json", "worst.toml"];
     let expected = files.map(|file| place.read(&format!("run/{file}")));
     std::fs::remove_dir_all(place.path("run")).unwrap();
-    for n in [2, 4] {
+    for i in 0..10 {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin("squeal"));
         command.args(EXPLORE).current_dir(place.path("")).env("OPENBLAS_NUM_THREADS", "1");
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         let patience = Instant::now() + Duration::from_secs(200);
-        while n_done(&place) < n && child.try_wait().unwrap().is_none() {
-            assert!(Instant::now() < patience, "{n} points do not come");
+        while n_done(&place) < 2 && child.try_wait().unwrap().is_none() {
+            assert!(Instant::now() < patience, "two points do not come");
             std::thread::sleep(Duration::from_millis(2));
         }
+        std::thread::sleep(Duration::from_secs_f64(if i == 0 { 0.0 } else { 0.3 * whole * chance.random::<f64>() }));
         // It may be over before.
         let _ = child.kill();
         child.wait().unwrap();
-        assert!(n_done(&place) >= n || place.path("run").exists());
+        assert!(n_done(&place) >= 2 || place.path("run").exists());
     }
     if !place.path("run").exists() {
         place.write("other.toml", study.replace("seed = ", "seed = 1"));

@@ -347,6 +347,21 @@ fn a_signal_within_a_long_value_ends_the_run_within_five_seconds() {
     assert!(err.contains("stopped within a value") && !place.path("run").exists(), "{err}");
 }
 
+/// Nobody reads what the program says: it stops all the same.
+#[test]
+fn a_signal_ends_a_run_whose_messages_nobody_reads() {
+    let place = Place::pads();
+    let arguments = ["stability", "brake.toml", "--friction=0.4", "--band=0:25000", "--no-branches", "-o", "run", "-v"];
+    let mut child = start(&place, 1, &arguments);
+    drop(child.stderr.take());
+    std::thread::sleep(Duration::from_secs(2));
+    assert!(child.try_wait().unwrap().is_none(), "the value is long enough");
+    let sent = Instant::now();
+    signal("TERM", child.id());
+    assert_eq!(end(child).code, 143);
+    assert!(sent.elapsed().as_secs_f64() < 5.5 && !place.path("run").exists());
+}
+
 /// `reduce` has no values that could be kept.
 #[test]
 fn a_signal_ends_at_once_what_cannot_go_on() {

@@ -1,5 +1,6 @@
 //! The real program, alone and under mpirun, in a folder of its own.
 
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command as Process, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -41,7 +42,9 @@ pub struct Finished {
 impl From<Output> for Finished {
     fn from(output: Output) -> Finished {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Finished { code: output.status.code().unwrap_or(-1), out: text(output.stdout), err: text(output.stderr) }
+        // Of what a signal has ended shells give 128 and its number.
+        let code = output.status.code().or(output.status.signal().map(|number| 128 + number));
+        Finished { code: code.unwrap_or(-1), out: text(output.stdout), err: text(output.stderr) }
     }
 }
 

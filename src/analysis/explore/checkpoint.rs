@@ -28,7 +28,7 @@ use super::files::{
     state_name, write_list, write_nominal,
 };
 use super::groups::{Groups, Turns};
-use super::point::NominalModes;
+use super::point::WeightedModes;
 
 /// What a study finishes one by one.
 pub const UNIT: &str = "points";
@@ -262,7 +262,7 @@ impl Points {
     ///
     /// # Errors
     /// The system's and HDF5's, with the path.
-    pub fn keep_nominal(&self, nominal: &NominalModes) -> Result<()> {
+    pub fn keep_nominal(&self, nominal: &WeightedModes) -> Result<()> {
         let Some(place) = self.place.as_ref().filter(|_| self.groups.number() == 0) else { return Ok(()) };
         let comm = &self.groups.own;
         comm.agree(write_nominal(&place.join(nominal_name(comm)), nominal))
@@ -270,7 +270,7 @@ impl Points {
 
     /// The nominal modes that an earlier run with as many ranks a point has kept, where all ranks can read them.
     /// Collective over all ranks.
-    pub fn nominal(&self) -> Option<NominalModes> {
+    pub fn nominal(&self) -> Option<WeightedModes> {
         let comm = &self.groups.own;
         let place = self.place.as_ref().filter(|_| self.done.contains_key(&0))?;
         self.on_all(read_nominal(comm, &place.join(nominal_name(comm))))

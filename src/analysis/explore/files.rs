@@ -11,7 +11,7 @@ use crate::hdf::{self, Format, array, list, values};
 use crate::native::{Block, Comm};
 use crate::{Error, Result};
 
-use super::point::NominalModes;
+use super::point::WeightedModes;
 
 const FORMAT: Format = Format { name: "squeal study", version: 1, advice: "Begin again with --force" };
 
@@ -72,23 +72,23 @@ pub fn read_list(path: &Path) -> Result<Vec<f64>> {
     values(&file, "u").map_err(|reason| hdf::damaged(path, &FORMAT, reason))
 }
 
-pub fn read_nominal(comm: &Comm, path: &Path) -> Result<NominalModes> {
+pub fn read_nominal(comm: &Comm, path: &Path) -> Result<WeightedModes> {
     let file = hdf::open(path, &FORMAT)?;
     let block = |name: &str| -> hdf5::Result<Block> {
         let dataset = file.dataset(name)?;
         let [_, n_local] = dataset.shape()[..] else { return Err(format!("{name} is no table").into()) };
         Ok(Block::from_columns(comm, n_local, dataset.read_raw()?))
     };
-    let read = || -> hdf5::Result<NominalModes> {
+    let read = || -> hdf5::Result<WeightedModes> {
         let own: Vec<f64> = values(&file, "own")?;
         let own = own.as_chunks().0.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
-        Ok(NominalModes { left: block("left")?, right: block("right")?, own })
+        Ok(WeightedModes { left: block("left")?, right: block("right")?, own })
     };
     read().map_err(|reason| hdf::damaged(path, &FORMAT, reason))
 }
 
 /// Not collective.
-pub fn write_nominal(path: &Path, nominal: &NominalModes) -> Result<()> {
+pub fn write_nominal(path: &Path, nominal: &WeightedModes) -> Result<()> {
     let own: Vec<f64> = nominal.own.iter().flat_map(|z| [z.re, z.im]).collect();
     let block = |block: &Block| [block.n_columns(), block.n_local()];
     hdf::create_passing(path, &FORMAT, |file| {

@@ -122,7 +122,7 @@ impl<'s> Run<'s> {
         let about = groups.agree(about(comm, &structure, output))?;
         let about = About { n_ranks: world.size(), band, criterion, ..about };
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
-        let request = Request { band, criterion, follow: study.follow, gradients: study.gradients };
+        let request = Request { band, criterion, follow: study.follow, gradients: false };
         let scales = scales(&values);
         let refinement = Refinement::new(study)?;
         Ok(Run { groups, study, subject, about, request, values, refinement, scales, folder })
@@ -177,8 +177,8 @@ impl<'s> Run<'s> {
 
     /// All that the numbers depend on, by name; ranks and groups are none of it.
     fn identity(&self, output: Option<&Output>) -> Vec<(&'static str, String)> {
-        let Study { parameters, fields, design, contacts, .. } = self.study;
-        let study = format!("{:?}", (parameters, fields, design, self.request, contacts));
+        let Study { parameters, fields, design, contacts, gradients, .. } = self.study;
+        let study = format!("{:?}", (parameters, fields, design, self.request, contacts, gradients));
         let digest: String = Sha256::digest(study).iter().map(|byte| format!("{byte:02x}")).collect();
         let own = [
             ("SHA-256 of parameters and design", digest),

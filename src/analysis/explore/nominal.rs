@@ -17,7 +17,7 @@ use crate::{Error, Result};
 use super::Run;
 use super::checkpoint::Points;
 use super::groups::Groups;
-use super::point::{NominalModes, PointSolution, Request};
+use super::point::{PointSolution, Request, WeightedModes};
 
 /// Eigenvalues of two groups differ less, of the largest one: equilibria and modes converge further.
 const SAME_MODE: f64 = 1e-6;
@@ -25,10 +25,10 @@ const SAME_MODE: f64 = 1e-6;
 impl Run<'_> {
     /// The modes of the nominal point; where an earlier run has not finished it, the point itself and its derivatives,
     /// too; where the files of an earlier run lack something, that. Collective.
-    pub(super) fn nominal(&self, points: &mut Points, observer: &mut dyn Observer) -> Result<Option<NominalModes>> {
+    pub(super) fn nominal(&self, points: &mut Points, observer: &mut dyn Observer) -> Result<Option<WeightedModes>> {
         let kept = points.nominal();
         let earlier = points.get(0).cloned();
-        let lacks_gradients = self.request.follow.is_some() && self.request.gradients && points.gradients.is_empty();
+        let lacks_gradients = self.request.follow.is_some() && self.study.gradients && points.gradients.is_empty();
         let lacks = points.n_states() == 0 || lacks_gradients || self.request.follow.is_some() && kept.is_none();
         let has_modes = |point: &PointResult| point.modes().is_some_and(|modes| !modes.is_empty());
         if earlier.as_ref().is_some_and(|point| !lacks || !has_modes(point)) {
@@ -52,16 +52,16 @@ impl Run<'_> {
         }
         let Some(found) = found else { return Ok(None) };
         points.keep_state(0, Some(found.displacements));
-        Ok(found.own)
+        Ok(found.weighted)
     }
 
     /// Keeps what belongs to the nominal point, before the point: the first group's modes, and the derivatives where
     /// they are missing. Collective.
     fn keep(&self, found: &mut PointSolution, points: &mut Points, observer: &mut dyn Observer) -> Result<()> {
-        if let Some(nominal) = found.own.take() {
+        if let Some(nominal) = found.weighted.take() {
             let nominal = shared(&self.groups, nominal)?;
             self.groups.agree(points.keep_nominal(&nominal))?;
-            found.own = Some(nominal);
+            found.weighted = Some(nominal);
         }
         let Some(vectors) = &found.for_gradients else { return Ok(()) };
         let gradients = self.groups.agree(self.gradients(vectors, &found.displacements, observer))?;
@@ -78,7 +78,7 @@ struct NominalPart {
 }
 
 /// The nominal modes of the first group on all groups. Collective.
-fn shared(groups: &Groups, own: NominalModes) -> Result<NominalModes> {
+fn shared(groups: &Groups, own: WeightedModes) -> Result<WeightedModes> {
     if groups.n_groups() == 1 {
         return Ok(own);
     }
@@ -91,7 +91,7 @@ fn shared(groups: &Groups, own: NominalModes) -> Result<NominalModes> {
         return Ok(own);
     }
     let block = |like: &Block, values| Block::from_columns(&groups.own, like.n_local(), values);
-    Ok(NominalModes { left: block(&own.left, part.left), right: block(&own.right, part.right), own: part.own })
+    Ok(WeightedModes { left: block(&own.left, part.left), right: block(&own.right, part.right), own: part.own })
 }
 
 /// That the nominal point has a result on all ranks or on none; on all where an earlier run has one.

@@ -3,65 +3,87 @@
 //!
 //! Where an unstable mode of the point is doubtful or not recognised, the line is bisected: the modes of the point are
 //! recognised among those of the middle, and those among the nominal ones, each half again in two parts where it has
-//! doubt. Stable modes take the same way, but cause no bisection.
+//! doubt. Stable modes in doubt take the same way, but cause no bisection.
 
 use crate::Result;
-use crate::analysis::observer::Observer;
-use crate::explore::{Link, PointMode};
+use crate::analysis::observer::{Event, Observer};
+use crate::explore::Link;
 
 use super::Run;
-use super::point::{NominalModes, PointSolution, Request};
+use super::point::{PointSolution, WeightedModes};
 
 impl Run<'_> {
     /// Recognises the modes of a point. Collective in the group.
     pub(super) fn follow(
         &self,
-        values: &[f64],
+        number: usize,
         found: &mut PointSolution,
-        nominal: &NominalModes,
+        nominal: &WeightedModes,
         observer: &mut dyn Observer,
     ) -> Result<()> {
-        let wanted: Vec<usize> = positions(&found.modes, |mode| mode.unstable);
-        let n_bisections = self.request.follow.unwrap_or(0);
-        let links = self.links((&self.values[0], nominal), (values, found), &wanted, n_bisections, observer)?;
+        found.weighted = None;
+        let unstable: Vec<usize> = (0..found.modes.len()).filter(|&j| found.modes[j].unstable).collect();
+        let unstable = self.groups.own.broadcast_value(0, unstable);
+        let line = Line { number, n_bisections: self.request.follow.unwrap_or(0) };
+        let links = self.links(line, (&self.values[0], nominal), (&self.values[number], found), &unstable, observer)?;
         found.modes.iter_mut().zip(links).for_each(|(mode, link)| mode.link = link);
         Ok(())
     }
 
-    /// The modes at the start of a line that the modes at its end are. What is in doubt among the wanted ones is looked
-    /// for by way of the middle. Collective in the group.
+    /// For each mode at the end of a line that at its start which it is. What is in doubt among the wanted ones is
+    /// looked for by way of the middle. Collective in the group.
     fn links(
         &self,
-        start: (&[f64], &NominalModes),
+        line: Line,
+        start: (&[f64], &WeightedModes),
         end: (&[f64], &PointSolution),
         wanted: &[usize],
-        n_bisections: usize,
         observer: &mut dyn Observer,
     ) -> Result<Vec<Option<Link>>> {
-        let direct = end.1.links(start.1);
-        if n_bisections == 0 || n_clear(&direct, wanted) == wanted.len() {
+        // Ranks agree: rounding may differ, and what follows is collective.
+        let direct = self.groups.own.broadcast_value(0, end.1.links(start.1));
+        let in_doubt: Vec<usize> = wanted.iter().copied().filter(|&j| !is_clear(&direct[j])).collect();
+        if line.n_bisections == 0 || in_doubt.is_empty() {
             return Ok(direct);
         }
-        let middle: Vec<f64> = start.0.iter().zip(end.0).map(|(a, b)| 0.5 * (a + b)).collect();
-        let request = Request { gradients: false, ..self.request };
-        let Ok(found) = self.solved(&middle, &request, Some(&end.1.displacements), observer)? else {
-            return Ok(direct);
+        let half = Line { n_bisections: line.n_bisections - 1, ..line };
+        let values: Vec<f64> = start.0.iter().zip(end.0).map(|(a, b)| 0.5 * (a + b)).collect();
+        let mut middle = match self.solved(&values, &self.request, Some(&end.1.displacements), observer)? {
+            Ok(middle) => middle,
+            Err(reason) => {
+                let what = format!("point {}: modes are not followed by way of a point between", line.number);
+                observer.event(Event::Warning(&format!("{what} it and the nominal one, which fails: {reason}")));
+                return Ok(direct);
+            }
         };
-        let Some(own) = &found.own else { return Ok(direct) };
-        let second = self.links((&middle, own), end, wanted, n_bisections - 1, observer)?;
-        let through: Vec<usize> = wanted.iter().filter_map(|&j| Some(second[j]?.nominal - 1)).collect();
-        let first = self.links(start, (&middle, &found), &through, n_bisections - 1, observer)?;
-        Ok(better(direct, joined(&first, &second), wanted))
+        // Its vectors with M serve the second half, those without the first: not all are kept at the same time.
+        let Some(weighted) = middle.weighted.take() else { return Ok(direct) };
+        let second = self.links(half, (&values, &weighted), end, &in_doubt, observer)?;
+        drop(weighted);
+        let on_the_way: Vec<usize> = in_doubt.iter().filter_map(|&j| clear(&second[j])).collect();
+        if on_the_way.is_empty() {
+            return Ok(direct);
+        }
+        let first = self.links(half, start, (&values, &middle), &on_the_way, observer)?;
+        Ok(better(&direct, &joined(&first, &second)))
     }
 }
 
-fn positions(modes: &[PointMode], is: impl Fn(&PointMode) -> bool) -> Vec<usize> {
-    (0..modes.len()).filter(|&j| is(&modes[j])).collect()
+/// The line from the nominal point to one with a number, or a part of it.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    number: usize,
+    /// How often it may be bisected.
+    n_bisections: usize,
 }
 
-/// How many of the wanted modes are recognised without doubt.
-fn n_clear(links: &[Option<Link>], wanted: &[usize]) -> usize {
-    wanted.iter().filter(|&&j| links[j].is_some_and(|link| !link.doubtful)).count()
+fn is_clear(link: &Option<Link>) -> bool {
+    link.is_some_and(|link| !link.doubtful)
+}
+
+/// The place of the mode at the start of a line, where that is without doubt.
+fn clear(link: &Option<Link>) -> Option<usize> {
+    link.filter(|link| !link.doubtful).map(|link| link.nominal - 1)
 }
 
 /// Links of the first half of a line continued by those of the second: as sure as the less sure of both.
@@ -69,24 +91,24 @@ fn joined(first: &[Option<Link>], second: &[Option<Link>]) -> Vec<Option<Link>> 
     let through = |link: &Option<Link>| {
         let second = (*link)?;
         let first = first[second.nominal - 1]?;
-        Some(Link {
-            nominal: first.nominal,
-            share: first.share.min(second.share),
-            doubtful: first.doubtful || second.doubtful,
-        })
+        let (share, doubtful) = (first.share.min(second.share), first.doubtful || second.doubtful);
+        Some(Link { nominal: first.nominal, share, doubtful })
     };
     second.iter().map(through).collect()
 }
 
-/// The links by way of the middle where more of the wanted modes are clear by them, with the direct ones of modes that
-/// got lost there as far as these are still free; else the direct ones.
-fn better(direct: Vec<Option<Link>>, by_middle: Vec<Option<Link>>, wanted: &[usize]) -> Vec<Option<Link>> {
-    if n_clear(&by_middle, wanted) <= n_clear(&direct, wanted) {
-        return direct;
+/// Of each mode the direct link where that is clear, then that by way of the middle where that is, then what is
+/// doubtful in the same order; a mode at the start is linked once.
+fn better(direct: &[Option<Link>], by_middle: &[Option<Link>]) -> Vec<Option<Link>> {
+    let mut links: Vec<Option<Link>> = vec![None; direct.len()];
+    for (from, doubtful) in [(direct, false), (by_middle, false), (direct, true), (by_middle, true)] {
+        for (j, link) in from.iter().enumerate() {
+            let is_taken = |own: &Link| links.iter().flatten().any(|link| link.nominal == own.nominal);
+            let free = link.filter(|own| own.doubtful == doubtful && !is_taken(own));
+            links[j] = links[j].or(free);
+        }
     }
-    let is_taken = |nominal| by_middle.iter().flatten().any(|link| link.nominal == nominal);
-    let free = |link: Option<Link>| link.filter(|link| !is_taken(link.nominal));
-    by_middle.iter().zip(direct).map(|(own, direct)| own.or_else(|| free(direct))).collect()
+    links
 }
 
 #[cfg(test)]
@@ -105,12 +127,14 @@ mod tests {
     }
 
     #[test]
-    fn only_wanted_modes_decide_and_a_mode_is_linked_once() {
-        let direct = vec![link(1, 0.4), link(2, 0.9), link(3, 0.9)];
-        let by_middle = vec![link(2, 0.9), None, None];
-        assert_eq!(better(direct.clone(), by_middle.clone(), &[0]), [link(2, 0.9), None, link(3, 0.9)]);
-        assert_eq!(better(direct.clone(), by_middle.clone(), &[1]), direct);
-        assert_eq!(better(direct.clone(), by_middle, &[]), direct);
-        assert_eq!((n_clear(&direct, &[0, 1]), n_clear(&direct, &[0])), (1, 0));
+    fn clear_links_stay_and_a_mode_is_linked_once() {
+        let direct = [link(1, 0.4), link(2, 0.9), link(3, 0.5), None];
+        // The first is clear by way of the middle; the second is clear anyhow; the third may keep its own.
+        let by_middle = [link(4, 0.9), link(5, 0.7), None, link(6, 0.4)];
+        assert_eq!(better(&direct, &by_middle), [link(4, 0.9), link(2, 0.9), link(3, 0.5), link(6, 0.4)]);
+        // What is clear takes its mode from what is doubtful, and from what is clear by way of the middle.
+        let by_middle = [link(3, 0.8), None, None, link(2, 0.8)];
+        assert_eq!(better(&direct, &by_middle), [link(3, 0.8), link(2, 0.9), None, None]);
+        assert_eq!((clear(&link(4, 0.9)), clear(&link(4, 0.5)), clear(&None)), (Some(3), None, None));
     }
 }

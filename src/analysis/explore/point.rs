@@ -26,12 +26,12 @@ pub struct Request {
     /// How often the line to the nominal point is bisected where modes are not recognised without doubt; none where
     /// modes are not followed.
     pub follow: Option<usize>,
-    /// Whether the modes' vectors serve derivatives.
+    /// Whether the modes' vectors serve derivatives: those of the nominal point, and no others.
     pub gradients: bool,
 }
 
 /// The modes of a point with its M, by which those of other points are recognised.
-pub struct NominalModes {
+pub struct WeightedModes {
     /// `M y`, two columns a mode: real and imaginary part.
     pub left: Block,
     /// `M x`
@@ -46,11 +46,11 @@ pub struct PointSolution {
     pub modes: Vec<PointMode>,
     /// This rank's part of the displacements of the equilibrium.
     pub displacements: Vec<f64>,
-    /// By which others are recognised, where modes are followed.
-    pub own: Option<NominalModes>,
-    /// For the derivatives, where they are asked for; otherwise `vectors` has them.
+    /// By which the modes of other points are recognised, where modes are followed.
+    pub weighted: Option<WeightedModes>,
+    /// For the derivatives, where they are asked for.
     pub for_gradients: Option<NominalVectors>,
-    /// By which the modes are recognised.
+    /// By which these modes are recognised, unless they serve derivatives.
     vectors: Option<Vectors>,
 }
 
@@ -77,7 +77,7 @@ pub fn solve(
         };
         let modes = found.iter().map(mode).collect();
         let displacements = equilibrium.u.to_vec()?;
-        let mut solution = PointSolution { modes, displacements, own: None, for_gradients: None, vectors: None };
+        let mut solution = PointSolution { modes, displacements, weighted: None, for_gradients: None, vectors: None };
         if request.follow.is_some() && !found.is_empty() {
             solution.keep_vectors(sweep, equilibrium, &found, request.gradients)?;
         }
@@ -119,33 +119,37 @@ impl PointSolution {
         differentiates: bool,
     ) -> Result<()> {
         let accuracy = if differentiates { DERIVATIVE_ACCURACY } else { LINK_ACCURACY };
-        let vectors = Vectors { left: sweep.left_vectors(found, |_| accuracy)?, right: sweep.right_vectors(found)? };
-        self.own = Some(vectors.weighted(&sweep.system.m)?);
+        let (left, right) = (sweep.left_vectors(found, |_| accuracy)?, sweep.right_vectors(found)?);
+        let [weighted_left, weighted_right] =
+            [left.multiplied_by(&sweep.system.m)?, right.multiplied_by(&sweep.system.m)?];
+        let products = hermitian(&left, &weighted_right);
+        let own: Vec<Complex64> = products.diagonal().iter().copied().collect();
+        self.weighted = Some(WeightedModes { left: weighted_left, right: weighted_right, own: own.clone() });
         if !differentiates {
-            self.vectors = Some(vectors);
+            self.vectors = Some(Vectors { left, right, own });
             return Ok(());
         }
         let lambdas = found.iter().map(|mode| mode.lambda).collect();
-        let own = |problem: &QuadraticProblem| NominalVectors::new(problem, lambdas, [vectors.left, vectors.right]);
+        let own = |problem: &QuadraticProblem| NominalVectors::new(problem, lambdas, [left, right]);
         self.for_gradients = Some(sweep.linearise(equilibrium, own)?);
         Ok(())
     }
 
     /// Says that the modes are those of the nominal point, where modes are followed.
     pub fn are_nominal(&mut self) {
-        for (nominal, mode) in (1..).zip(&mut self.modes).filter(|_| self.own.is_some()) {
+        for (nominal, mode) in (1..).zip(&mut self.modes).filter(|_| self.weighted.is_some()) {
             mode.link = Some(Link { nominal, share: 1.0, doubtful: false });
         }
     }
 
-    /// The modes of another point that the modes are. Collective.
-    pub fn links(&self, other: &NominalModes) -> Vec<Option<Link>> {
-        let (Some(vectors), Some(own)) = (&self.vectors, &self.own) else { return vec![None; self.modes.len()] };
+    /// For each mode that of another point which it is. Collective.
+    pub fn links(&self, other: &WeightedModes) -> Vec<Option<Link>> {
+        let Some(vectors) = &self.vectors else { return vec![None; self.modes.len()] };
         let products = ModeProducts {
             nominal_left: hermitian(&other.left, &vectors.right),
             nominal_right: hermitian(&vectors.left, &other.right),
             nominal_own: other.own.clone(),
-            own: own.own.clone(),
+            own: vectors.own.clone(),
         };
         link(&products.shares())
     }
@@ -181,16 +185,8 @@ fn unless_lost<T>(nearby: Result<T>, from_rest: impl FnOnce() -> Result<T>) -> R
 struct Vectors {
     left: Block,
     right: Block,
-}
-
-impl Vectors {
-    /// With the point's own mass.
-    fn weighted(&self, m: &crate::native::Matrix) -> Result<NominalModes> {
-        let (left, right) = (self.left.multiplied_by(m)?, self.right.multiplied_by(m)?);
-        let n = right.n_columns() / 2;
-        let whole = hermitian(&self.left, &right);
-        Ok(NominalModes { left, right, own: (0..n).map(|i| whole[(i, i)]).collect() })
-    }
+    /// `y^H M x` of each mode.
+    own: Vec<Complex64>,
 }
 
 /// `y_i^H x_j` of complex vectors that are kept as two columns each. Collective.

@@ -10,7 +10,7 @@ use crate::{Error, Result};
 use super::Run;
 use super::checkpoint::Points;
 use super::groups::Turns;
-use super::point::{NominalModes, PointSolution, Request, of_point, solve};
+use super::point::{PointSolution, Request, WeightedModes, of_point, solve};
 
 /// A rank that waits for others looks so often whether they have ended.
 const WAIT: Duration = Duration::from_millis(10);
@@ -20,7 +20,7 @@ impl Run<'_> {
     pub(super) fn round(
         &self,
         points: &mut Points,
-        nominal: Option<&NominalModes>,
+        nominal: Option<&WeightedModes>,
         observer: &mut dyn Observer,
     ) -> Result<()> {
         let numbers = points.missing(self.values.len());
@@ -48,7 +48,7 @@ impl Run<'_> {
         turns: &Turns,
         numbers: &[usize],
         points: &mut Points,
-        nominal: Option<&NominalModes>,
+        nominal: Option<&WeightedModes>,
         observer: &mut dyn Observer,
     ) -> Result<()> {
         let comm = &self.groups.own;
@@ -61,8 +61,7 @@ impl Run<'_> {
                 continue;
             }
             let start = points.nearest(&self.values[number], &self.scales);
-            let request = Request { gradients: false, ..self.request };
-            let (point, found) = self.point(number, &request, start, nominal, observer)?;
+            let (point, found) = self.point(number, &self.request, start, nominal, observer)?;
             points.commit(number, point, found.map(|found| found.displacements))?;
             self.folder.iter().for_each(Folder::keep);
             points.look_for(if turns.has_others() && self.groups.world.is_root() { numbers } else { &[] });
@@ -84,15 +83,16 @@ impl Run<'_> {
         number: usize,
         request: &Request,
         start: Option<&[f64]>,
-        nominal: Option<&NominalModes>,
+        nominal: Option<&WeightedModes>,
         observer: &mut dyn Observer,
     ) -> Result<(PointResult, Option<PointSolution>)> {
         let values = self.values[number].clone();
         match self.solved(&values, request, start, observer)? {
             Ok(mut found) => {
                 match nominal {
-                    Some(nominal) => self.follow(&values, &mut found, nominal, observer)?,
-                    None => found.are_nominal(),
+                    _ if number == 0 => found.are_nominal(),
+                    Some(nominal) => self.follow(number, &mut found, nominal, observer)?,
+                    None => {}
                 }
                 let outcome = Outcome::Modes(std::mem::take(&mut found.modes));
                 Ok((PointResult { values, outcome }, Some(found)))

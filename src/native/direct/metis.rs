@@ -61,10 +61,12 @@ pub fn partition(elements: Lists, n_nodes: usize, n_parts: usize, n_common: i32)
 
 /// What METIS returns where all is well.
 const OK: i32 = 1;
+
 /// Calls METIS with SIGTERM blocked for this thread: METIS has a handler of its own while it works, which takes the
 /// signal for a failure and leaves METIS by a jump, from wherever it is. A signal waits until METIS has ended.
 ///
-/// The handler is the process's: a program with several threads has to block the signal in the others, too.
+/// The handler is the process's: where another thread does not block the signal, METIS's handler runs there, and the
+/// process crashes. The `squeal` program blocks it in all threads that it starts.
 fn undisturbed(call: impl FnOnce() -> i32) -> i32 {
     let before = SigSet::from(Signal::SIGTERM).thread_swap_mask(SigmaskHow::SIG_BLOCK);
     // SAFETY: it reads handlers alone; METIS runs on one thread.
@@ -73,7 +75,6 @@ fn undisturbed(call: impl FnOnce() -> i32) -> i32 {
     // SAFETY: the handlers that were kept.
     unsafe { sys::squeal_restore_handlers() };
     if let Ok(before) = before {
-        // It fails for sets that are none only.
         let _ = before.thread_set_mask();
     }
     status
@@ -131,9 +132,17 @@ pub(in crate::native) fn nested_dissection(graph: &Graph, weights: &[i32]) -> Re
         )
     });
     match status {
-        OK => Ok(order),
+        // An error that METIS raises as a signal has waited, too.
+        OK if is_permutation(&order) => Ok(order),
         _ => Err(Error::library("METIS")(format!("NodeND failed with code {status} on {n} vertices"))),
     }
+}
+
+fn is_permutation(order: &[i32]) -> bool {
+    let mut is_met = vec![false; order.len()];
+    order.iter().all(|&at| {
+        usize::try_from(at).ok().and_then(|at| is_met.get_mut(at)).is_some_and(|met| !std::mem::replace(met, true))
+    })
 }
 
 #[cfg(test)]
@@ -173,6 +182,14 @@ mod tests {
                 assert_eq!(order.len(), (N * N) as usize);
             });
             assert_eq!(N_CAME.load(Ordering::Relaxed), n_came);
+        }
+    }
+
+    #[test]
+    fn what_is_no_order_is_seen() {
+        assert!(is_permutation(&[2, 0, 1]) && is_permutation(&[]));
+        for wrong in [[0, 0, 1], [0, 1, 3], [0, 1, -1]] {
+            assert!(!is_permutation(&wrong));
         }
     }
 

@@ -146,7 +146,9 @@ function drawMap() {
   const x = parameterAxis(solved, i, [left, left + width]);
   const y = parameterAxis(solved, j, [top + height, top]);
   const svg = panel(byId("map"), "Stability over two parameters", x, y, [data.parameters[i], data.parameters[j]]);
-  if (data.grid && i !== j) {
+  if (data.hopf.points.length && i !== j) {
+    drawHopf(svg, (values) => [x.at(values[i]), y.at(values[j])]);
+  } else if (data.grid && i !== j) {
     const rates = data.points.slice(1).map((point) => (point.growth === null ? null : verdictRate(point)));
     for (const ends of zeroLines(data.grid, rates)) {
       const [[x1, y1], [x2, y2]] = ends.map((values) => [x.at(values[i]), y.at(values[j])]);
@@ -155,6 +157,24 @@ function drawMap() {
   }
   solved.forEach((n) => mark(svg, n, x.at(data.points[n].values[i]), y.at(data.points[n].values[j])));
   markPoint(choice.name);
+}
+
+/** Squares at Hopf points, and the lines between them. */
+function drawHopf(svg, place) {
+  const places = data.hopf.points.map((point) => place(point.values));
+  for (const ends of data.hopf.lines) {
+    const [[x1, y1], [x2, y2]] = ends.map((n) => places[n]);
+    draw(svg, "line", { x1, y1, x2, y2, class: "ink zero", stroke: "#333333", "stroke-width": 2 });
+  }
+  places.forEach(([px, py], n) => {
+    const square = draw(svg, "rect", { x: px - 3, y: py - 3, width: 6, height: 6, class: "hopf", fill: "#333333" });
+    const { nominal, values, frequency_hz } = data.hopf.points[n];
+    const mode = nominal === null ? "" : `, nominal mode ${nominal}`;
+    const numbers = values.map((value, k) => `${data.parameters[k]} = ${Number(value.toPrecision(5))}`);
+    const label = [`Hopf point at ${frequency_hz.toFixed(1)} Hz${mode}`, ...numbers].join("\n");
+    square.addEventListener("pointermove", (event) => tip.show(event, label));
+    square.addEventListener("pointerleave", () => tip.hide());
+  });
 }
 
 /** The growth rate with the sign of the verdict: rounding about 0 is no boundary. */

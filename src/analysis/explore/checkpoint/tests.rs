@@ -24,7 +24,7 @@ fn an_earlier_run_is_continued_bit_by_bit() {
         Points::open(&groups, Some(&folder), Some(&target), &[("seed", identity.to_owned())], force)
     };
     let mut points = open("1", false).unwrap();
-    let nominal = NominalModes {
+    let nominal = WeightedModes {
         left: Block::from_columns(&comm, 2, vec![1.0, 2.0, 3.0, 1.0 / 3.0]),
         right: Block::from_columns(&comm, 2, vec![0.1; 4]),
         own: vec![Complex64::new(0.1, 0.2)],
