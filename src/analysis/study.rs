@@ -84,7 +84,7 @@ enum Work {
     /// Writes the Galerkin super-element.
     ReduceGalerkin,
     /// Analyses a model or super-element.
-    Stability { model: PathBuf, contacts: Option<usize>, reduce_each: bool, branches: bool },
+    Stability { model: PathBuf, contacts: Option<usize>, reduce_each: bool },
 }
 
 /// Folder of the reference.
@@ -114,22 +114,21 @@ impl<'a> Plan<'a> {
     /// All parts, each after those that it needs.
     fn parts(&self) -> Vec<Part> {
         let (model, n) = (&self.options.model, self.options.super_element);
-        let stability = |model: &Path, contacts, reduce_each, branches| Work::Stability {
-            model: model.to_owned(),
-            contacts,
-            reduce_each,
-            branches,
+        let stability = |model: &Path, contacts, reduce_each| {
+            let model = model.to_owned();
+            Work::Stability { model, contacts, reduce_each }
         };
-        let layouts = self.options.layouts.iter().map(|&n| {
-            self.part(&format!("{n} contacts"), &format!("contacts-{n}"), stability(model, Some(n), false, false))
-        });
+        let layouts =
+            self.options.layouts.iter().map(|&n| {
+                self.part(&format!("{n} contacts"), &format!("contacts-{n}"), stability(model, Some(n), false))
+            });
         let one = format!("super-element of {n}, made at {}", self.reduced_at);
-        let one = self.part(&one, &format!("super-element-{n}"), stability(&self.element(), None, false, true));
+        let one = self.part(&one, &format!("super-element-{n}"), stability(&self.element(), None, false));
         let each = format!("super-element of {n}, made at each");
-        let each = self.part(&each, &format!("super-element-{n}-each"), stability(model, Some(n), true, false));
-        let galerkin = stability(&self.galerkin_element(), None, false, true);
+        let each = self.part(&each, &format!("super-element-{n}-each"), stability(model, Some(n), true));
+        let galerkin = stability(&self.galerkin_element(), None, false);
         let galerkin = self.part("super-element, Galerkin", "galerkin", galerkin);
-        let full = self.part("full contact", FULL, stability(model, None, false, true));
+        let full = self.part("full contact", FULL, stability(model, None, false));
         let elements = [self.reduction(), one, each, self.galerkin_reduction(), galerkin];
         [full].into_iter().chain(layouts).chain(elements).collect()
     }
@@ -217,7 +216,7 @@ impl<'a> Plan<'a> {
     }
 
     fn analyse(&self, comm: &Comm, part: &Part, observer: &mut dyn Observer) -> Result<()> {
-        let Work::Stability { model, contacts, reduce_each, branches } = &part.work else { return Ok(()) };
+        let Work::Stability { model, contacts, reduce_each } = &part.work else { return Ok(()) };
         let structure =
             Structure::read(comm, model, &StructureOptions { contacts: *contacts, ..StructureOptions::default() })?;
         let output = Output {
@@ -230,7 +229,8 @@ impl<'a> Plan<'a> {
             friction_values: Some(self.friction_values.clone()),
             band: None,
             criterion: None,
-            branches: *branches,
+            // Super-elements of their own have no modes in common.
+            branches: !reduce_each,
             reduce_each: *reduce_each,
             certify: None,
             output: Some(output),

@@ -8,6 +8,9 @@ use super::columns::write_csv;
 use super::text::{aligned, friction, or_dash, paragraph, plural};
 use crate::comparison::{CurvePoint, Errors, Onset, Sizes, StudiedModel, Study};
 
+/// Onsets whose frequencies differ by less than this part are those of one instability.
+const NEAR: f64 = 0.05;
+
 /// Sizes and times, errors, and the instabilities over friction.
 pub fn text(study: &Study) -> String {
     let Study { title, band: [from, to], n_nodes, n_elements, friction_values, .. } = study;
@@ -66,15 +69,39 @@ fn errors_text(study: &Study) -> String {
     aligned(&heading, study.models.iter().map(row)) + "growth rates relative to the largest of the reference\n"
 }
 
-/// Where modes become unstable, in models whose modes were followed.
+/// Where modes become unstable, in models whose modes were followed: a column for each onset of the reference, and one
+/// for those that it does not have.
 fn onsets_text(study: &Study) -> String {
-    let one = |onset: &Onset| format!("{:.4} ({:.0} Hz)", onset.friction, onset.frequency);
-    let list = |model: &StudiedModel| model.onsets.iter().map(one).collect::<Vec<_>>().join(", ");
-    let followed = models(study).filter(|model| !model.onsets.is_empty());
-    aligned(
-        "followed over friction\tunstable from mu",
-        followed.map(|model| format!("{}\t{}", model.name, list(model))),
-    )
+    let expected = &study.reference.onsets;
+    let heads: String = expected.iter().map(|onset| format!("\tat {:.0} Hz", onset.frequency)).collect();
+    let row = |model: &StudiedModel| {
+        let (own, others) = own_onsets(expected, &model.onsets);
+        let own: String = own
+            .iter()
+            .map(|onset| "\t".to_owned() + &or_dash(*onset, |onset| format!("{:.4}", onset.friction)))
+            .collect();
+        let others: Vec<String> =
+            others.iter().map(|onset| format!("{:.4} ({:.0} Hz)", onset.friction, onset.frequency)).collect();
+        format!("{}{own}\t{}", model.name, if others.is_empty() { "-".into() } else { others.join(", ") })
+    };
+    let followed: Vec<&StudiedModel> = models(study).filter(|model| !model.onsets.is_empty()).collect();
+    if followed.is_empty() {
+        return String::new();
+    }
+    aligned(&format!("unstable from friction coefficient{heads}\tothers"), followed.into_iter().map(row))
+}
+
+/// For each expected onset that with the nearest frequency, at most 5 % away, and the onsets that are left. The first of
+/// several at one frequency comes first in both.
+fn own_onsets<'a>(expected: &[Onset], all: &'a [Onset]) -> (Vec<Option<&'a Onset>>, Vec<&'a Onset>) {
+    let mut left: Vec<&Onset> = all.iter().collect();
+    let mut take = |expected: &Onset| {
+        let distance = |onset: &&Onset| (onset.frequency / expected.frequency - 1.0).abs();
+        let (place, nearest) = left.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))?;
+        (distance(nearest) < NEAR).then(|| left.remove(place))
+    };
+    let own = expected.iter().map(&mut take).collect();
+    (own, left)
 }
 
 /// An instability by its frequency where it begins to grow.
@@ -178,5 +205,17 @@ mod tests {
             String::from_utf8(out).unwrap().lines().next().unwrap().to_owned() + "\n"
         };
         insta::assert_snapshot!(super::text(&study) + &[super::sizes, errors, curves].map(header).concat());
+    }
+
+    #[test]
+    fn an_onset_belongs_to_the_nearest_frequency_and_once() {
+        let onset = |friction, frequency| Onset { friction, frequency };
+        let expected = [onset(0.2, 5900.0), onset(0.3, 1770.0)];
+        let all = [onset(0.35, 1780.0), onset(0.25, 5950.0), onset(0.8, 1775.0), onset(0.9, 5100.0)];
+        let (own, others) = own_onsets(&expected, &all);
+        assert_eq!(own, [Some(&all[1]), Some(&all[2])], "by frequency");
+        assert_eq!(others, [&all[0], &all[3]]);
+        let (own, others) = own_onsets(&expected, &all[3..]);
+        assert_eq!((own, others), (vec![None, None], vec![&all[3]]), "5 % away at most");
     }
 }
