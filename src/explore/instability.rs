@@ -28,8 +28,9 @@ pub struct Instability {
     pub worst: usize,
 }
 
-/// The modes of the nominal point that are unstable anywhere, the most probable first, and those that are no mode of it.
-/// Points have their numbers; `solved` are all that have modes, `sample` those of them that count for probabilities.
+/// The modes of the nominal point that are unstable anywhere, the most probable first, and those that are no mode of
+/// it. Points have their numbers; `solved` are all that have modes, `sample` those of them that count for
+/// probabilities.
 pub(super) fn instabilities(
     nominal: &PointResult,
     solved: &[(usize, &PointResult)],

@@ -188,11 +188,6 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
         .and_then(|design| correlated(design, &keys.correlation, &parameters))
         .map_err(|what| at(keys.design.kind.span().start, what.to_string()))?;
     let bin = keys.bin.unwrap_or(BIN);
-    let bisections = keys.bisections.unwrap_or(BISECTIONS);
-    if bisections > MAX_BISECTIONS || keys.bisections.is_some() && !keys.follow {
-        let what = format!("bisections is a number from 0 to {MAX_BISECTIONS}, and goes with follow = true");
-        return Err(Error::input(format!("{}: {what}", path.display())));
-    }
     let [from, to] = keys.band.unwrap_or([0.0, 1.0]);
     let mistakes = [
         keys.unstable.and_then(InstabilityCriterion::mistake),
@@ -215,11 +210,21 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
         band: keys.band,
         criterion: keys.unstable,
         bin,
-        follow: keys.follow.then_some(bisections),
+        follow: follow(keys.follow, keys.bisections, path)?,
         gradients: keys.gradients && keys.follow,
     };
     study.contacts.map_or(Ok(()), |_| study.require_no_fields())?;
     Ok(study)
+}
+
+/// How often the line to the nominal point may be bisected; none where modes are not followed.
+fn follow(follow: bool, bisections: Option<usize>, path: &Path) -> Result<Option<usize>> {
+    let n = bisections.unwrap_or(BISECTIONS);
+    if n > MAX_BISECTIONS || bisections.is_some() && !follow {
+        let what = format!("bisections is a number from 0 to {MAX_BISECTIONS}, and goes with follow = true");
+        return Err(Error::input(format!("{}: {what}", path.display())));
+    }
+    Ok(follow.then_some(n))
 }
 
 /// The parameters of the tables in the order of the file, or what is wrong with its place in the text.

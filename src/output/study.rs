@@ -91,8 +91,8 @@ fn onsets_text(study: &Study) -> String {
     aligned(&format!("unstable from friction coefficient{heads}\tothers"), followed.into_iter().map(row))
 }
 
-/// For each expected onset that with the nearest frequency, at most 5 % away, and the onsets that are left. The first of
-/// several at one frequency comes first in both.
+/// For each expected onset that with the nearest frequency, at most 5 % away, the first of several; and the onsets that
+/// are left.
 fn own_onsets<'a>(expected: &[Onset], all: &'a [Onset]) -> (Vec<Option<&'a Onset>>, Vec<&'a Onset>) {
     let mut left: Vec<&Onset> = all.iter().collect();
     let mut take = |expected: &Onset| {

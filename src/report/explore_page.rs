@@ -235,15 +235,17 @@ fn influences(found: &Exploration) -> Markup {
     let answers = &found.answers;
     let shares = answers.gradients.iter().filter_map(|own| own.linear_share);
     let is_rough = shares.fold(1.0, f64::min) < 0.8;
+    let n_figures = [answers.indices.is_some(), answers.tornado.is_some()].iter().filter(|is| **is).count();
+    if n_figures + answers.gradients.len() + answers.missing_derivatives.len() == 0 {
+        return html! {};
+    }
     html! {
         section aria-label="Influence of the parameters" {
             h2 { "Influence of the parameters" }
             div.charts {
                 @if let Some(all) = &answers.indices { (figure(plots::indices(all))) }
                 @if let Some(bars) = &answers.tornado { (figure(plots::swings(bars))) }
-                @for own in answers.gradients.iter().take(MAX_TORNADOS) {
-                    (figure(plots::tornado(own)))
-                }
+                @for own in answers.gradients.iter().take(MAX_TORNADOS) { (figure(plots::tornado(own))) }
             }
             @if !answers.gradients.is_empty() {
                 p.hint {
@@ -252,9 +254,7 @@ fn influences(found: &Exploration) -> Markup {
                     @if answers.gradients.len() > MAX_TORNADOS { ", the first " (MAX_TORNADOS) " of " (answers.gradients.len()) } "."
                 }
             }
-            @for own in &answers.missing_derivatives {
-                p.hint { "No derivative by " (own.parameter) ": " (own.reason) }
-            }
+            @for own in &answers.missing_derivatives { p.hint { "No derivative by " (own.parameter) ": " (own.reason) } }
             @if is_rough { (agreement(found)) }
         }
     }

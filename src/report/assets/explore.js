@@ -146,8 +146,12 @@ function drawMap() {
   const x = parameterAxis(solved, i, [left, left + width]);
   const y = parameterAxis(solved, j, [top + height, top]);
   const svg = panel(byId("map"), "Stability over two parameters", x, y, [data.parameters[i], data.parameters[j]]);
-  if (data.hopf.points.length && i !== j) {
-    drawHopf(svg, (values) => [x.at(values[i]), y.at(values[j])]);
+  const hopf = i !== j ? data.hopf.points.map(({ values }) => [x.at(values[i]), y.at(values[j])]) : [];
+  if (hopf.length) {
+    for (const ends of data.hopf.lines) {
+      const [[x1, y1], [x2, y2]] = ends.map((n) => hopf[n]);
+      draw(svg, "line", { x1, y1, x2, y2, class: "ink zero", stroke: "#333333", "stroke-width": 2 });
+    }
   } else if (data.grid && i !== j) {
     const rates = data.points.slice(1).map((point) => (point.growth === null ? null : verdictRate(point)));
     for (const ends of zeroLines(data.grid, rates)) {
@@ -156,18 +160,16 @@ function drawMap() {
     }
   }
   solved.forEach((n) => mark(svg, n, x.at(data.points[n].values[i]), y.at(data.points[n].values[j])));
+  drawHopf(svg, hopf);
   markPoint(choice.name);
 }
 
-/** Squares at Hopf points, and the lines between them. */
-function drawHopf(svg, place) {
-  const places = data.hopf.points.map((point) => place(point.values));
-  for (const ends of data.hopf.lines) {
-    const [[x1, y1], [x2, y2]] = ends.map((n) => places[n]);
-    draw(svg, "line", { x1, y1, x2, y2, class: "ink zero", stroke: "#333333", "stroke-width": 2 });
-  }
+/** Squares around Hopf points, on top: points that have led there lie below. */
+function drawHopf(svg, places) {
   places.forEach(([px, py], n) => {
-    const square = draw(svg, "rect", { x: px - 3, y: py - 3, width: 6, height: 6, class: "hopf", fill: "#333333" });
+    const at = { x: px - 7, y: py - 7, width: 14, height: 14 };
+    const look = { fill: "none", stroke: "#333333", "stroke-width": 2, "pointer-events": "stroke" };
+    const square = draw(svg, "rect", { ...at, ...look, class: "hopf" });
     const { nominal, values, frequency_hz } = data.hopf.points[n];
     const mode = nominal === null ? "" : `, nominal mode ${nominal}`;
     const numbers = values.map((value, k) => `${data.parameters[k]} = ${Number(value.toPrecision(5))}`);
