@@ -57,7 +57,7 @@ pub struct EigenOptions {
     pub n_left_one_by_one: usize,
     /// Rounds of corrections to left vectors at most; a round wins a factor of about five. Default: 40.
     pub max_left_rounds: usize,
-    /// Largest backward error of an eigenpair that is found, except by TOAR, which is the last resort. Default: 1e-10.
+    /// Largest backward error of an eigenpair that is found, except by TOAR, which is the last resort. Default: 1e-9.
     pub backward_error: f64,
 }
 
@@ -75,6 +75,9 @@ pub struct BlockedOptions {
     /// Relative change of an eigenvalue from round to round at which it is converged. A round wins a factor of three to
     /// five, so that the error left is below half the change: two searches differ by less than that. Default: 5e-10.
     pub eigenvalue_change: f64,
+    /// The round, counted from zero, that corrects left vectors and not right ones: an eigenvalue's error is the product
+    /// of both vectors' errors, and the first correction of a vector wins most. Default: 1.
+    pub left_round: usize,
     /// Rounds of correction before the search is given up. Default: 40.
     pub max_rounds: usize,
 }
@@ -86,6 +89,7 @@ impl Default for BlockedOptions {
             krylov_per_mode: 1.4,
             start_radius: 1.3,
             eigenvalue_change: 5e-10,
+            left_round: 1,
             max_rounds: 40,
         }
     }
@@ -106,7 +110,7 @@ impl Default for EigenOptions {
             modal_basis_ratio: 1.3,
             n_left_one_by_one: 6,
             max_left_rounds: 40,
-            backward_error: 1e-10,
+            backward_error: 1e-9,
         }
     }
 }

@@ -110,8 +110,10 @@ impl<'a> Space<'a> {
 
     /// For left vectors, with the columns that a search for right ones has left.
     pub fn of_left_vectors(searched: FactoredProblem<'a>, basis: Basis) -> Space<'a> {
-        let projected = basis.projected.iter().map(DMatrix::transpose).collect();
-        Space { v: basis.v, projected, ..Space::with_capacity(searched, Side::Left, 0) }
+        let Basis { v, projected } = basis;
+        let mut space = Space { v, projected, ..Space::with_capacity(searched, Side::Right, 0) };
+        space.transpose();
+        space
     }
 
     /// For left vectors, spanned by some columns.
@@ -159,6 +161,12 @@ impl<'a> Space<'a> {
     /// What is left of a space of right vectors.
     pub fn into_basis(self) -> Basis {
         Basis { v: self.v, projected: self.projected }
+    }
+
+    /// Exchanges right and left: from now on the space is one for the transposed problem.
+    pub fn transpose(&mut self) {
+        self.side = if self.side == Side::Left { Side::Right } else { Side::Left };
+        self.projected.iter_mut().for_each(|a| *a = a.transpose());
     }
 
     /// The problem.
