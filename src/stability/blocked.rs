@@ -146,7 +146,8 @@ impl Blocked {
             progress(EigenProgress { n_converged, n_wanted: ritz.len(), n_solves: space.n_solves });
             if n_converged == ritz.len() && last.len() == ritz.len() {
                 let start = space.start(&self.with_far_ones(&space, &ritz, target)?)?;
-                if let Some((pairs, backward_errors)) = accurate(&space, &start, &ritz, self.options.backward_error)? {
+                let largest = self.options.blocked.backward_error;
+                if let Some((pairs, backward_errors)) = accurate(&space, &start, &ritz, largest)? {
                     let (reach, n_solves) = (target.radius / TAU, space.n_solves);
                     (self.basis, self.start) = (Some(space.into_basis()), Some(start));
                     let solver = SolverKind::Blocked;

@@ -57,7 +57,7 @@ pub struct EigenOptions {
     pub n_left_one_by_one: usize,
     /// Rounds of corrections to left vectors at most; a round wins a factor of about five. Default: 40.
     pub max_left_rounds: usize,
-    /// Largest backward error of an eigenpair that is found, except by TOAR, which is the last resort. Default: 1e-9.
+    /// Largest backward error of an eigenpair that is found in modal coordinates. Default: 1e-10.
     pub backward_error: f64,
 }
 
@@ -78,6 +78,8 @@ pub struct BlockedOptions {
     /// The round, counted from zero, that corrects left vectors and not right ones: an eigenvalue's error is the product
     /// of both vectors' errors, and the first correction of a vector wins most. Default: 1.
     pub left_round: usize,
+    /// Largest backward error of an eigenpair. Default: 1e-9.
+    pub backward_error: f64,
     /// Rounds of correction before the search is given up. Default: 40.
     pub max_rounds: usize,
 }
@@ -90,6 +92,7 @@ impl Default for BlockedOptions {
             start_radius: 1.3,
             eigenvalue_change: 5e-10,
             left_round: 1,
+            backward_error: 1e-9,
             max_rounds: 40,
         }
     }
@@ -110,7 +113,7 @@ impl Default for EigenOptions {
             modal_basis_ratio: 1.3,
             n_left_one_by_one: 6,
             max_left_rounds: 40,
-            backward_error: 1e-9,
+            backward_error: 1e-10,
         }
     }
 }
@@ -125,8 +128,9 @@ impl EigenOptions {
     /// Concerns the blocked search.
     pub fn with_vector_accuracy(accuracy: f64) -> EigenOptions {
         let mut options = EigenOptions::default();
-        options.blocked.eigenvalue_change = (accuracy * accuracy).max(options.blocked.eigenvalue_change);
-        options.backward_error = (BACKWARD_ERROR_OF_VECTORS * accuracy).max(options.backward_error);
+        let own = &mut options.blocked;
+        own.eigenvalue_change = (accuracy * accuracy).max(own.eigenvalue_change);
+        own.backward_error = (BACKWARD_ERROR_OF_VECTORS * accuracy).max(own.backward_error);
         options
     }
 

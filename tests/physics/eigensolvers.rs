@@ -4,7 +4,7 @@
 //! many. Both solve the damped brake (10 803 nodes, 6 kHz) and the undamped pads on a disc, whose modes couple.
 //!
 //! Goal and, in brackets, what was measured: the same number of modes; eigenvalues to 1e-9 of their modulus, on the
-//! damped brake [3.0e-10, five runs] and beside a coupling [3.5e-10]; backward errors within the search's 1e-10. A
+//! damped brake [3.0e-10, five runs] and beside a coupling [3.5e-10]; backward errors within the search's 1e-9. A
 //! search that starts from the modes of another friction does as well [4.1e-10], with three quarters of the solves
 //! at most where friction differs by 0.1 [272 for 458].
 
@@ -40,7 +40,7 @@ fn distance([one_by_one, in_blocks]: &[Vec<Mode>; 2]) -> f64 {
     };
     let worst = one_by_one.iter().map(nearest).fold(0.0, f64::max);
     println!("{} modes, largest distance {worst:.1e}", one_by_one.len());
-    assert!(in_blocks.iter().all(|mode| mode.backward_error <= 1e-10));
+    assert!(in_blocks.iter().all(|mode| mode.backward_error <= 1e-9));
     worst
 }
 
