@@ -206,6 +206,33 @@ pub fn array<T: H5Type>(group: &Group, name: &str, shape: &[usize], values: &[T]
     builder.create(name).map(|_| ())
 }
 
+/// Writes an array of rows that come one after the other, so that they need not be in memory at the same time.
+///
+/// # Errors
+/// HDF5's; those of the rows; where the rows do not fill the shape.
+pub fn array_of_rows<T: H5Type>(
+    group: &Group,
+    name: &str,
+    shape: [usize; 4],
+    rows: impl Iterator<Item = hdf5::Result<Vec<T>>>,
+) -> hdf5::Result<()> {
+    let [n, own @ ..] = shape;
+    if shape.contains(&0) {
+        return array::<T>(group, name, &shape, &[]);
+    }
+    // A chunk has one row at most, so that none is written twice.
+    let chunk = chunk::<T>(&[1, own[0], own[1], own[2]]);
+    let dataset = group.new_dataset::<T>().shape(shape).chunk(chunk).fletcher32().create(name)?;
+    let mut n_written = 0;
+    for (i, row) in rows.enumerate() {
+        let row = row?;
+        let view = ArrayView::from_shape(own, &row).map_err(|reason| hdf5::Error::from(reason.to_string()))?;
+        dataset.write_slice(view, ndarray::s![i, .., .., ..])?;
+        n_written += 1;
+    }
+    if n_written == n { Ok(()) } else { Err(format!("{name} has {n_written} of {n} rows").into()) }
+}
+
 /// As many rows as fill a chunk; parts of one where it is longer.
 fn chunk<T>(shape: &[usize]) -> Vec<usize> {
     let mut n_left = (CHUNK / size_of::<T>().max(1)).max(1);
@@ -280,6 +307,21 @@ mod tests {
         file.new_attr::<i32>().create("version").unwrap().write_scalar(&FORMAT.version).unwrap();
         file.close().unwrap();
         assert!(reason(&path, &FORMAT).contains("or of an early version. Write it again") && !is_of(&path, &FORMAT));
+    }
+
+    #[test]
+    fn rows_that_come_one_after_the_other_are_an_array() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |shape: [usize; 4], n: usize| {
+            let rows = (0..n).map(|i| Ok(vec![i as f32; 4]));
+            create(&folder.path().join("a.h5"), &FORMAT, |file| array_of_rows(file, "x", shape, rows))
+        };
+        write([2, 1, 2, 2], 2).unwrap();
+        let read = || values::<f32>(&open(&folder.path().join("a.h5"), &FORMAT).unwrap(), "x").unwrap();
+        assert_eq!(read(), [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]);
+        assert!(write([3, 1, 2, 2], 2).is_err() && write([1, 1, 2, 2], 2).is_err() && write([2, 1, 3, 2], 2).is_err());
+        write([0, 5, 3, 2], 0).unwrap();
+        assert!(read().is_empty());
     }
 
     #[test]

@@ -52,6 +52,12 @@ fn shapes(motion: &mut SurfaceMotion, modes: &[&Mode], is_drawn: impl Fn(&Mode) 
     Ok(pairs.map(|(mode, samples)| one(mode, samples, if is_drawn(mode) { of_drawn.next() } else { None })).collect())
 }
 
+/// Shapes of modes on the whole surface, on the root. Collective.
+pub(super) fn whole_shapes(motion: &mut SurfaceMotion, modes: &[&Mode]) -> Result<Vec<Shape>> {
+    let all = motion.of_all(&parts(modes))?;
+    Ok(all.chunks_exact(2).map(|own| Shape::over(&own[0], &own[1], largest(&own[0], &own[1]))).collect())
+}
+
 /// Real and imaginary parts of the modes' vectors.
 fn parts<'a>(modes: &[&'a Mode]) -> Vec<&'a Vector> {
     modes.iter().flat_map(|mode| [&mode.re, &mode.im]).collect()

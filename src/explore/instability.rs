@@ -28,6 +28,15 @@ pub struct Instability {
     pub worst: usize,
 }
 
+impl Instability {
+    /// The place of its mode among those of the point where it grows fastest.
+    pub fn worst_mode(&self, points: &[PointResult]) -> Option<usize> {
+        let own = |mode: &PointMode| mode.unstable && mode.link.map(|link| link.nominal) == self.nominal;
+        let modes = points.get(self.worst)?.modes()?.iter().enumerate().filter(|(_, mode)| own(mode));
+        modes.max_by(|a, b| a.1.growth_rate().total_cmp(&b.1.growth_rate())).map(|(place, _)| place)
+    }
+}
+
 /// The modes of the nominal point that are unstable anywhere, the most probable first, and those that are no mode of
 /// it. Points have their numbers; `solved` are all that have modes, `sample` those of them that count for
 /// probabilities.

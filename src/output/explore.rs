@@ -13,7 +13,8 @@ use crate::explore::{
     Answers, Bar, Bin, Estimate, Indices, Influence, Instability, Outcome, Parameter, PointModel, PointResult, Study,
     Tornado,
 };
-use crate::results::{Exploration, FieldShare, exploration_file};
+use crate::results::exploration_file::{self, ShapesOf};
+use crate::results::{Exploration, FieldShare};
 
 /// Name of the page in the folder of a study.
 pub const PAGE: &str = "explore.html";
@@ -212,7 +213,7 @@ impl<'a> Document<'a> {
             ("points.csv", "parameters, and the largest growth rate at each point"),
             ("modes.csv", "modes at each point, with those of the nominal point that they are"),
             ("gradients.csv", "derivatives of the nominal modes by each parameter"),
-            ("results.h5", "all of this, for programs"),
+            ("results.h5", "all of this and mode shapes, for programs"),
             ("summary.json", "the answers, for programs"),
             ("summary.txt", "this text"),
         ];
@@ -248,9 +249,15 @@ fn command(study: &Study, found: &Exploration, values: &[f64], folder: &Path) ->
 ///
 /// # Errors
 /// The system's, with the file's path.
-pub fn write(folder: &Folder, study: &Study, document: &Document, found: &Exploration) -> Result<()> {
+pub fn write(
+    folder: &Folder,
+    study: &Study,
+    document: &Document,
+    found: &Exploration,
+    shapes_of: ShapesOf,
+) -> Result<()> {
     let points = &found.points;
-    exploration_file::write(&folder.draft().join(RESULTS), study, found)?;
+    exploration_file::write(&folder.draft().join(RESULTS), study, found, shapes_of)?;
     let names: Vec<&str> = document.parameters.iter().map(|own| own.name).collect();
     folder.write("points.csv", |out| write_points(out, &names, points))?;
     folder.write("modes.csv", |out| write_modes(out, points))?;

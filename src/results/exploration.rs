@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::About;
-use crate::explore::{Answers, Gradient, PointModel, PointResult};
+use super::{About, Shape, Surface};
+use crate::explore::{Answers, Gradient, ModePlace, PointModel, PointResult};
 
 /// What a study of many parameters has found.
 #[derive(Debug, Clone)]
@@ -23,6 +23,19 @@ pub struct Exploration {
     pub contacts: Option<usize>,
     /// The random fields, in the order of the study.
     pub fields: Vec<FieldShare>,
+    /// Where shapes are known, without samples; empty where there are none.
+    pub surface: Surface,
+    /// Those shapes that matter most, for a page; the results file has all.
+    pub shapes: Vec<PointShape>,
+}
+
+/// The shape of a mode at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointShape {
+    /// The mode.
+    pub place: ModePlace,
+    /// At all nodes of the surface.
+    pub shape: Shape,
 }
 
 /// What the modes of a random field have of it.

@@ -13,6 +13,11 @@
 //!                  doubtful (0 or 1)
 //! gradients        k x m x 2   derivatives of the m nominal modes by each parameter: growth rate (1/s) and omega
 //!                  (rad/s) per unit of the parameter; NaN where there is none
+//! surface/         nodes, triangles and part, as in the results file of `stability`; empty where there are no shapes
+//! shaped           s        rows of `modes` that have a shape: of each point its unstable modes of largest growth
+//!                  rate, three at most, or where none is unstable the mode of largest growth rate
+//! shapes           s x n_s x 3 x 2   their displacements at the nodes of the surface, the last index real and
+//!                  imaginary part; the largest of a shape is 1 and real
 //! unstable, instabilities, hopf, bins, growth_rate, indices
 //!                  the answers: tables of numbers, NaN where there is none, whose attributes `columns` and `units`
 //!                  have a word a column
@@ -26,12 +31,14 @@ use hdf5::types::FixedUnicode;
 use hdf5::{Group, H5Type};
 use serde::Serialize;
 
-use super::Exploration;
+use super::file::{numbers, write_surface};
+use super::{Exploration, Shape};
 use crate::Result;
 use crate::explore::{
     Estimate, HopfPoint, Indices, Instability, Outcome, Parameter, PointMode, PointResult, Probability, Study,
+    shaped_modes,
 };
-use crate::hdf::{self, Format, array, list, table, text};
+use crate::hdf::{self, Format, array, array_of_rows, list, table, text};
 
 const FORMAT: Format =
     Format { name: "squeal exploration", version: 1, advice: "Make the results again with the same command" };
@@ -100,11 +107,14 @@ pub fn is_one(path: &Path) -> bool {
 /// Bytes of an attribute: the names or units of a table's columns.
 const MAX_ATTRIBUTE_LENGTH: usize = 256;
 
-/// Writes what a study has found; the file appears when it is complete. Not collective.
+/// The shapes of a point by its number, in the order of [`shaped_modes`].
+pub type ShapesOf<'a> = &'a mut dyn FnMut(usize) -> Result<Vec<Shape>>;
+
+/// Writes what a study has found, with the shapes of each point; the file appears when it is complete. Not collective.
 ///
 /// # Errors
-/// The system's and HDF5's, with the path.
-pub fn write(path: &Path, study: &Study, found: &Exploration) -> Result<()> {
+/// The system's and HDF5's, with the path; those of the shapes.
+pub fn write(path: &Path, study: &Study, found: &Exploration, shapes_of: ShapesOf) -> Result<()> {
     hdf::create(path, &FORMAT, |file| {
         words(file, "about", &found.about)?;
         words(file, "parameters", &parameters(study, found))?;
@@ -119,6 +129,7 @@ pub fn write(path: &Path, study: &Study, found: &Exploration) -> Result<()> {
         list(file, "modes", &(0..).zip(&found.points).flat_map(rows).collect::<Vec<_>>())?;
         word(file, "modes", "units", "-,1/s,rad/s,-,-,-,-,-")?;
         write_gradients(file, study, found)?;
+        write_shapes(file, found, shapes_of)?;
         write_answers(file, found)
     })
 }
@@ -157,6 +168,29 @@ fn write_gradients(file: &Group, study: &Study, found: &Exploration) -> hdf5::Re
     let numbers: Vec<f64> = (0..n).flat_map(|i| (0..n_modes).flat_map(move |j| slope(i, j))).collect();
     array(file, "gradients", &[n, n_modes, 2], &numbers)?;
     word(file, "gradients", "units", "1/s,rad/s")
+}
+
+/// Shapes are not all in memory at the same time.
+fn write_shapes(file: &Group, found: &Exploration, shapes_of: ShapesOf) -> hdf5::Result<()> {
+    write_surface(file, &found.surface)?;
+    word(file, "surface/nodes", "units", "m")?;
+    let n_nodes = found.surface.nodes.len();
+    let points: &[PointResult] = if n_nodes == 0 { &[] } else { &found.points };
+    let (mut rows, mut first): (Vec<u32>, usize) = (Vec::new(), 0);
+    for modes in points.iter().filter_map(PointResult::modes) {
+        rows.extend(shaped_modes(modes).into_iter().map(|mode| (first + mode) as u32));
+        first += modes.len();
+    }
+    list(file, "shaped", &rows)?;
+    let of_point = |point| -> Vec<hdf5::Result<Vec<f32>>> {
+        match shapes_of(point) {
+            Ok(shapes) => shapes.iter().map(|shape| Ok(numbers(shape).collect())).collect(),
+            Err(error) => vec![Err(error.to_string().into())],
+        }
+    };
+    let solved = (0..points.len()).filter(|&i| points[i].modes().is_some());
+    array_of_rows(file, "shapes", [rows.len(), n_nodes, 3, 2], solved.flat_map(of_point))?;
+    word(file, "shapes", "units", "-")
 }
 
 fn write_answers(file: &Group, found: &Exploration) -> hdf5::Result<()> {
@@ -219,7 +253,7 @@ mod tests {
 
     use super::*;
     use crate::explore::{Answers, Difference, Gradient, Link};
-    use crate::results::About;
+    use crate::results::{About, Surface};
 
     #[test]
     fn a_file_has_points_modes_gradients_and_answers() {
@@ -249,9 +283,13 @@ mod tests {
             worst: None,
             contacts: None,
             fields: Vec::new(),
+            surface: Surface { nodes: vec![[0.0; 3]; 2], ..Surface::default() },
+            shapes: Vec::new(),
         };
         let path = place.path().join("results.h5");
-        write(&path, &study, &found).unwrap();
+        let shape = |x: f32| Shape { re: vec![[x, 1.0, 0.0]; 2], im: vec![[0.5, 0.0, -x]; 2] };
+        let mut shapes_of = |number| Ok((0..=number).map(|mode| shape((10 * number + mode) as f32)).collect());
+        write(&path, &study, &found, &mut shapes_of).unwrap();
         assert!(is_one(&path));
         let file = hdf::open(&path, &FORMAT).unwrap();
         let numbers = |name: &str| hdf::values::<f64>(&file, name).unwrap();
@@ -261,6 +299,11 @@ mod tests {
         assert_eq!(modes.iter().map(|mode| (mode.point, mode.nominal)).collect::<Vec<_>>(), [(0, 1), (1, 1), (1, 0)]);
         let slopes = numbers("gradients");
         assert!(slopes[..2] == [1.0, -3.0] && slopes[2..].iter().all(|slope| slope.is_nan()));
+        assert_eq!(hdf::values::<u32>(&file, "shaped").unwrap(), [0, 1, 2]);
+        let shapes: Vec<f32> = hdf::values(&file, "shapes").unwrap();
+        assert_eq!(file.dataset("shapes").unwrap().shape(), [3, 2, 3, 2]);
+        assert_eq!(shapes[24..30], [11.0, 0.5, 1.0, 0.0, 0.0, -11.0]);
+        assert!(write(&path, &study, &found, &mut |_| Ok(Vec::new())).is_err(), "shapes are missing");
         assert_eq!(numbers("bins")[..5], [0.0, 100.0, 1.0, 1.0, 1.0]);
         let columns: FixedUnicode<MAX_ATTRIBUTE_LENGTH> =
             file.dataset("instabilities").unwrap().attr("columns").unwrap().read_scalar().unwrap();

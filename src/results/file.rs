@@ -117,7 +117,8 @@ struct HopfText {
 pub fn write(path: &Path, results: &Results) -> Result<()> {
     hdf::create(path, &FORMAT, |file| {
         words(file, "about", &results.about)?;
-        write_surface(&file.create_group("surface")?, &results.surface)?;
+        write_surface(file, &results.surface)?;
+        list(&file.group("surface")?, "samples", &results.surface.samples)?;
         write_contact(&file.create_group("contact")?, &results.contact)?;
         let group = file.create_group("values")?;
         for (i, value) in results.values.iter().enumerate() {
@@ -170,11 +171,12 @@ fn from_words<T: DeserializeOwned>(group: &Group, name: &str) -> hdf5::Result<T>
     toml::from_str(&read_text(group, name)?).map_err(|reason| hdf5::Error::from(format!("{name}: {reason}")))
 }
 
-fn write_surface(group: &Group, surface: &Surface) -> hdf5::Result<()> {
-    table(group, "nodes", 3, surface.nodes.as_flattened())?;
-    table(group, "triangles", 3, surface.triangles.as_flattened())?;
-    list(group, "part", &surface.part)?;
-    list(group, "samples", &surface.samples)
+/// Writes a surface without its samples.
+pub(super) fn write_surface(file: &Group, surface: &Surface) -> hdf5::Result<()> {
+    let group = file.create_group("surface")?;
+    table(&group, "nodes", 3, surface.nodes.as_flattened())?;
+    table(&group, "triangles", 3, surface.triangles.as_flattened())?;
+    list(&group, "part", &surface.part)
 }
 
 fn read_surface(group: &Group) -> hdf5::Result<Surface> {
@@ -235,9 +237,13 @@ fn write_shapes<'s>(
     shapes: impl ExactSizeIterator<Item = &'s Shape> + Clone,
 ) -> hdf5::Result<()> {
     let shape = [shapes.len(), shapes.clone().next().map_or(0, |first| first.re.len()), 3, 2];
-    let pairs = shapes.flat_map(|shape| shape.re.as_flattened().iter().zip(shape.im.as_flattened()));
-    let numbers: Vec<f32> = pairs.flat_map(|(&re, &im)| [re, im]).collect();
-    array(group, name, &shape, &numbers)
+    array(group, name, &shape, &shapes.flat_map(numbers).collect::<Vec<f32>>())
+}
+
+/// The numbers of a shape in the order of the file.
+pub(super) fn numbers(shape: &Shape) -> impl Iterator<Item = f32> {
+    let pairs = shape.re.as_flattened().iter().zip(shape.im.as_flattened());
+    pairs.flat_map(|(&re, &im)| [re, im])
 }
 
 /// Reads one value from its group.

@@ -17,11 +17,11 @@ mod verdict;
 mod wear;
 
 pub use certificate::{Certificate, CertifiedMode};
-pub use exploration::{Exploration, FieldShare};
+pub use exploration::{Exploration, FieldShare, PointShape};
 pub use external::{ExternalMode, ExternalResults, ExternalValue};
 pub use free_modes::{FreeMode, FreeModes, MeasuredComparison};
 pub use samples::spread;
-pub use shape::largest;
+pub use shape::{largest, n_on_page};
 pub use source::{Kind, Source};
 pub use verdict::{Doubt, Status, Verdict};
 pub use wear::{PairWear, Wear, WearEnd, WearStep, WornPoint};
@@ -246,7 +246,7 @@ pub struct ModeData {
 
 /// Displacements of a complex mode, scaled so that the largest one where the mode is known (at the surface, else at its
 /// samples) is 1 and real.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
     /// Real part.
     pub re: Vec<[f32; 3]>,

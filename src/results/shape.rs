@@ -16,6 +16,16 @@ impl Shape {
     }
 }
 
+/// Base64 that the shapes of a page may take, bytes: a page of this size opens at once.
+const PAGE_BYTES: usize = 10_000_000;
+/// Base64 of a node's displacement: six numbers of 16 bits.
+const NODE_BYTES: usize = 16;
+
+/// So many shapes of a surface with `n_nodes` fit on a page; one in any case.
+pub fn n_on_page(n_nodes: usize) -> usize {
+    (PAGE_BYTES / (NODE_BYTES * n_nodes.max(1))).max(1)
+}
+
 /// The displacement of largest modulus; 1 where nothing moves.
 pub fn largest(re: &[f64], im: &[f64]) -> Complex64 {
     let all = re.iter().zip(im).map(|(&a, &b)| Complex64::new(a, b));
@@ -35,5 +45,10 @@ mod tests {
         // (1, 2.5 i, 0) / (3 + 4 i)
         assert_eq!((shape.re[1], shape.im[1]), ([0.12, 0.4, 0.0], [-0.16, 0.3, 0.0]));
         assert_eq!(largest(&[0.0], &[0.0]), Complex64::ONE);
+    }
+
+    #[test]
+    fn shapes_of_a_page_take_ten_megabytes_or_are_one() {
+        assert_eq!([6250, 62_500, 312_500, 1_000_000].map(n_on_page), [100, 10, 2, 1]);
     }
 }

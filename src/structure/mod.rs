@@ -51,7 +51,7 @@ use crate::equilibrium::Equilibrium;
 use crate::hdf::is_hdf5;
 use crate::model::{InstabilityCriterion, NormalLaw, Rayleigh};
 use crate::native::Comm;
-use crate::results::{About, ContactFaces, Pair};
+use crate::results::{About, ContactFaces, Pair, Surface};
 use crate::{Error, Result};
 
 /// A brake, full or reduced.
@@ -250,6 +250,14 @@ impl Structure {
         match self {
             Structure::Full(full) => full.assemble(comm, &full.families()?),
             Structure::Reduced(reduced) => reduced.assemble(comm),
+        }
+    }
+
+    /// The outer surface, without samples: the same whatever the numbers of the model are. Collective.
+    pub fn outer_surface(&self, comm: &Comm) -> Surface {
+        match self {
+            Structure::Full(full) => surface_motion::of_mesh(comm, &full.mesh, &full.nodes),
+            Structure::Reduced(reduced) => surface_motion::without_samples(&reduced.surface),
         }
     }
 

@@ -1,6 +1,7 @@
 //! A brake as a super-element.
 
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use crate::assembly::System;
 use crate::contact::{Interface, Response};
@@ -21,7 +22,7 @@ pub struct ReducedModel {
     /// The super-element.
     pub element: SuperElement,
     /// The outer surface and how the coordinates move it; of a file, on the root alone.
-    pub surface: OuterSurface,
+    pub surface: Rc<OuterSurface>,
     /// Contact points under the law.
     pub interface: Interface,
     /// How they differ from the file.
@@ -57,7 +58,7 @@ impl ReducedModel {
     pub fn with(
         file: &Path,
         mut element: SuperElement,
-        surface: OuterSurface,
+        surface: impl Into<Rc<OuterSurface>>,
         options: &StructureOptions,
     ) -> Result<ReducedModel> {
         for PartDamping { part, rayleigh } in &options.damping {
@@ -66,13 +67,14 @@ impl ReducedModel {
         let mut interface = element.interface(options.law.clone());
         interface.scale_contact_stiffness(options.contact_stiffness);
         options.gap.as_ref().map_or(Ok(()), |gap| set_gap_field(&mut interface, gap))?;
-        Ok(ReducedModel { place: file.to_owned(), element, surface, interface, options: options.clone() })
+        let (place, options) = (file.to_owned(), options.clone());
+        Ok(ReducedModel { place, element, surface: surface.into(), interface, options })
     }
 
     /// A super-element as it was made.
     pub fn new(file: &Path, element: SuperElement, surface: OuterSurface) -> ReducedModel {
         let (interface, options) = (element.interface(None), StructureOptions::default());
-        ReducedModel { place: file.to_owned(), element, surface, interface, options }
+        ReducedModel { place: file.to_owned(), element, surface: surface.into(), interface, options }
     }
 
     /// Its file.

@@ -3,7 +3,8 @@
 use ndarray::{Array2, ArrayView2};
 
 use crate::Result;
-use crate::assembly::{Boundary, Displacements, System};
+use crate::assembly::{Boundary, Displacements, DofMap, System};
+use crate::mesh::{Mesh, Numbering};
 use crate::native::{Comm, Vector};
 use crate::reduction::recovery::OuterSurface;
 use crate::results::{Surface, spread};
@@ -51,8 +52,7 @@ impl<'a> SurfaceMotion<'a> {
         let n = if is_root(system) { outer.basis.len() / width.max(1) } else { 0 };
         let entry = |(q, i): (usize, usize)| outer.basis[q * width + 3 * samples[i / 3] as usize + i % 3];
         let basis = Array2::from_shape_fn((n, 3 * samples.len()), entry);
-        let OuterSurface { nodes, triangles, part, .. } = outer;
-        let surface = Surface { nodes: nodes.clone(), triangles: triangles.clone(), part: part.clone(), samples };
+        let surface = Surface { samples, ..without_samples(outer) };
         SurfaceMotion { surface, map: Map::Coordinates { system, outer, basis } }
     }
 
@@ -87,6 +87,19 @@ impl<'a> SurfaceMotion<'a> {
             }),
         }
     }
+}
+
+/// The outer surface of a mesh of which each rank has a piece. Collective.
+pub(super) fn of_mesh(comm: &Comm, mesh: &Mesh, nodes: &Numbering) -> Surface {
+    let dofs = DofMap::new(nodes, &vec![[false; 3]; nodes.n_local()]);
+    let Boundary { nodes, triangles, part, .. } = Boundary::new(comm, mesh, nodes, &dofs);
+    Surface { nodes, triangles, part, samples: Vec::new() }
+}
+
+/// The outer surface of a super-element.
+pub(super) fn without_samples(outer: &OuterSurface) -> Surface {
+    let OuterSurface { nodes, triangles, part, .. } = outer;
+    Surface { nodes: nodes.clone(), triangles: triangles.clone(), part: part.clone(), samples: Vec::new() }
 }
 
 /// What the root makes of the coordinates; nothing on other ranks. Collective.

@@ -227,8 +227,9 @@ pub fn assert_killed_ends_the_same(study: &str, file: &str) {
     let begun = Instant::now();
     done(place.run(&EXPLORE));
     let (whole, mut chance) = (begun.elapsed().as_secs_f64(), Pcg64::seed_from_u64(7));
-    let files = ["points.csv", "modes.csv", file, "summary.json", "worst.toml"];
+    let files = ["points.csv", "modes.csv", file, "summary.json", "worst.toml", "explore.html"];
     let expected = files.map(|file| place.read(&format!("run/{file}")));
+    let shapes = kept_shapes(&place);
     std::fs::remove_dir_all(place.path("run")).unwrap();
     for i in 0..10 {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin("squeal"));
@@ -255,7 +256,12 @@ pub fn assert_killed_ends_the_same(study: &str, file: &str) {
     for (file, expected) in files.iter().zip(expected) {
         assert!(place.read(&format!("run/{file}")) == expected, "{file} differs");
     }
+    assert!(kept_shapes(&place) == shapes && !shapes.is_empty(), "shapes differ");
     assert!(!place.path(".run.unfinished").exists());
+}
+
+fn kept_shapes(place: &Place) -> Vec<f32> {
+    hdf5::File::open(place.path("run/results.h5")).unwrap().dataset("shapes").unwrap().read_raw().unwrap()
 }
 
 /// That two folders have the same modes.

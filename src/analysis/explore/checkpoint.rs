@@ -3,7 +3,7 @@
 //! ```text
 //! .NAME.unfinished/.resume/
 //!   study.txt               what the numbers depend on
-//!   point-000003.bin        a finished point
+//!   point-000003.bin        a finished point with shapes of its modes
 //!   state-000003.N.RANK.h5  its displacements, from which points nearby start, of a rank of N
 //!   nominal.N.RANK.h5       vectors of the nominal modes
 //!   taken/000003            a group of ranks has taken the point, finished or not
@@ -22,6 +22,7 @@ use crate::Result;
 use crate::analysis::unfinished::{Unfinished, write_binary};
 use crate::explore::{Gradient, PointResult};
 use crate::output::folder::{self, Folder, RESUME};
+use crate::results::Shape;
 
 use super::files::{
     GRADIENTS, KeptPoint, nominal_name, point_name, read_binary, read_list, read_nominal, read_point, read_points,
@@ -148,15 +149,21 @@ impl Points {
         self.done.values().cloned().collect()
     }
 
-    /// Keeps a point that this group has finished; its displacements, where there is room for them. All groups have
-    /// the nominal point, whose files are the first one's. Collective in the group.
+    /// Keeps a point that this group has finished, with shapes of its modes; its displacements, where there is room for
+    /// them. All groups have the nominal point, whose files are the first one's. Collective in the group.
     ///
     /// # Errors
     /// The system's and HDF5's, with the path.
-    pub fn commit(&mut self, number: usize, point: PointResult, state: Option<Vec<f64>>) -> Result<()> {
+    pub fn commit(
+        &mut self,
+        number: usize,
+        point: PointResult,
+        shapes: Vec<Shape>,
+        state: Option<Vec<f64>>,
+    ) -> Result<()> {
         let state = state.filter(|state| has_room(&self.groups, self.states.len(), state));
         if number > 0 || self.groups.number() == 0 {
-            self.write(number, &point, state.as_deref())?;
+            self.write(number, &point, shapes, state.as_deref())?;
         }
         if number > 0 {
             self.unshared.push(number);
@@ -172,13 +179,21 @@ impl Points {
         self.states.extend(state.map(|state| (number, state)));
     }
 
-    fn write(&self, number: usize, point: &PointResult, state: Option<&[f64]>) -> Result<()> {
+    fn write(&self, number: usize, point: &PointResult, shapes: Vec<Shape>, state: Option<&[f64]>) -> Result<()> {
         let (Some(place), comm) = (&self.place, &self.groups.own) else { return Ok(()) };
         if let Some(state) = state {
             comm.agree(write_list(&place.join(state_name(number, comm)), state))?;
         }
         let n_state_files = state.map_or(0, |_| comm.size());
-        self.keep_binary(&place.join(point_name(number)), &KeptPoint { n_state_files, point: point.clone() })
+        self.keep_binary(&place.join(point_name(number)), &KeptPoint { n_state_files, point: point.clone(), shapes })
+    }
+
+    /// The shapes that are kept of a finished point; none without a folder. Not collective.
+    ///
+    /// # Errors
+    /// The system's, with the path.
+    pub fn shapes(&self, number: usize) -> Result<Vec<Shape>> {
+        self.place.as_ref().map_or(Ok(Vec::new()), |place| Ok(read_point(&place.join(point_name(number)))?.shapes))
     }
 
     /// Gives all ranks the points of all groups. Collective over all ranks.

@@ -9,17 +9,21 @@ use crate::analysis::unfinished;
 use crate::explore::PointResult;
 use crate::hdf::{self, Format, array, list, values};
 use crate::native::{Block, Comm};
+use crate::results::Shape;
 use crate::{Error, Result};
 
 use super::point::WeightedModes;
 
 const FORMAT: Format = Format { name: "squeal study", version: 1, advice: "Begin again with --force" };
 
-/// A finished point, and how many files there are with its displacements: one a rank of the group that solved it.
+/// A finished point.
 #[derive(Serialize, Deserialize)]
 pub struct KeptPoint {
+    /// Number of files with its displacements: one a rank of the group that solved it.
     pub n_state_files: usize,
     pub point: PointResult,
+    /// Shapes of those modes that [`crate::explore::shaped_modes`] names.
+    pub shapes: Vec<Shape>,
 }
 
 /// File of the derivatives.
@@ -38,7 +42,8 @@ pub fn nominal_name(comm: &Comm) -> String {
     format!("nominal.{}.{}.h5", comm.size(), comm.rank())
 }
 
-/// All points in a folder, by their numbers. Those that cannot be read are removed, with a warning.
+/// All points in a folder, by their numbers, without their shapes. Those that cannot be read are removed, with a
+/// warning.
 pub fn read_points(place: &Path, warnings: &mut Vec<String>) -> Result<Vec<(usize, KeptPoint)>> {
     let entries = std::fs::read_dir(place).map_err(Error::io(place))?;
     let number = |name: &str| name.strip_prefix("point-")?.strip_suffix(".bin")?.parse().ok();
@@ -49,7 +54,7 @@ pub fn read_points(place: &Path, warnings: &mut Vec<String>) -> Result<Vec<(usiz
     for number in numbers {
         let path = place.join(point_name(number));
         match read_point(&path) {
-            Ok(kept) => points.push((number, kept)),
+            Ok(kept) => points.push((number, KeptPoint { shapes: Vec::new(), ..kept })),
             Err(_) => {
                 warnings.push(format!("{} cannot be read: point {number} is computed again", path.display()));
                 std::fs::remove_file(&path).map_err(Error::io(&path))?;

@@ -20,12 +20,14 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::explore::{Answers, Distribution, Refinement, Study, standing_alone, with_tables, write_tables};
+use crate::explore::{
+    Answers, Distribution, Refinement, Study, by_weight, shaped_modes, standing_alone, with_tables, write_tables,
+};
 use crate::hdf::is_hdf5;
 use crate::native::Comm;
 use crate::output::explore::{Document, PAGE, WORST, write};
 use crate::output::folder::Folder;
-use crate::results::{About, Exploration};
+use crate::results::{About, Exploration, PointShape, Surface, n_on_page};
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer, stop_signal};
@@ -101,6 +103,8 @@ struct Run<'s> {
     refinement: Option<Refinement>,
     /// Ranges of the parameters over all points.
     scales: Vec<f64>,
+    /// Where shapes are kept; empty where they are not.
+    surface: Surface,
     folder: Option<Folder>,
 }
 
@@ -122,10 +126,13 @@ impl<'s> Run<'s> {
         let about = groups.agree(about(comm, &structure, output))?;
         let about = About { n_ranks: world.size(), band, criterion, ..about };
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
-        let request = Request { band, criterion, follow: study.follow, gradients: false };
+        // Shapes are kept in the folder.
+        let surface = output.map_or_else(Surface::default, |_| structure.outer_surface(comm));
+        let shapes = !surface.nodes.is_empty();
+        let request = Request { band, criterion, follow: study.follow, gradients: false, shapes };
         let scales = scales(&values);
         let refinement = Refinement::new(study)?;
-        Ok(Run { groups, study, subject, about, request, values, refinement, scales, folder })
+        Ok(Run { groups, study, subject, about, request, values, refinement, scales, surface, folder })
     }
 
     /// Solves the points, and writes the folder. Collective.
@@ -142,13 +149,15 @@ impl<'s> Run<'s> {
             require_progress(n_before, n_missing(&points))?;
         }
         self.about.n_dofs = self.groups.own.sum(points.n_own_dofs());
-        let (done, gradients) = (points.all(), points.gradients);
+        let (done, gradients) = (points.all(), points.gradients.clone());
         let answers = Answers::new(self.study, &done, &gradients, self.request.band);
         let worst = answers.worst.map_or(Ok(None), |number| self.subject.model(&done[number].values))?;
         let (contacts, fields) = (self.subject.contacts(), self.subject.field_shares());
-        let found = Exploration { about: self.about, points: done, gradients, answers, worst, contacts, fields };
+        let (about, surface, shapes) = (self.about, self.surface, Vec::new());
+        let mut found =
+            Exploration { about, points: done, gradients, answers, worst, contacts, fields, surface, shapes };
         self.groups.world.agree(match (self.folder.take(), output) {
-            (Some(folder), Some(output)) => finish(folder, self.study, &found, output),
+            (Some(folder), Some(output)) => finish(folder, self.study, &mut found, output, &points),
             _ => Ok(()),
         })?;
         Ok(found)
@@ -215,10 +224,17 @@ impl<'s> Run<'s> {
 }
 
 /// Writes the files of the folder, and gives it its name. Not collective.
-fn finish(folder: Folder, study: &Study, found: &Exploration, output: &ExploreOutput) -> Result<()> {
+fn finish(
+    folder: Folder,
+    study: &Study,
+    found: &mut Exploration,
+    output: &ExploreOutput,
+    points: &Points,
+) -> Result<()> {
+    found.shapes = shapes_for_page(found, points)?;
     let place = output.output.folder.as_path();
     let document = Document::new(study, found, place);
-    write(&folder, study, &document, found)?;
+    write(&folder, study, &document, found, &mut |number| points.shapes(number))?;
     let page = (output.page)(study, found)?;
     folder.write(PAGE, |out| out.write_all(page.as_bytes()))?;
     if let Some(worst) = &found.worst {
@@ -230,6 +246,24 @@ fn finish(folder: Folder, study: &Study, found: &Exploration, output: &ExploreOu
         }
     }
     folder.finish()
+}
+
+/// The shapes that matter most, as many as a page has. Not collective.
+fn shapes_for_page(found: &Exploration, points: &Points) -> Result<Vec<PointShape>> {
+    let n_nodes = found.surface.nodes.len();
+    let mut places = by_weight(&found.points, &found.answers.instabilities);
+    places.truncate(if n_nodes > 0 { n_on_page(n_nodes) } else { 0 });
+    places.sort();
+    let mut shapes = Vec::new();
+    for own in places.chunk_by(|a, b| a.point == b.point) {
+        let all = shaped_modes(found.points[own[0].point].modes().unwrap_or_default());
+        let kept = all.into_iter().zip(points.shapes(own[0].point)?);
+        shapes.extend(kept.filter_map(|(mode, shape)| {
+            let place = *own.iter().find(|place| place.mode == mode)?;
+            Some(PointShape { place, shape })
+        }));
+    }
+    Ok(shapes)
 }
 
 /// The path of a mesh as a model file in a folder gives it: relative where both are known to the system.

@@ -46,7 +46,8 @@ impl Run<'_> {
         }
         if earlier.is_none() {
             let state = found.as_ref().map(|found| found.displacements.clone());
-            self.groups.agree(points.commit(0, point, state))?;
+            let shapes = found.as_mut().map(|found| std::mem::take(&mut found.shapes));
+            self.groups.agree(points.commit(0, point, shapes.unwrap_or_default(), state))?;
             self.folder.iter().for_each(Folder::keep);
             self.report(points, observer);
         }

@@ -10,7 +10,7 @@ use crate::analysis::observer::{Event, Observer};
 use crate::explore::Link;
 
 use super::Run;
-use super::point::{PointSolution, WeightedModes};
+use super::point::{PointSolution, Request, WeightedModes};
 
 impl Run<'_> {
     /// Recognises the modes of a point. Collective in the group.
@@ -48,7 +48,8 @@ impl Run<'_> {
         }
         let half = Line { n_bisections: line.n_bisections - 1, ..line };
         let values: Vec<f64> = start.0.iter().zip(end.0).map(|(a, b)| 0.5 * (a + b)).collect();
-        let mut middle = match self.solved(&values, &self.request, Some(&end.1.displacements), observer)? {
+        let request = Request { shapes: false, ..self.request };
+        let mut middle = match self.solved(&values, &request, Some(&end.1.displacements), observer)? {
             Ok(middle) => middle,
             Err(reason) => {
                 let what = format!("point {}: modes are not followed by way of a point between", line.number);

@@ -3,12 +3,14 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use crate::analysis::mode_data::whole_shapes;
 use crate::analysis::observer::Observer;
 use crate::analysis::sweep::Sweep;
 use crate::equilibrium::Equilibrium;
-use crate::explore::{Link, ModeProducts, PointMode, link};
+use crate::explore::{Link, ModeProducts, PointMode, link, shaped_modes};
 use crate::model::InstabilityCriterion;
 use crate::native::{Block, Comm, Vector};
+use crate::results::Shape;
 use crate::stability::{Mode, QuadraticProblem, complex_product};
 use crate::structure::Structure;
 use crate::{Error, ErrorKind, Result};
@@ -28,6 +30,8 @@ pub struct Request {
     pub follow: Option<usize>,
     /// Whether the modes' vectors serve derivatives: those of the nominal point, and no others.
     pub gradients: bool,
+    /// Whether shapes are kept.
+    pub shapes: bool,
 }
 
 /// The modes of a point with its M, by which those of other points are recognised.
@@ -46,6 +50,8 @@ pub struct PointSolution {
     pub modes: Vec<PointMode>,
     /// This rank's part of the displacements of the equilibrium.
     pub displacements: Vec<f64>,
+    /// Shapes of those modes that [`shaped_modes`] names, on the root, where they are asked for.
+    pub shapes: Vec<Shape>,
     /// By which the modes of other points are recognised, where modes are followed.
     pub weighted: Option<WeightedModes>,
     /// For the derivatives, where they are asked for.
@@ -75,14 +81,25 @@ pub fn solve(
             backward_error: mode.backward_error,
             link: None,
         };
-        let modes = found.iter().map(mode).collect();
+        let modes: Vec<PointMode> = found.iter().map(mode).collect();
+        let shapes = if request.shapes { shapes(structure, sweep, &found, &modes)? } else { Vec::new() };
         let displacements = equilibrium.u.to_vec()?;
-        let mut solution = PointSolution { modes, displacements, weighted: None, for_gradients: None, vectors: None };
+        let mut solution =
+            PointSolution { modes, displacements, shapes, weighted: None, for_gradients: None, vectors: None };
         if request.follow.is_some() && !found.is_empty() {
             solution.keep_vectors(sweep, equilibrium, &found, request.gradients)?;
         }
         Ok(solution)
     })
+}
+
+/// The shapes of those modes of a point that are kept. Collective.
+fn shapes(structure: &Structure, sweep: &Sweep, found: &[Mode], modes: &[PointMode]) -> Result<Vec<Shape>> {
+    let system = sweep.system;
+    // Ranks agree: rounding may differ.
+    let places = system.k.comm().broadcast_value(0, shaped_modes(modes));
+    let shaped: Vec<&Mode> = places.iter().map(|&place| &found[place]).collect();
+    whole_shapes(&mut structure.surface_motion(system)?, &shaped)
 }
 
 /// Calls `look` with the sweep of a structure and the equilibrium at a friction coefficient, which is sought as

@@ -4,6 +4,7 @@
 //! the model file, whose text the super-element has ([`PartKeys`]).
 
 use std::path::Path;
+use std::rc::Rc;
 
 use crate::analysis::part_keys::PartKeys;
 use crate::explore::{Nominal, Parameter, Study, Template, standing_alone};
@@ -21,6 +22,7 @@ const KEYS: [&str; 3] = ["friction", "pressure", "contact_stiffness"];
 pub struct ReducedSubject<'s> {
     place: &'s Path,
     element: SuperElement,
+    surface: Rc<OuterSurface>,
     parameters: &'s [Parameter],
     parts: Option<PartKeys>,
 }
@@ -43,16 +45,23 @@ impl<'s> ReducedSubject<'s> {
             return Err(Error::input(format!("{}: {what}", study.file.display())));
         }
         study.require_no_fields()?;
-        ReducedSubject::of(study, file::read_element(&study.model)?)
+        let (element, surface) = file::read(&study.model)?;
+        ReducedSubject::of(study, element, surface)
     }
 
-    fn of(study: &'s Study, element: SuperElement) -> Result<ReducedSubject<'s>> {
+    fn of(study: &'s Study, element: SuperElement, surface: OuterSurface) -> Result<ReducedSubject<'s>> {
         let in_study = |error: Error| Error::input(format!("{}: {error}", study.file.display()));
         let parts = part_keys(&element, &study.parameters).map_err(in_study)?;
         if parts.as_ref().is_some_and(|parts| parts.changes_matrices) {
             element.require_no_prestress().map_err(in_study)?;
         }
-        Ok(ReducedSubject { place: &study.model, element, parameters: &study.parameters, parts })
+        Ok(ReducedSubject {
+            place: &study.model,
+            element,
+            surface: Rc::new(surface),
+            parameters: &study.parameters,
+            parts,
+        })
     }
 
     /// The parameters' values that the super-element was made with.
@@ -79,7 +88,7 @@ impl<'s> ReducedSubject<'s> {
             element.change_part(&part, &change)?;
         }
         let options = StructureOptions { load_factor: pressure, contact_stiffness, ..StructureOptions::default() };
-        Ok((ReducedModel::with(self.place, element, OuterSurface::default(), &options)?, friction))
+        Ok((ReducedModel::with(self.place, element, self.surface.clone(), &options)?, friction))
     }
 
     /// Where the samples of the super-element did not agree, and what points have far outside the moduli and densities
@@ -184,6 +193,10 @@ mod tests {
         SuperElement { model_text: text.map(str::to_owned), ..testing::element(1, by_part) }
     }
 
+    fn of(study: &Study, element: SuperElement) -> Result<ReducedSubject<'_>> {
+        ReducedSubject::of(study, element, OuterSurface::default())
+    }
+
     const LINING: &str = "material.lining.young";
 
     fn model() -> String {
@@ -193,7 +206,7 @@ mod tests {
 
     #[test]
     fn an_element_without_a_model_file_has_no_keys_of_parts() {
-        let message = ReducedSubject::of(&study(LINING), element(None)).err().unwrap().to_string();
+        let message = of(&study(LINING), element(None)).err().unwrap().to_string();
         assert!(message.contains("soft.toml") && message.contains("no key \"material.lining.young\""), "{message}");
         assert!(message.contains("that `squeal reduce` makes of a model file"), "{message}");
     }
@@ -202,16 +215,16 @@ mod tests {
     #[test]
     fn a_study_of_moduli_of_a_prestressed_element_is_refused() {
         let prestressed = || SuperElement { geometric_stiffness: Some(vec![0.0]), ..element(Some(&model())) };
-        let message = ReducedSubject::of(&study(LINING), prestressed()).err().unwrap().to_string();
+        let message = of(&study(LINING), prestressed()).err().unwrap().to_string();
         assert!(message.contains("soft.toml: the super-element has the geometric stiffness of one"), "{message}");
-        assert!(ReducedSubject::of(&study("part.disc.rayleigh.alpha"), prestressed()).is_ok());
-        assert!(ReducedSubject::of(&study(LINING), element(Some(&model()))).is_ok());
+        assert!(of(&study("part.disc.rayleigh.alpha"), prestressed()).is_ok());
+        assert!(of(&study(LINING), element(Some(&model()))).is_ok());
     }
 
     #[test]
     fn samples_that_did_not_agree_are_reported_again() {
         let study = study(LINING);
-        let mut subject = ReducedSubject::of(&study, element(Some(&model()))).unwrap();
+        let mut subject = of(&study, element(Some(&model()))).unwrap();
         let lining = |part: &str| PartRange { stiffness: [0.5, 1.0], ..PartRange::nominal(part) };
         let parts = ["lining_inner", "lining_outer"].map(lining).to_vec();
         let made_for =

@@ -62,7 +62,8 @@ impl Run<'_> {
             }
             let start = points.nearest(&self.values[number], &self.scales);
             let (point, found) = self.point(number, &self.request, start, nominal, observer)?;
-            points.commit(number, point, found.map(|found| found.displacements))?;
+            let (shapes, state) = found.map(|found| (found.shapes, found.displacements)).unzip();
+            points.commit(number, point, shapes.unwrap_or_default(), state)?;
             self.folder.iter().for_each(Folder::keep);
             points.look_for(if turns.has_others() && self.groups.world.is_root() { numbers } else { &[] });
             self.report(points, observer);

@@ -13,6 +13,10 @@ fn point(values: &[f64]) -> PointResult {
     PointResult { values: values.to_vec(), outcome: Outcome::Modes(vec![mode]) }
 }
 
+fn shapes() -> Vec<Shape> {
+    vec![Shape { re: vec![[1.0, 0.0, 1.0 / 3.0]], im: vec![[0.0, 0.1, -0.2]] }]
+}
+
 #[test]
 fn an_earlier_run_is_continued_bit_by_bit() {
     let comm = Session::start(&[]).unwrap();
@@ -32,13 +36,14 @@ fn an_earlier_run_is_continued_bit_by_bit() {
     points.keep_nominal(&nominal).unwrap();
     let slopes = vec![Complex64::new(1.0 / 3.0, -7.0)];
     points.keep_gradients(vec![Gradient { slopes, difference: Difference::Forward }]).unwrap();
-    points.commit(0, point(&[0.1, 5.0]), Some(vec![1.0 / 7.0])).unwrap();
-    points.commit(1, point(&[0.3, 5.0]), None).unwrap();
+    points.commit(0, point(&[0.1, 5.0]), shapes(), Some(vec![1.0 / 7.0])).unwrap();
+    points.commit(1, point(&[0.3, 5.0]), vec![], None).unwrap();
     // Another group has point 2.
-    points.commit(3, point(&[0.4, 5.0]), Some(vec![1.0])).unwrap();
+    points.commit(3, point(&[0.4, 5.0]), vec![], Some(vec![1.0])).unwrap();
     assert_eq!((points.missing(5), points.news().len(), points.news().len()), (vec![2, 4], 3, 0));
     let again = open("1", false).unwrap();
     assert_eq!((&again.done, &again.states), (&points.done, &points.states));
+    assert_eq!((again.shapes(0).unwrap(), again.shapes(1).unwrap()), (shapes(), vec![]));
     assert!(again.gradients == points.gradients && again.gradients.len() == 1);
     let kept = again.nominal().unwrap();
     assert!(kept.left.values() == nominal.left.values() && kept.own == nominal.own);
@@ -86,12 +91,12 @@ fn points_of_other_groups_are_found() {
     let groups = Groups::new(&comm, 1).unwrap();
     let open = || Points::open(&groups, Some(&folder), Some(&target), &[], false).unwrap();
     let (mut own, mut other) = (open(), open());
-    other.commit(0, point(&[0.1]), None).unwrap();
+    other.commit(0, point(&[0.1]), vec![], None).unwrap();
     let path = other.place().unwrap().join(point_name(2));
-    other.keep_binary(&path, &KeptPoint { n_state_files: 4, point: point(&[0.2]) }).unwrap();
+    other.keep_binary(&path, &KeptPoint { n_state_files: 4, point: point(&[0.2]), shapes: Vec::new() }).unwrap();
     own.look_for(&[0, 1, 2]);
     assert_eq!((own.missing(3), own.news().len()), (vec![1], 2));
-    other.commit(1, point(&[0.3]), None).unwrap();
+    other.commit(1, point(&[0.3]), vec![], None).unwrap();
     own.look_for(&[1]);
     assert_eq!(own.missing(3), [1], "it has just looked");
     let again = open();
@@ -106,7 +111,7 @@ fn a_point_starts_from_the_nearest_one() {
     assert_eq!(points.nearest(&[0.2, 5.0], &[1.0, 1.0]), None);
     let finished = [([0.1, 5.0], Some(1.0)), ([0.2, 9.0], Some(2.0)), ([0.2, 5.0], None)];
     for (number, (values, state)) in finished.into_iter().enumerate() {
-        points.commit(number, point(&values), state.map(|u| vec![u])).unwrap();
+        points.commit(number, point(&values), vec![], state.map(|u| vec![u])).unwrap();
     }
     assert_eq!(points.nearest(&[0.2, 5.0], &[1.0, 1.0]), Some(&[1.0][..]));
     assert_eq!(points.nearest(&[0.2, 5.0], &[0.001, 1.0]), Some(&[2.0][..]), "measured by the scales");
