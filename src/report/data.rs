@@ -40,7 +40,7 @@ impl<'a> Data<'a> {
             asked: &findings.asked,
             branch_of: &findings.branch_of,
             instabilities: findings.instabilities.iter().map(|one| instability(findings, one)).collect(),
-            surface: drawing::outer(results),
+            surface: drawing::outer(&results.surface, &results.about.parts),
             shapes: drawing::shapes(findings),
             faces: drawing::faces(findings),
         }

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::findings::{Findings, Place};
 use crate::algebra::{cross, dot, norm, sub};
-use crate::results::{Results, Shape};
+use crate::results::{Part, Shape, Surface, n_on_page};
 
 /// The outer surface, its triangles part by part.
 #[derive(Serialize)]
@@ -28,9 +28,8 @@ pub struct Outer {
     parts: Vec<(String, usize, usize)>,
 }
 
-/// The outer surface, if the results have one.
-pub fn outer(results: &Results) -> Option<Outer> {
-    let surface = &results.surface;
+/// The outer surface of some parts, if there is one.
+pub fn outer(surface: &Surface, names: &[Part]) -> Option<Outer> {
     let [low, high] = bounds(&surface.nodes)?;
     let size = (0..3).map(|i| high[i] - low[i]).fold(f64::MIN_POSITIVE, f64::max);
     let step = |x: f64| ((x / size).clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16;
@@ -40,14 +39,14 @@ pub fn outer(results: &Results) -> Option<Outer> {
     let mut parts: Vec<(String, usize, usize)> = Vec::new();
     for (place, chunk) in order.chunk_by(|&s, &t| surface.part[s] == surface.part[t]).map(|c| (c[0], c)) {
         let first = parts.last().map_or(0, |(_, first, n)| first + n);
-        parts.push((part_name(results, surface.part[place]), first, chunk.len()));
+        parts.push((part_name(names, surface.part[place]), first, chunk.len()));
     }
     let triangles = order.iter().flat_map(|&t| surface.triangles[t]).flat_map(u32::to_le_bytes);
     Some(Outer { origin: low, size, nodes: packed(nodes), triangles: packed(triangles), parts })
 }
 
-fn part_name(results: &Results, part: i32) -> String {
-    let known = usize::try_from(part).ok().and_then(|part| results.about.parts.get(part));
+fn part_name(names: &[Part], part: i32) -> String {
+    let known = usize::try_from(part).ok().and_then(|part| names.get(part));
     known.map_or_else(|| format!("part {part}"), |part| part.name.clone())
 }
 
@@ -57,9 +56,6 @@ fn bounds(nodes: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
     let most = |a: [f64; 3], b: &[f64; 3]| [0, 1, 2].map(|i| a[i].max(b[i]));
     Some([nodes.iter().fold(first, least), nodes.iter().fold(first, most)])
 }
-
-/// Base64 that shapes may take, bytes: a page of this size opens at once.
-const SHAPE_BYTES: usize = 10_000_000;
 
 /// Shapes by the name of their mode, and how many did not fit.
 #[derive(Serialize)]
@@ -79,21 +75,14 @@ pub fn shapes(findings: &Findings) -> Shapes {
     others.sort_by(|&a, &b| findings.mode(b).growth_rate().total_cmp(&findings.mode(a).growth_rate()));
     let worst: Vec<Place> = findings.instabilities.iter().map(|one| one.worst).collect();
     others.sort_by_key(|place| !worst.contains(place));
-    let (mut shapes, mut used, mut omitted) = (BTreeMap::new(), 0, 0);
-    for place in others {
-        let Some(shape) = &findings.mode(place).shape else { continue };
-        let size = 16 * shape.re.len();
-        if used + size > SHAPE_BYTES && !worst.contains(&place) {
-            omitted += 1;
-            continue;
-        }
-        used += size;
-        shapes.insert(place.name(), packed_shape(shape));
-    }
-    Shapes { shapes, omitted }
+    let n_worst = others.iter().filter(|place| worst.contains(place)).count();
+    let n = n_on_page(findings.results.surface.nodes.len()).max(n_worst).min(others.len());
+    let packed = |place: &Place| Some((place.name(), packed_shape(findings.mode(*place).shape.as_ref()?)));
+    Shapes { shapes: others[..n].iter().filter_map(packed).collect(), omitted: others.len() - n }
 }
 
-fn packed_shape(shape: &Shape) -> String {
+/// Six i16 a node: real part, imaginary part.
+pub(super) fn packed_shape(shape: &Shape) -> String {
     let step = |x: f32| ((x.clamp(-1.0, 1.0) * f32::from(i16::MAX)).round() as i16).to_le_bytes();
     packed(shape.re.iter().zip(&shape.im).flat_map(|(re, im)| [*re, *im]).flatten().flat_map(step))
 }
@@ -209,7 +198,7 @@ mod tests {
     #[test]
     fn a_surface_is_unpacked_to_a_few_micrometres_and_its_parts_are_runs() {
         let results = testing::results();
-        let outer = outer(&results).unwrap();
+        let outer = outer(&results.surface, &results.about.parts).unwrap();
         let steps: Vec<u16> = words(&outer.nodes).into_iter().map(u16::from_le_bytes).collect();
         for (x, packed) in results.surface.nodes.iter().zip(steps.as_chunks::<3>().0) {
             for i in 0..3 {
@@ -221,7 +210,7 @@ mod tests {
         let n_pad = results.surface.part.iter().filter(|&&part| part == 1).count();
         assert_eq!(outer.parts, [("disc".into(), 0, n - n_pad), ("pad".into(), n - n_pad, n_pad)]);
         assert_eq!(words::<12>(&outer.triangles).len(), n);
-        assert!(super::outer(&Results::default()).is_none());
+        assert!(super::outer(&Surface::default(), &[]).is_none());
     }
 
     #[test]

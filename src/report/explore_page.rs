@@ -1,90 +1,25 @@
 //! The page of a study of many parameters: probabilities, what they depend on, and all points.
 
-use maud::{Markup, PreEscaped, html};
-use serde::Serialize;
-
+use super::explore_data::{Data, MAX_MODES, is_shortened, reason};
 use super::explore_plots as plots;
-use super::frame::frame;
-use crate::explore::{Estimate, HopfCurves, Instability, Outcome, PointMode, PointResult, Study};
+use super::frame::{frame, shape_figure};
+use crate::explore::{Estimate, Instability, PointResult, Study, shaped_modes};
 use crate::output::text::plural;
 use crate::results::Exploration;
 use crate::{Error, Result};
+use maud::{Markup, PreEscaped, html};
 
 /// Names are declared before they are used.
-const SCRIPT: [&str; 3] =
-    [include_str!("assets/numbers.js"), include_str!("assets/base.js"), include_str!("assets/explore.js")];
+const SCRIPT: [&str; 5] = [
+    include_str!("assets/numbers.js"),
+    include_str!("assets/base.js"),
+    include_str!("assets/viewer.js"),
+    include_str!("assets/shape.js"),
+    include_str!("assets/explore.js"),
+];
 
-/// The modes of all points are on the page where they are no more than these; else the unstable ones alone.
-const MAX_MODES: usize = 100_000;
 /// Tornados on the page.
 const MAX_TORNADOS: usize = 8;
-
-/// What the scripts draw.
-#[derive(Serialize)]
-struct Data<'a> {
-    parameters: Vec<&'a str>,
-    points: Vec<PointData<'a>>,
-    /// Levels of each of two parameters, where the design is their grid.
-    grid: Option<[Vec<f64>; 2]>,
-    /// Hopf points on a map, and the pairs of them that lines join.
-    hopf: &'a HopfCurves,
-}
-
-#[derive(Serialize)]
-struct PointData<'a> {
-    values: &'a [f64],
-    growth: Option<f64>,
-    frequency: Option<f64>,
-    unstable: bool,
-    failure: Option<&'a str>,
-    modes: Vec<ModeDatum>,
-}
-
-/// Number from 1, frequency, growth rate, whether it is unstable, number of the nominal mode, whether that is doubtful.
-#[derive(Debug, PartialEq, Serialize)]
-struct ModeDatum(usize, f64, f64, bool, Option<usize>, bool);
-
-impl<'a> Data<'a> {
-    fn new(study: &'a Study, found: &'a Exploration) -> Data<'a> {
-        let is_shortened = is_shortened(&found.points, MAX_MODES);
-        let point = |point: &'a PointResult| PointData {
-            values: &point.values,
-            growth: point.critical().map(PointMode::growth_rate),
-            frequency: point.critical().map(PointMode::frequency),
-            unstable: point.is_unstable(),
-            failure: reason(point),
-            modes: mode_data(point, is_shortened),
-        };
-        Data {
-            parameters: study.parameters.iter().map(|own| own.name.as_str()).collect(),
-            points: found.points.iter().map(point).collect(),
-            grid: study.plane(),
-            hopf: &found.answers.hopf,
-        }
-    }
-}
-
-/// Whether the points have more modes than `most`, so that stable ones are left out.
-fn is_shortened(points: &[PointResult], most: usize) -> bool {
-    points.iter().filter_map(PointResult::modes).map(<[PointMode]>::len).sum::<usize>() > most
-}
-
-/// The modes of a point, or the unstable ones alone, with their numbers in modes.csv.
-fn mode_data(point: &PointResult, is_shortened: bool) -> Vec<ModeDatum> {
-    let datum = |(number, mode): (usize, &PointMode)| {
-        let (nominal, doubtful) = (mode.link.map(|link| link.nominal), mode.link.is_some_and(|link| link.doubtful));
-        ModeDatum(number, mode.frequency(), mode.growth_rate(), mode.unstable, nominal, doubtful)
-    };
-    let modes = (1..).zip(point.modes().unwrap_or_default());
-    modes.filter(|(_, mode)| mode.unstable || !is_shortened).map(datum).collect()
-}
-
-fn reason(point: &PointResult) -> Option<&str> {
-    match &point.outcome {
-        Outcome::Failed(reason) => Some(reason),
-        Outcome::Modes(_) => None,
-    }
-}
 
 /// The page; it is one file and loads nothing.
 ///
@@ -300,7 +235,11 @@ fn points_section(study: &Study, found: &Exploration) -> Markup {
                     }
                 }
             }
-            div #point.card {}
+            (shapes_hint(found))
+            div.split {
+                div #point.card {}
+                @if !found.shapes.is_empty() { (shape_figure()) }
+            }
         }
     }
 }
@@ -309,18 +248,34 @@ fn points_hint(study: &Study, found: &Exploration) -> Markup {
     let worst = found.answers.worst.and_then(|worst| found.points[worst].critical()).filter(|mode| mode.unstable);
     html! {
         p.hint {
-            "Click a point to see its modes; the arrow keys choose the next one. Open circles are stable points, filled ones unstable"
+            "Click a point to see its modes, and the shape of the one that grows fastest; the arrow keys choose the next one. Open circles are stable points, filled ones unstable"
             @if let Some(mode) = worst {
                 ", the darker the faster they grow (up to " (format!("{:.1}", mode.growth_rate())) " 1/s)"
             }
             ". The cross is the nominal point."
-            @if is_shortened(&found.points, MAX_MODES) {
+            @if is_shortened(&found.points) {
                 " There are more than " (MAX_MODES) " modes: only the unstable ones are listed here, and all of them in modes.csv."
             }
             @if !found.answers.hopf.points.is_empty() {
                 " Squares are Hopf points, located by solutions; lines join those of one mode."
             } @else if study.plane().is_some() {
                 " The line is where the largest growth rate is 0, between the points."
+            }
+        }
+    }
+}
+
+/// Which shapes the page has, where it does not have all.
+fn shapes_hint(found: &Exploration) -> Markup {
+    let n_kept: usize = found.points.iter().filter_map(PointResult::modes).map(|modes| shaped_modes(modes).len()).sum();
+    let n = found.shapes.len();
+    html! {
+        @if found.surface.nodes.is_empty() {
+            p.hint { "The super-element has no surface: there are no mode shapes." }
+        } @else if n < n_kept {
+            p.hint {
+                "This page has the shapes of " (n) " of " (n_kept) " modes: of the nominal point, of the strongest mode of each instability, "
+                "and of the points with the largest growth rates. All are in results.h5."
             }
         }
     }
@@ -371,26 +326,7 @@ fn shown(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use num_complex::Complex64;
-
     use super::*;
-
-    #[test]
-    fn above_the_limit_stable_modes_are_left_out_and_the_others_keep_their_numbers() {
-        let mode = |growth: f64| PointMode {
-            lambda: Complex64::new(growth, 1e3),
-            unstable: growth > 0.0,
-            backward_error: 0.0,
-            link: None,
-        };
-        let modes = Outcome::Modes([-1.0, 2.0, -3.0, 4.0].map(mode).into());
-        let point = PointResult { values: Vec::new(), outcome: modes };
-        let numbers = |most: usize| -> Vec<usize> {
-            let is_shortened = is_shortened(&[point.clone(), point.clone()], most);
-            mode_data(&point, is_shortened).iter().map(|datum| datum.0).collect()
-        };
-        assert_eq!((numbers(8), numbers(7)), (vec![1, 2, 3, 4], vec![2, 4]));
-    }
 
     #[test]
     fn numbers_of_any_size_have_their_digits() {

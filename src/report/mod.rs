@@ -10,6 +10,7 @@ mod certificate;
 pub mod comparison_plot;
 pub mod data;
 pub mod drawing;
+mod explore_data;
 pub mod explore_page;
 mod explore_plots;
 pub mod findings;

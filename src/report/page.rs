@@ -7,7 +7,7 @@ use maud::{Markup, PreEscaped, html};
 use super::certificate;
 use super::data::Data;
 use super::findings::{Findings, Instability};
-use super::frame::frame;
+use super::frame::{frame, shape_figure};
 use super::model_section;
 use super::plots::{self, Figure};
 use super::svg::PALETTE;
@@ -17,7 +17,7 @@ use crate::results::{Results, Status, Value};
 use crate::{Error, Result};
 
 /// Names are declared before they are used.
-const SCRIPT: [&str; 10] = [
+const SCRIPT: [&str; 11] = [
     include_str!("assets/numbers.js"),
     include_str!("assets/base.js"),
     include_str!("assets/charts.js"),
@@ -27,6 +27,7 @@ const SCRIPT: [&str; 10] = [
     include_str!("assets/checks.js"),
     include_str!("assets/viewer.js"),
     include_str!("assets/shape.js"),
+    include_str!("assets/shapes.js"),
     include_str!("assets/main.js"),
 ];
 
@@ -120,7 +121,7 @@ fn answer_section(findings: &Findings) -> Markup {
                 div.answers {
                     @for (i, one) in findings.instabilities.iter().enumerate() { (answer(findings, i, one)) }
                 }
-                (shape())
+                (shape_figure())
             }
         }
     }
@@ -154,40 +155,6 @@ fn answer(findings: &Findings, i: usize, one: &Instability) -> Markup {
 
 fn list(class: &str, items: &[String]) -> Markup {
     html! { @if !items.is_empty() { ul class=(class) { @for item in items { li { (unbroken(item)) } } } } }
-}
-
-/// The moving shape, which the scripts draw.
-fn shape() -> Markup {
-    const KEYS: &str = "Mode shape in 3D. Arrow keys turn it, plus and minus zoom, space plays and pauses.";
-    html! {
-        figure #shape.card hidden {
-            figcaption { strong #shape-title {} " " span #shape-note {} }
-            div #stage {
-                canvas #view tabindex="0" aria-label=(KEYS) {}
-                div #legend aria-hidden="true" {
-                    span #legend-top { "1" }
-                    canvas width="12" height="90" {}
-                    span { "0" }
-                }
-            }
-            div.controls {
-                button #play type="button" aria-pressed="true" { "Pause" }
-                label { "Mode " select #shape-mode {} }
-                label { "Amplitude " input #amplitude type="range" min="0" max="100" value="40"; }
-                label {
-                    "Colour "
-                    select #colouring { option value="size" { "displacement" } option value="part" { "parts" } }
-                }
-                span.views {
-                    "View "
-                    @for (view, name) in [("iso", "3D"), ("x", "x"), ("y", "y"), ("z", "z")] {
-                        button type="button" data-view=(view) { (name) }
-                    }
-                }
-            }
-            fieldset #parts { legend { "Parts shown" } }
-        }
-    }
 }
 
 fn plot(figures: &[Figure], name: &str) -> Markup {

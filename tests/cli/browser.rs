@@ -28,12 +28,13 @@ fn open(place: &Place) -> Browser {
     browser
 }
 
-/// Pixels of the shape that are not the ground.
-const DRAWN: &str = "(() => { const view = document.getElementById('view'); const c = document.createElement('canvas'); \
+/// The share of the shape's pixels that are not the ground.
+pub const DRAWN: &str = "(() => { const view = document.getElementById('view'); const c = document.createElement('canvas'); \
     c.width = view.width; c.height = view.height; const x = c.getContext('2d'); x.drawImage(view, 0, 0); \
     const p = x.getImageData(0, 0, c.width, c.height).data; let n = 0; for (let i = 3; i < p.length; i += 4) n += p[i] > 0; \
     return n / (c.width * c.height); })()";
-const PICTURE: &str = "document.getElementById('view').toDataURL()";
+/// The picture of the shape.
+pub const PICTURE: &str = "document.getElementById('view').toDataURL()";
 
 #[test]
 fn the_page_answers_and_its_controls_work() {

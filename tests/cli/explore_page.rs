@@ -1,5 +1,8 @@
 //! The page of `squeal explore` in a browser: what a reader sees and can do.
 
+use serde_json::json;
+
+use crate::browser::{DRAWN, PICTURE};
 use crate::support::browser::Browser;
 use crate::support::program::Place;
 
@@ -22,6 +25,7 @@ fn the_page_of_a_study_shows_points_and_the_modes_of_a_chosen_one() {
     assert!(page.text("document.querySelector('main').innerText").contains("represent no distribution"));
     choose_parameters(&mut page);
     choose_points(&mut page);
+    choose_shapes(&mut page);
     assert_eq!(page.number("document.querySelectorAll('[aria-label=\"Failed points\"] tbody tr').length"), 3.0);
     for window in [[420, 900], [1400, 900]] {
         page.resize(window);
@@ -74,4 +78,34 @@ fn choose_points(page: &mut Browser) {
     page.press("ArrowLeft");
     // The last point has failed.
     assert!(page.text("document.querySelector('#point p').textContent").contains("friction"));
+}
+
+/// The chosen point's fastest mode moves; its other modes and those of other points have shapes of their own; a point
+/// that has failed has none.
+fn choose_shapes(page: &mut Browser) {
+    let title = "document.getElementById('shape-title').textContent";
+    let worst = page.text("document.querySelector('button[data-point]').dataset.point");
+    page.value("document.querySelector('button[data-point]').click()");
+    assert!(page.text(title).ends_with(&format!("of point {worst}")), "{}", page.text(title));
+    page.value("document.getElementById('shape').scrollIntoView({behavior: 'instant'})");
+    page.wait_for(&format!("{DRAWN} > 0.05"));
+    let before = page.text(PICTURE);
+    page.wait_for(&format!("{PICTURE} !== {}", json!(before)));
+    // At rest, a picture is that of a shape.
+    page.value("document.getElementById('play').click()");
+    let settled = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))";
+    page.wait_for(settled);
+    let own = page.text(PICTURE);
+    page.value("document.querySelector('#map circle[data-point=\"0\"]').dispatchEvent(new MouseEvent('click'))");
+    page.wait_for(&format!("{PICTURE} !== {}", json!(own)));
+    assert!(page.text(title).ends_with("of the nominal point"), "{}", page.text(title));
+    let buttons = page.number("document.querySelectorAll('#point button[data-shape]').length");
+    assert_eq!(page.number("document.querySelectorAll('#shape-mode option').length"), buttons);
+    page.value("document.querySelector('#scatter svg').focus()");
+    page.press("ArrowLeft");
+    assert!(page.text("document.getElementById('shape-note').textContent").contains("has failed"));
+    assert_eq!(page.number("document.getElementById('view').clientHeight"), 0.0);
+    page.value("document.querySelector('button[data-point]').click()");
+    page.wait_for(settled);
+    assert_eq!(page.text(PICTURE), own);
 }

@@ -1,4 +1,4 @@
-// A study of many parameters: growth over a parameter, a map of two, and the modes of a chosen point.
+// A study of many parameters: growth over a parameter, a map of two, and modes and shapes of a chosen point.
 
 const AREA = { left: 66, top: 14, width: 480, height: 330 };
 
@@ -199,15 +199,54 @@ function markPoint(i) {
   document.querySelectorAll(`#points circle[data-point="${i}"]`).forEach((circle) => circle.classList.add("picked"));
 }
 
+/** The name of a mode among the shapes. */
+const shapeName = (i, [number]) => `${i}-${number}`;
+
+/** The words for a mode by the name of its shape. */
+function shapeLabel(name) {
+  const [i, number] = name.split("-").map(Number);
+  const [, frequency, growth] = data.points[i].modes.find((mode) => mode[0] === number);
+  const at = i ? `point ${i}` : "the nominal point";
+  return `${frequency.toFixed(1)} Hz, ${signed(growth, 1)} /s, mode ${number} of ${at}`;
+}
+
+/** Shows the mode of a point that grows fastest, of those whose shapes the page has. */
+function showShape(i) {
+  if (!shape) return;
+  const growing = data.points[i].modes.toSorted((a, b) => b[2] - a[2]);
+  const names = growing.map((mode) => shapeName(i, mode)).filter((name) => data.shapes[name]);
+  byId("shape").classList.toggle("empty", !names.length);
+  if (names.length) {
+    shape.offer(names);
+    shape.show(names[0]);
+    return;
+  }
+  const hasFailed = data.points[i].failure !== null;
+  byId("shape-title").textContent = "";
+  byId("shape-note").textContent = hasFailed
+    ? `Point ${i} has failed: it has no mode shapes.`
+    : `This page has no mode shape of point ${i}; results.h5 has.`;
+}
+
+/** The number of a mode, as a button where the page has its shape. */
+function modeNumber(i, mode) {
+  const name = shapeName(i, mode);
+  if (!shape || !data.shapes[name]) return mode[0];
+  const button = make("button", { type: "button", "data-shape": name, title: "Show its shape" }, mode[0]);
+  button.addEventListener("click", () => shape.show(name));
+  return button;
+}
+
 /** The table of a point's modes. */
-function modesOf(point) {
+function modesOf(i) {
   const head = make("tr");
   ["mode", "frequency, Hz", "growth rate, 1/s", "nominal mode"].forEach((name) =>
     head.append(make("th", { scope: "col" }, name)),
   );
-  const rows = point.modes.map(([number, frequency, growth, unstable, nominal, doubtful]) => {
+  const rows = data.points[i].modes.map((mode) => {
+    const [, frequency, growth, unstable, nominal, doubtful] = mode;
     const link = nominal === null ? "\u2013" : `${nominal}${doubtful ? " ?" : ""}`;
-    const cells = [number, frequency.toFixed(2), signed(growth, 3), link];
+    const cells = [modeNumber(i, mode), frequency.toFixed(2), signed(growth, 3), link];
     return make("tr", { class: unstable ? "unstable" : "" }, ...cells.map((cell) => make("td", {}, cell)));
   });
   const table = make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows));
@@ -220,12 +259,10 @@ function showPoint(i) {
   data.parameters.forEach((name, k) =>
     list.append(make("dt", {}, name), make("dd", {}, Number(point.values[k].toPrecision(8)))),
   );
-  const body = point.failure === null ? modesOf(point) : make("p", {}, `Failed: ${point.failure}`);
-  byId("point").replaceChildren(
-    make("h3", {}, i ? `Point ${i}` : "Nominal point"),
-    make("div", { class: "split" }, list, body),
-  );
+  const body = point.failure === null ? modesOf(i) : make("p", {}, `Failed: ${point.failure}`);
+  byId("point").replaceChildren(make("h3", {}, i ? `Point ${i}` : "Nominal point"), list, body);
   markPoint(i);
+  showShape(i);
 }
 
 for (const id of ["scatter-x", "map-x", "map-y"]) {
@@ -237,6 +274,7 @@ document.querySelectorAll("button[data-point]").forEach((button) => {
     byId("point").scrollIntoView({ block: "nearest" });
   });
 });
+const shape = startShape(shapeLabel, (name) => shape.show(name));
 choice.onChange(showPoint);
 drawScatter();
 drawMap();

@@ -1,6 +1,6 @@
 // Starts all parts of the page, then chooses the first instability, which is the strongest.
 
-startShape();
+startShapes();
 startCharts();
 startExplain();
 startPressure();

@@ -4,29 +4,44 @@ const PERIOD = 1600; // ms
 const LARGEST = 0.15; // of the model's size
 const VIEWS = { iso: [0.55, 0.42], x: [-Math.PI / 2, 0], y: [0, Math.PI / 2], z: [0, 0] };
 
-function startShape() {
-  const names = data.asked
-    .flatMap((value) => data.values[value].modes.map((_, mode) => `${value}-${mode}`))
-    .filter((name) => data.shapes[name]);
-  if (!data.surface || !names.length) {
-    document.querySelector("#answer .split").style.gridTemplateColumns = "minmax(0, 1fr)";
-    return;
-  }
+/**
+ * Starts the figure of a mode shape; gives nothing where there is none to show. `label` has the words for a mode by its
+ * name, `choose` is called where the reader selects another mode.
+ */
+function startShape(label, choose) {
+  if (!data.surface || !Object.keys(data.shapes).length) return null;
   byId("shape").hidden = false;
   let viewer;
   try {
     viewer = new Viewer(byId("view"), data.surface);
   } catch (error) {
     byId("shape-note").textContent = `No picture: ${error.message}.`;
-    byId("stage").hidden = true;
-    return;
+    byId("shape").classList.add("empty");
+    return null;
   }
-  fillPictures(viewer);
   const motion = new Motion(viewer);
-  startControls(viewer, motion, names);
+  startControls(viewer, motion);
   startTurning(viewer, motion);
   paintScale(document.querySelector("#legend canvas"));
+  const select = byId("shape-mode");
+  select.addEventListener("change", () => choose(select.value));
   motion.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  return {
+    viewer,
+    /** The modes that can be selected, by their names. */
+    offer(names) {
+      select.replaceChildren(...names.map((name) => make("option", { value: name }, label(name))));
+    },
+    /** Shows a shape that the page has. */
+    show(name) {
+      byId("shape-title").textContent = `Mode shape at ${label(name)}`;
+      byId("shape-note").textContent = "";
+      select.value = name;
+      viewer.setShape(data.shapes[name]);
+      byId("legend-top").textContent = viewer.full < 0.995 ? `\u2265 ${viewer.full.toFixed(2)}` : "1";
+      motion.redraw();
+    },
+  };
 }
 
 /** Draws again when something has changed, and all the time while the shape moves in sight. */
@@ -66,27 +81,7 @@ class Motion {
   }
 }
 
-/** A picture of each instability for its card. */
-function fillPictures(viewer) {
-  document.querySelectorAll(".instability").forEach((card, i) => {
-    const packed = data.shapes[data.instabilities[i].worst];
-    if (!packed) return;
-    const image = card.querySelector("img");
-    image.src = viewer.picture(packed, 520, 340);
-    image.alt = `Mode shape: ${modeLabel(modeOf(data.instabilities[i].worst))}`;
-    image.hidden = false;
-  });
-}
-
-function startControls(viewer, motion, names) {
-  const select = byId("shape-mode");
-  names.forEach((name) => {
-    const mode = modeOf(name);
-    select.append(make("option", { value: name }, `${mode.frequency.toFixed(1)} Hz, \u03bc = ${mode.friction}`));
-  });
-  select.addEventListener("change", () => choice.set(select.value));
-  choice.onChange((name) => showShape(viewer, motion, name));
-  showShape(viewer, motion, names.includes(data.instabilities[0]?.worst) ? data.instabilities[0].worst : names[0]);
+function startControls(viewer, motion) {
   byId("play").addEventListener("click", () => motion.play(!motion.isPlaying));
   const amplitude = byId("amplitude");
   const setAmplitude = () => {
@@ -118,20 +113,6 @@ function startControls(viewer, motion, names) {
     swatch.style.background = PARTS[i % PARTS.length];
     byId("parts").append(make("label", {}, box, " ", swatch, ` ${name}`));
   });
-}
-
-function showShape(viewer, motion, name) {
-  const isKept = Boolean(data.shapes[name]);
-  byId("shape-note").textContent = isKept
-    ? ""
-    : `(the results have no shape of the chosen mode, ${modeOf(name).frequency.toFixed(1)} Hz at \u03bc = ${modeOf(name).friction})`;
-  if (!isKept) return;
-  const mode = modeOf(name);
-  byId("shape-title").textContent = `Mode shape at ${mode.frequency.toFixed(1)} Hz, \u03bc = ${mode.friction}`;
-  byId("shape-mode").value = name;
-  viewer.setShape(data.shapes[name]);
-  byId("legend-top").textContent = viewer.full < 0.995 ? `\u2265 ${viewer.full.toFixed(2)}` : "1";
-  motion.redraw();
 }
 
 /** Turning, shifting and zooming by pointer, wheel and keys. */
