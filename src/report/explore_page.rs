@@ -235,7 +235,7 @@ fn points_section(study: &Study, found: &Exploration) -> Markup {
                     }
                 }
             }
-            (shapes_hint(found))
+            (shapes_hint(!found.surface.nodes.is_empty(), found.shapes.len(), n_kept_shapes(&found.points)))
             div.split {
                 div #point.card {}
                 @if !found.shapes.is_empty() { (shape_figure()) }
@@ -265,12 +265,10 @@ fn points_hint(study: &Study, found: &Exploration) -> Markup {
     }
 }
 
-/// Which shapes the page has, where it does not have all.
-fn shapes_hint(found: &Exploration) -> Markup {
-    let n_kept: usize = found.points.iter().filter_map(PointResult::modes).map(|modes| shaped_modes(modes).len()).sum();
-    let n = found.shapes.len();
+/// Which shapes the page has, where it does not have all of those that are kept.
+fn shapes_hint(has_surface: bool, n: usize, n_kept: usize) -> Markup {
     html! {
-        @if found.surface.nodes.is_empty() {
+        @if !has_surface {
             p.hint { "The super-element has no surface: there are no mode shapes." }
         } @else if n < n_kept {
             p.hint {
@@ -279,6 +277,11 @@ fn shapes_hint(found: &Exploration) -> Markup {
             }
         }
     }
+}
+
+/// Modes whose shapes are kept.
+fn n_kept_shapes(points: &[PointResult]) -> usize {
+    points.iter().filter_map(PointResult::modes).map(|modes| shaped_modes(modes).len()).sum()
 }
 
 /// The parameter with the largest influence that is known.
@@ -327,6 +330,14 @@ fn shown(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_page_says_which_shapes_it_does_not_have() {
+        let hint = |has_surface, n, n_kept| shapes_hint(has_surface, n, n_kept).into_string();
+        assert_eq!(hint(true, 7, 7), "");
+        assert!(hint(true, 7, 90).contains("the shapes of 7 of 90 modes"));
+        assert!(hint(false, 0, 90).contains("no mode shapes"));
+    }
 
     #[test]
     fn numbers_of_any_size_have_their_digits() {

@@ -26,8 +26,8 @@ enum Map<'a> {
     Coordinates {
         system: &'a System,
         outer: &'a OuterSurface,
-        /// A row a coordinate: displacements of the samples for a unit of it.
-        basis: Array2<f32>,
+        /// A row a coordinate: displacements of the samples for a unit of it; made when it is first used.
+        basis: Option<Array2<f32>>,
     },
 }
 
@@ -48,12 +48,8 @@ impl<'a> SurfaceMotion<'a> {
     /// The motion that the coordinates of a super-element make of its surface, whose basis the root has.
     pub fn of_coordinates(outer: &'a OuterSurface, system: &'a System) -> SurfaceMotion<'a> {
         let samples = spread(&outer.nodes, &outer.triangles, &outer.part, N_SAMPLES);
-        let width = 3 * outer.nodes.len();
-        let n = if is_root(system) { outer.basis.len() / width.max(1) } else { 0 };
-        let entry = |(q, i): (usize, usize)| outer.basis[q * width + 3 * samples[i / 3] as usize + i % 3];
-        let basis = Array2::from_shape_fn((n, 3 * samples.len()), entry);
         let surface = Surface { samples, ..without_samples(outer) };
-        SurfaceMotion { surface, map: Map::Coordinates { system, outer, basis } }
+        SurfaceMotion { surface, map: Map::Coordinates { system, outer, basis: None } }
     }
 
     /// The surface, with its samples.
@@ -68,9 +64,9 @@ impl<'a> SurfaceMotion<'a> {
     pub fn of_samples(&mut self, vectors: &[&Vector]) -> Result<Vec<Vec<f64>>> {
         match &mut self.map {
             Map::Nodes { samples, .. } => vectors.iter().map(|vector| samples.of(vector)).collect(),
-            Map::Coordinates { system, basis, .. } => {
-                of_coordinates(system, vectors, |coordinates| times_basis(coordinates, basis))
-            }
+            Map::Coordinates { system, outer, basis } => of_coordinates(system, vectors, |coordinates| {
+                times_basis(coordinates, basis.get_or_insert_with(|| sampled(outer, &self.surface.samples)))
+            }),
         }
     }
 
@@ -110,6 +106,13 @@ fn of_coordinates(
 ) -> Result<Vec<Vec<f64>>> {
     let coordinates = coordinates(system, vectors)?;
     Ok(if is_root(system) { displacements(&coordinates) } else { vec![Vec::new(); vectors.len()] })
+}
+
+/// The columns of a surface's basis that move its samples.
+fn sampled(outer: &OuterSurface, samples: &[u32]) -> Array2<f32> {
+    let width = 3 * outer.nodes.len();
+    let entry = |(q, i): (usize, usize)| outer.basis[q * width + 3 * samples[i / 3] as usize + i % 3];
+    Array2::from_shape_fn((outer.basis.len() / width.max(1), 3 * samples.len()), entry)
 }
 
 /// `u = basis^T q` for several q, in single precision.

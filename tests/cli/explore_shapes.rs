@@ -12,7 +12,12 @@ const STUDY: &str = "model = \"brake.toml\"\nband = [0, 60000]\n\
     [design]\nkind = \"list\"\nfile = \"points.csv\"\n\
     [parameter.mu]\nkey = \"friction\"\nuniform = [0.0, 0.8]\n\
     [parameter.density]\nkey = \"material.iron.density\"\nuniform = [6500, 7500]\n";
-const POINTS: &str = "mu,density\n0.0,6700\n0.7,7300\n0.8,6900\n0.5,7000\n3,7000\n";
+const POINTS: &str = "mu,density\n0.0,6700\n0.9,7300\n0.8,7400\n0.5,7000\n3,7000\n";
+
+/// The small pad with damping, by which stable modes differ in their growth rates; it squeals above 0.4.
+fn damped() -> Place {
+    Place::with_blocks(|text| text + "[part.pad.rayleigh]\nalpha = 5\nbeta = 1e-8\n", &PadOnDisc::default())
+}
 
 /// A mode with its shape in a study: point, eigenvalue, displacements.
 struct Shaped {
@@ -88,7 +93,7 @@ fn assert_same_shapes(place: &Place, runs: [&str; 2]) {
 
 #[test]
 fn shapes_of_points_are_those_of_stability_on_one_rank_and_on_two() {
-    let place = Place::blocks();
+    let place = damped();
     place.write("explore.toml", STUDY);
     place.write("points.csv", POINTS);
     done(place.run(&EXPLORE));
@@ -96,7 +101,7 @@ fn shapes_of_points_are_those_of_stability_on_one_rank_and_on_two() {
     let points: Vec<usize> = own.iter().map(|own| own.point).collect();
     assert!((0..5).all(|point| points.contains(&point)) && !points.contains(&5), "{points:?}");
     assert_eq!(points.iter().filter(|point| **point == 1).count(), 1, "a stable point has the shape of one mode");
-    for (point, mu, density) in [(2, 0.7, 7300), (3, 0.8, 6900)] {
+    for (point, mu, density) in [(2, 0.9, 7300), (3, 0.8, 7400)] {
         let model = place.read("brake.toml").replace("density = 7100", &format!("density = {density}"));
         place.write("point.toml", model);
         let options = ["--band", "0:60000", "--friction", &mu.to_string(), "-o", "point", "--force"];
@@ -115,11 +120,11 @@ fn shapes_of_points_are_those_of_stability_on_one_rank_and_on_two() {
 
 #[test]
 fn a_layout_and_its_super_element_have_shapes() {
-    let place = Place::with_blocks(|text| text, &PadOnDisc::default());
+    let place = damped();
     let reduce = ["reduce", "brake.toml", "--contacts", "4", "--limit", "240000", "--output", "brake.se.h5"];
     done(place.run(&reduce));
-    let study = "model = \"MODEL\"\nband = [0, 60000]\n[design]\nkind = \"one-at-a-time\"\n\
-        [parameter.mu]\nkey = \"friction\"\nvalues = [0.3, 0.8]\n";
+    let study = "model = \"MODEL\"\nband = [0, 90000]\n[design]\nkind = \"one-at-a-time\"\n\
+        [parameter.mu]\nkey = \"friction\"\nvalues = [0.2, 0.5]\n";
     let layout = study.replace("model = \"MODEL\"", "contacts = 4\nmodel = \"brake.toml\"");
     for (model, study, options) in [
         ("brake.se.h5", study.replace("MODEL", "brake.se.h5"), &[][..]),
@@ -128,8 +133,8 @@ fn a_layout_and_its_super_element_have_shapes() {
         place.write("explore.toml", study);
         done(place.run(&["explore", "explore.toml", "-o", "run", "--force"]));
         let points = table(&place, "run/points.csv");
-        let point = (0..points.len()).find(|&i| number(&points[i], "mu") == 0.8).unwrap();
-        let alone = ["stability", model, "--band=0:60000", "--friction", "0.8", "-o", "alone", "--force"];
+        let point = (0..points.len()).find(|&i| number(&points[i], "mu") == 0.5).unwrap();
+        let alone = ["stability", model, "--band=0:90000", "--friction", "0.5", "-o", "alone", "--force"];
         done(place.run(&[&alone[..], options].concat()));
         assert_those_of_stability(&shaped(&place, "run"), point, &read(&place, "alone"));
     }
@@ -138,14 +143,14 @@ fn a_layout_and_its_super_element_have_shapes() {
 /// A file of a super-element that has no surface, as another program may write it.
 #[test]
 fn a_super_element_without_a_surface_has_no_shapes_and_its_page_says_so() {
-    let place = Place::with_blocks(|text| text, &PadOnDisc::default());
+    let place = damped();
     done(place.run(&["reduce", "brake.toml", "--contacts", "4", "--limit", "240000", "--output", "brake.se.h5"]));
     let (element, _) = squeal::reduction::file::read(&place.path("brake.se.h5")).unwrap();
     squeal::reduction::file::write(&place.path("bare.se.h5"), &element, &Default::default(), None).unwrap();
     place.write(
         "explore.toml",
         "model = \"bare.se.h5\"\nband = [0, 60000]\n[design]\nkind = \"one-at-a-time\"\n\
-         [parameter.mu]\nkey = \"friction\"\nvalues = [0.3, 0.8]\n",
+         [parameter.mu]\nkey = \"friction\"\nvalues = [0.2, 0.5]\n",
     );
     done(place.run(&EXPLORE));
     assert!(shaped(&place, "run").is_empty());
