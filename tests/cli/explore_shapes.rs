@@ -12,7 +12,7 @@ const STUDY: &str = "model = \"brake.toml\"\nband = [0, 60000]\n\
     [design]\nkind = \"list\"\nfile = \"points.csv\"\n\
     [parameter.mu]\nkey = \"friction\"\nuniform = [0.0, 0.8]\n\
     [parameter.density]\nkey = \"material.iron.density\"\nuniform = [6500, 7500]\n";
-const POINTS: &str = "mu,density\n0.0,6700\n0.9,7300\n0.8,7400\n0.5,7000\n3,7000\n";
+const POINTS: &str = "mu,density\n0.0,6700\n0.9,7300\n0.6,7400\n0.5,7000\n3,7000\n";
 
 /// The small pad with damping, by which stable modes differ in their growth rates; it squeals above 0.4.
 fn damped() -> Place {
@@ -101,7 +101,7 @@ fn shapes_of_points_are_those_of_stability_on_one_rank_and_on_two() {
     let points: Vec<usize> = own.iter().map(|own| own.point).collect();
     assert!((0..5).all(|point| points.contains(&point)) && !points.contains(&5), "{points:?}");
     assert_eq!(points.iter().filter(|point| **point == 1).count(), 1, "a stable point has the shape of one mode");
-    for (point, mu, density) in [(2, 0.9, 7300), (3, 0.8, 7400)] {
+    for (point, mu, density) in [(2, 0.9, 7300), (3, 0.6, 7400)] {
         let model = place.read("brake.toml").replace("density = 7100", &format!("density = {density}"));
         place.write("point.toml", model);
         let options = ["--band", "0:60000", "--friction", &mu.to_string(), "-o", "point", "--force"];
