@@ -143,7 +143,8 @@ impl Design {
         }
     }
 
-    fn n_points(&self, parameters: &[&Distribution]) -> usize {
+    /// Points at most; of a map those of its grid.
+    pub fn n_points(&self, parameters: &[&Distribution]) -> usize {
         let levels = |n: usize| parameters.iter().map(move |parameter| parameter.levels(n).len());
         match &self.kind {
             DesignKind::Grid { n_levels } | DesignKind::Map { n_levels } => {

@@ -50,7 +50,7 @@ pub use random_field::{Kernel, RandomField};
 pub use refinement::Refinement;
 pub use result::{Link, Outcome, PointMode, PointResult};
 pub use sensitivity::{Bar, Estimate, Indices, sobol_indices, tornado};
-pub use shapes::{ModePlace, by_weight, shaped_modes};
+pub use shapes::{ModePlace, by_weight, keeps_shapes, shaped_modes};
 pub use states::{State, StateWear, States};
 pub use statistics::{Probability, quantile};
 pub use study::{Parameter, Study, read};

@@ -5,6 +5,15 @@ use super::result::{PointMode, PointResult};
 
 /// Shapes are kept of so many unstable modes of a point.
 const MAX_SHAPES: usize = 3;
+/// One shape of each point of a study may take so much, bytes.
+const MAX_BYTES: usize = 1 << 28;
+/// A shape takes so much at a node, bytes: the complex displacements along three axes in single precision.
+const BYTES_AT_A_NODE: usize = 24;
+
+/// Whether a study of so many points keeps shapes at so many nodes: not where they would fill disks.
+pub fn keeps_shapes(n_points: usize, n_nodes: usize) -> bool {
+    n_points.saturating_mul(n_nodes * BYTES_AT_A_NODE) <= MAX_BYTES
+}
 
 /// A mode at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,6 +83,12 @@ mod tests {
         let mut own = modes(&[5.0, 1.0]);
         own[0].unstable = false;
         assert_eq!(shaped_modes(&own), [1]);
+    }
+
+    #[test]
+    fn shapes_are_kept_up_to_a_quarter_of_a_gigabyte() {
+        assert!(keeps_shapes(256, 6779) && keeps_shapes(11_184_810, 1) && keeps_shapes(10_000, 0));
+        assert!(!keeps_shapes(11_184_811, 1) && !keeps_shapes(10_000, 1857) && !keeps_shapes(usize::MAX, 2));
     }
 
     #[test]

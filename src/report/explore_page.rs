@@ -269,7 +269,9 @@ fn points_hint(study: &Study, found: &Exploration) -> Markup {
 fn shapes_hint(has_surface: bool, n: usize, n_kept: usize) -> Markup {
     html! {
         @if !has_surface {
-            p.hint { "The super-element has no surface: there are no mode shapes." }
+            p.hint {
+                "There are no mode shapes: the super-element has no surface, or the shapes of so many points would take more than a quarter of a gigabyte."
+            }
         } @else if n < n_kept {
             p.hint {
                 "This page has the shapes of " (n) " of " (n_kept) " modes: of the nominal point, of the strongest mode of each instability, "

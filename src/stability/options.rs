@@ -75,8 +75,8 @@ pub struct BlockedOptions {
     /// Relative change of an eigenvalue from round to round at which it is converged. A round wins a factor of three to
     /// five, so that the error left is below half the change: two searches differ by less than that. Default: 5e-10.
     pub eigenvalue_change: f64,
-    /// The round, counted from zero, that corrects left vectors and not right ones: an eigenvalue's error is the product
-    /// of both vectors' errors, and the first correction of a vector wins most. Default: 1.
+    /// The round, counted from zero, that corrects left vectors and not right ones: an eigenvalue's error is the
+    /// product of both vectors' errors, and the first correction of a vector gains most. Default: 1.
     pub left_round: usize,
     /// Largest backward error of an eigenpair. Default: 1e-9.
     pub backward_error: f64,

@@ -264,16 +264,17 @@ fn kept_shapes(place: &Place) -> Vec<f32> {
     hdf5::File::open(place.path("run/results.h5")).unwrap().dataset("shapes").unwrap().read_raw().unwrap()
 }
 
-/// That two folders have the same modes.
+/// That two folders have the same modes. A stable mode in doubt may resemble two nominal modes alike: which one it is
+/// said to be is a matter of rounding.
 #[track_caller]
 pub fn assert_same_modes(place: &Place, folders: [&str; 2]) {
     let [one, two] = folders.map(|folder| table(place, &format!("{folder}/modes.csv")));
     assert!(one.len() == two.len() && !one.is_empty());
     for (a, b) in one.iter().zip(&two) {
         assert_same(lambda(b), lambda(a));
-        let labels =
-            |row: &BTreeMap<String, String>| ["point", "mode", "unstable", "nominal_mode"].map(|c| row[c].clone());
-        assert_eq!(labels(a), labels(b));
+        let in_doubt = [a, b].iter().all(|row| row["doubtful"] == "true" && row["unstable"] == "false");
+        let labels = ["point", "mode", "unstable", "nominal_mode"].into_iter().take(if in_doubt { 3 } else { 4 });
+        labels.for_each(|label| assert_eq!(a[label], b[label], "{label}: {a:?} {b:?}"));
     }
 }
 

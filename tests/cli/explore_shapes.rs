@@ -155,5 +155,5 @@ fn a_super_element_without_a_surface_has_no_shapes_and_its_page_says_so() {
     done(place.run(&EXPLORE));
     assert!(shaped(&place, "run").is_empty());
     let page = place.read("run/explore.html");
-    assert!(page.contains("The super-element has no surface") && !page.contains("id=\"shape\""));
+    assert!(page.contains("the super-element has no surface") && !page.contains("id=\"shape\""));
 }

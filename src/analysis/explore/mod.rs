@@ -21,7 +21,8 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use crate::explore::{
-    Answers, Distribution, Refinement, Study, by_weight, shaped_modes, standing_alone, with_tables, write_tables,
+    Answers, Distribution, Refinement, Study, by_weight, keeps_shapes, shaped_modes, standing_alone, with_tables,
+    write_tables,
 };
 use crate::hdf::is_hdf5;
 use crate::native::Comm;
@@ -128,6 +129,8 @@ impl<'s> Run<'s> {
         let values: Vec<Vec<f64>> = [nominal].into_iter().chain(design).collect();
         // Shapes are kept in the folder.
         let surface = output.map_or_else(Surface::default, |_| structure.outer_surface(comm));
+        let keeps_shapes = keeps_shapes(study.design.n_points(&distributions), surface.nodes.len());
+        let surface = if keeps_shapes { surface } else { Surface::default() };
         let shapes = !surface.nodes.is_empty();
         let request = Request { band, criterion, follow: study.follow, gradients: false, shapes };
         let scales = scales(&values);
