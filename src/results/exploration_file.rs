@@ -255,10 +255,9 @@ mod tests {
     use crate::explore::{Answers, Difference, Gradient, Link};
     use crate::results::{About, Surface};
 
-    #[test]
-    fn a_file_has_points_modes_gradients_and_answers() {
-        let place = tempfile::tempdir().unwrap();
-        let file = place.path().join("explore.toml");
+    /// A study with two points that have modes and one that has failed.
+    fn study_and_results(place: &Path) -> (Study, Exploration) {
+        let file = place.join("explore.toml");
         let study = "model = \"m.toml\"\nbin = 100\n[design]\nkind = \"sobol\"\npoints = 2\n\
             [parameter.mu]\nkey = \"friction\"\nuniform = [0.2, 0.6]\n[parameter.p]\nkey = \"pressure\"\nvalues = [1]\n";
         std::fs::write(&file, study).unwrap();
@@ -286,9 +285,20 @@ mod tests {
             surface: Surface { nodes: vec![[0.0; 3]; 2], ..Surface::default() },
             shapes: Vec::new(),
         };
-        let path = place.path().join("results.h5");
+        (study, found)
+    }
+
+    /// Shapes at two nodes, one more for each point; the first number names point and mode.
+    fn shapes_of(number: usize) -> Result<Vec<Shape>> {
         let shape = |x: f32| Shape { re: vec![[x, 1.0, 0.0]; 2], im: vec![[0.5, 0.0, -x]; 2] };
-        let mut shapes_of = |number| Ok((0..=number).map(|mode| shape((10 * number + mode) as f32)).collect());
+        Ok((0..=number).map(|mode| shape((10 * number + mode) as f32)).collect())
+    }
+
+    #[test]
+    fn a_file_has_points_modes_gradients_and_answers() {
+        let place = tempfile::tempdir().unwrap();
+        let (study, found) = study_and_results(place.path());
+        let path = place.path().join("results.h5");
         write(&path, &study, &found, &mut shapes_of).unwrap();
         assert!(is_one(&path));
         let file = hdf::open(&path, &FORMAT).unwrap();
@@ -299,11 +309,6 @@ mod tests {
         assert_eq!(modes.iter().map(|mode| (mode.point, mode.nominal)).collect::<Vec<_>>(), [(0, 1), (1, 1), (1, 0)]);
         let slopes = numbers("gradients");
         assert!(slopes[..2] == [1.0, -3.0] && slopes[2..].iter().all(|slope| slope.is_nan()));
-        assert_eq!(hdf::values::<u32>(&file, "shaped").unwrap(), [0, 2, 1]);
-        let shapes: Vec<f32> = hdf::values(&file, "shapes").unwrap();
-        assert_eq!(file.dataset("shapes").unwrap().shape(), [3, 2, 3, 2]);
-        assert_eq!(shapes[24..30], [11.0, 0.5, 1.0, 0.0, 0.0, -11.0]);
-        assert!(write(&path, &study, &found, &mut |_| Ok(Vec::new())).is_err(), "shapes are missing");
         assert_eq!(numbers("bins")[..5], [0.0, 100.0, 1.0, 1.0, 1.0]);
         let columns: FixedUnicode<MAX_ATTRIBUTE_LENGTH> =
             file.dataset("instabilities").unwrap().attr("columns").unwrap().read_scalar().unwrap();
@@ -311,5 +316,20 @@ mod tests {
         assert_eq!(file.dataset("instabilities").unwrap().shape(), [2, n_columns]);
         assert!(hdf::read_text(&file, "failures").unwrap().contains("point = 2"));
         assert!(hdf::read_text(&file, "parameters").unwrap().contains("difference = \"lost\""));
+    }
+
+    #[test]
+    fn a_file_has_the_shapes_of_the_points_and_none_may_be_missing() {
+        let place = tempfile::tempdir().unwrap();
+        let (study, found) = study_and_results(place.path());
+        let path = place.path().join("results.h5");
+        write(&path, &study, &found, &mut shapes_of).unwrap();
+        let file = hdf::open(&path, &FORMAT).unwrap();
+        assert_eq!(hdf::values::<u32>(&file, "shaped").unwrap(), [0, 2, 1]);
+        let shapes: Vec<f32> = hdf::values(&file, "shapes").unwrap();
+        assert_eq!(file.dataset("shapes").unwrap().shape(), [3, 2, 3, 2]);
+        assert_eq!(shapes[24..30], [11.0, 0.5, 1.0, 0.0, 0.0, -11.0]);
+        drop(file);
+        assert!(write(&path, &study, &found, &mut |_| Ok(Vec::new())).is_err(), "shapes are missing");
     }
 }

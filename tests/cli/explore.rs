@@ -2,12 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use num_complex::Complex64;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
 
 use squeal::analysis::{StabilityOptions, explore, stability};
 use squeal::explore::{Outcome, PointResult};
@@ -16,16 +12,16 @@ use squeal::{Session, Structure};
 
 use crate::support::data;
 use crate::support::pad_on_disc::PadOnDisc;
-use crate::support::program::{Finished, Place, assert_refused, end, signal, start, swap};
+use crate::support::program::{Finished, Place, assert_refused, swap};
 
 /// A study of the small pad on its disc.
-const STUDY: &str = "model = \"brake.toml\"\nband = [0, 60000]\nbin = 10000\n\
+pub const STUDY: &str = "model = \"brake.toml\"\nband = [0, 60000]\nbin = 10000\n\
     [design]\nkind = \"sobol\"\npoints = 6\nseed = 2\n\
     [parameter.mu]\nkey = \"friction\"\nuniform = [0.2, 0.8]\n\
     [parameter.load]\nkey = \"load.*.force\"\nfactor = true\nnormal = { mean = 1, deviation = 0.2 }\n\
     [parameter.density]\nkey = \"material.iron.density\"\nuniform = [6500, 7500]\n";
 /// One that brackets the friction coefficient above which the pad squeals.
-const ADAPTIVE: &str = "model = \"brake.toml\"\nband = [0, 60000]\nfollow = false\n\
+pub const ADAPTIVE: &str = "model = \"brake.toml\"\nband = [0, 60000]\nfollow = false\n\
     [design]\nkind = \"adaptive\"\npoints = 14\nstart = 4\nresolution = 0.04\nseed = 0\n\
     [parameter.mu]\nkey = \"friction\"\nuniform = [0.0, 0.9]\n";
 pub const EXPLORE: [&str; 4] = ["explore", "explore.toml", "-o", "run"];
@@ -199,71 +195,6 @@ fn a_point_that_fails_is_recorded_and_the_study_continues() {
     assert_eq!(serde_json::from_str::<serde_json::Value>(&finished.out).unwrap(), json, "standard output is the file");
 }
 
-/// Points that an unfinished study has finished.
-fn n_done(place: &Place) -> usize {
-    n_done_of(place, "run")
-}
-
-fn n_done_of(place: &Place, run: &str) -> usize {
-    let folder = &format!(".{run}.unfinished/.resume");
-    let is_point = |name: &String| name.starts_with("point-");
-    if place.path(folder).exists() { place.list(folder).iter().filter(|name| is_point(name)).count() } else { 0 }
-}
-
-#[test]
-fn a_study_that_is_killed_ends_with_the_same_files() {
-    assert_killed_ends_the_same(STUDY, "gradients.csv");
-}
-
-#[test]
-fn an_adaptive_study_that_is_killed_ends_with_the_same_files() {
-    assert_killed_ends_the_same(ADAPTIVE, "boundary.csv");
-}
-
-/// Kills a study ten times, once it has two points and then at random moments, and compares its files, one more among
-/// them, with those of a study that was not interrupted.
-pub fn assert_killed_ends_the_same(study: &str, file: &str) {
-    let place = place_with(study);
-    let begun = Instant::now();
-    done(place.run(&EXPLORE));
-    let (whole, mut chance) = (begun.elapsed().as_secs_f64(), Pcg64::seed_from_u64(7));
-    let files = ["points.csv", "modes.csv", file, "summary.json", "worst.toml", "explore.html"];
-    let expected = files.map(|file| place.read(&format!("run/{file}")));
-    let shapes = kept_shapes(&place);
-    std::fs::remove_dir_all(place.path("run")).unwrap();
-    for i in 0..10 {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin("squeal"));
-        command.args(EXPLORE).current_dir(place.path("")).env("OPENBLAS_NUM_THREADS", "1");
-        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        let patience = Instant::now() + Duration::from_secs(200);
-        while n_done(&place) < 2 && child.try_wait().unwrap().is_none() {
-            assert!(Instant::now() < patience, "two points do not come");
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        std::thread::sleep(Duration::from_secs_f64(if i == 0 { 0.0 } else { 0.3 * whole * chance.random::<f64>() }));
-        // It may be over before.
-        let _ = child.kill();
-        child.wait().unwrap();
-        assert!(n_done(&place) >= 2 || place.path("run").exists());
-    }
-    if !place.path("run").exists() {
-        place.write("other.toml", study.replace("seed = ", "seed = 1"));
-        let other = place.run(&["explore", "other.toml", "-o", "run"]);
-        assert_refused(&other, &["points are done", "parameters and design", "--force"]);
-        let finished = done(place.run(&EXPLORE));
-        assert!(finished.err.contains("an earlier run has finished"), "{}", finished.err);
-    }
-    for (file, expected) in files.iter().zip(expected) {
-        assert!(place.read(&format!("run/{file}")) == expected, "{file} differs");
-    }
-    assert!(kept_shapes(&place) == shapes && !shapes.is_empty(), "shapes differ");
-    assert!(!place.path(".run.unfinished").exists());
-}
-
-fn kept_shapes(place: &Place) -> Vec<f32> {
-    hdf5::File::open(place.path("run/results.h5")).unwrap().dataset("shapes").unwrap().read_raw().unwrap()
-}
-
 /// That two folders have the same modes. A stable mode in doubt may resemble two nominal modes alike: which one it is
 /// said to be is a matter of rounding.
 #[track_caller]
@@ -315,43 +246,6 @@ fn groups_of_ranks_find_what_one_rank_finds() {
     }
     let refused = place.run_on(2, &["explore", "explore.toml", "--ranks-per-point", "3"]);
     assert_refused(&refused, &["the 2 ranks of this run cannot be divided into groups of 3", "one of 1, 2"]);
-}
-
-/// A signal to one rank stops all groups; a killed rank ends them. The study ends on one rank, although files are
-/// damaged.
-#[test]
-fn a_study_continues_on_other_ranks() {
-    let place = place_with(&STUDY.replace("points = 6", "points = 12"));
-    done(place.run(&EXPLORE));
-    let on_two = ["explore", "explore.toml", "--ranks-per-point", "1", "-o", "groups"];
-    let run_until = |n: usize, name: &str| {
-        let mut child = start(&place, 2, &on_two);
-        let patience = Instant::now() + Duration::from_secs(200);
-        while n_done_of(&place, "groups") < n && child.try_wait().unwrap().is_none() {
-            assert!(Instant::now() < patience, "{n} points do not come");
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        let ranks = std::fs::read_to_string(format!("/proc/{0}/task/{0}/children", child.id())).unwrap();
-        signal(name, ranks.split_whitespace().last().unwrap().parse().unwrap());
-        end(child)
-    };
-    let stopped = run_until(2, "TERM");
-    assert!(stopped.err.contains("The same command continues to groups"), "{}", stopped.err);
-    let n = n_done_of(&place, "groups");
-    assert_ne!(run_until(n + 1, "KILL").code, 0);
-    assert!((n + 1..13).contains(&n_done_of(&place, "groups")) && !place.path("groups").exists());
-    // What is damaged is computed again.
-    let folder = ".groups.unfinished/.resume";
-    let last = place.list(folder).into_iter().filter(|name| name.starts_with("point-")).max().unwrap();
-    for name in [last.as_str(), "gradients.bin"] {
-        place.write(&format!("{folder}/{name}"), [1]);
-    }
-    let finished = done(place.run(&["explore", "explore.toml", "-o", "groups"]));
-    assert!(finished.err.contains("an earlier run has finished"), "{}", finished.err);
-    assert!(finished.err.contains(&format!("{last} cannot be read")), "{}", finished.err);
-    assert_same_modes(&place, ["run", "groups"]);
-    let n_rows = |folder: &str| table(&place, &format!("{folder}/gradients.csv")).len();
-    assert!(n_rows("groups") == n_rows("run") && n_rows("run") > 0);
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::explore::{EXPLORE, assert_killed_ends_the_same, done, number, place_with, table};
+use super::explore::{EXPLORE, done, number, place_with, table};
+use super::explore_resume::assert_killed_ends_the_same;
 use crate::support::browser::Browser;
 
 /// A map of the small pad, which squeals above a friction coefficient that depends on the contact stiffness.

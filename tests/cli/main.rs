@@ -9,6 +9,7 @@ mod explore_fields;
 mod explore_map;
 mod explore_page;
 mod explore_paths;
+mod explore_resume;
 mod explore_shapes;
 mod external_matrices;
 mod joints;
