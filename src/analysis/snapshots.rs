@@ -35,6 +35,11 @@ fn independent(equilibria: &[Sample], modes: &[Sample], is_homogeneous: bool) ->
     independent
 }
 
+/// Samples of equilibria, one of which is for modes below a frequency as well.
+fn with_modes_at(samples: &[Sample], place: usize, end: f64) -> Vec<(Sample, Option<f64>)> {
+    samples.iter().enumerate().map(|(i, &sample)| (sample, (i == place).then_some(end))).collect()
+}
+
 /// An equilibrium of the full model.
 pub(super) struct State {
     sample: Sample,
@@ -119,8 +124,9 @@ impl Snapshots {
         Ok(())
     }
 
-    /// Solves the model with other parts, one friction value each in turn; an equilibrium starts from the model's own.
-    /// Collective.
+    /// Solves the model with other parts: equilibria at the friction values of all modes, as contacts that open there
+    /// may stay closed with the model's own parts, and modes at one of them in turn. An equilibrium starts from the
+    /// model's own. Collective.
     pub(super) fn take_others(
         &mut self,
         model: &FullModel,
@@ -130,9 +136,10 @@ impl Snapshots {
         observer: &mut dyn Observer,
     ) -> Result<()> {
         self.n_own = self.modes.len();
-        for (other, &sample) in others.iter().zip(options.modes.iter().cycle()) {
+        for (i, other) in others.iter().enumerate() {
             let system = model.assemble_as(self.states[0].u.comm(), &other.model)?;
-            self.follow(model, &system, &[(sample, Some(end))], options.vector_accuracy(), observer)?;
+            let path = with_modes_at(&options.modes, i % options.modes.len(), end);
+            self.follow(model, &system, &path, options.vector_accuracy(), observer)?;
         }
         Ok(())
     }
@@ -224,6 +231,13 @@ mod tests {
         assert_eq!(empty_middle(&states, 0.2), Some(0.5 * (0.2 + 0.3)));
         assert_eq!(empty_middle(&states, 0.36), Some(0.35));
         assert_eq!(empty_middle(&states, 0.5), None);
+    }
+
+    #[test]
+    fn one_sample_of_other_parts_is_for_modes() {
+        let samples = [0.1, 0.5, 0.9].map(Sample::at);
+        let path = with_modes_at(&samples, 1, 300.0);
+        assert_eq!(path, [(samples[0], None), (samples[1], Some(300.0)), (samples[2], None)]);
     }
 
     /// Equilibria at other loads join the basis only where they are no multiples of others.
