@@ -41,6 +41,11 @@ pub(crate) fn product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     [row(0), row(1), row(2)]
 }
 
+/// The least and the largest number; infinity and minus infinity of none.
+pub(crate) fn span(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    numbers.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
 /// `A v`
 #[cfg(test)]
 pub(crate) fn apply(a: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::Result;
+use crate::algebra::span;
 use crate::assembly::System;
 use crate::equilibrium::Equilibrium;
+use crate::explore::Study;
 use crate::native::{Block, Comm, Factor, FactorKind, Matrix};
 use crate::reduction::galerkin::{Basis, BasisReport};
 use crate::reduction::made_for::MadeFor;
@@ -19,6 +21,7 @@ use super::certificate::{Whole, certify_at};
 use super::family::widened;
 use super::observer::{Event, Observer};
 use super::other_parts::OtherParts;
+use super::part_keys::sampled_range;
 use super::reduce::SuperElementPlace;
 use super::snapshots::Snapshots;
 
@@ -31,8 +34,10 @@ const PRESSURES: [f64; 2] = [0.5, 1.5];
 const CONTACT_STIFFNESSES: [f64; 2] = [0.5, 2.0];
 /// What modes add less than this part of themselves to the span is left out.
 const NEGLIGIBLE_OF_MODES: f64 = 1e-3;
-/// Modes are taken at so many samples of other parts, and compared at so many more.
+/// Modes and equilibria are taken at so many samples of other parts, equilibria alone at so many more, and modes
+/// compared at so many others.
 const OTHER_PARTS: usize = 8;
+const OTHER_EQUILIBRIA: usize = 40;
 const OTHER_TESTS: usize = 2;
 
 /// What [`reduce_galerkin`] does.
@@ -45,8 +50,8 @@ pub struct GalerkinOptions {
     /// What modes add less than this part of themselves is left out, 1e-7 or more: eigenvalues at the samples have its
     /// square as their error.
     pub negligible: f64,
-    /// File of a study of many parameters: the basis takes modes at its moduli and densities as well.
-    pub for_study: Option<PathBuf>,
+    /// A study of many parameters: the basis takes modes at its moduli and densities as well.
+    pub for_study: Option<Study>,
     /// Coordinates at most.
     pub max_coordinates: usize,
     /// The super-element's file.
@@ -113,6 +118,19 @@ pub fn first_middle_last(values: &[f64]) -> Vec<f64> {
     places.into_iter().filter_map(|at| values.get(at).copied()).collect()
 }
 
+/// Where modes are taken unless otherwise said: at the first, the middle and the last friction coefficient of a sweep,
+/// which is widened to the range of a study where that reaches beyond it.
+pub fn friction_samples(sweep: &[f64], study: Option<&Study>) -> Vec<f64> {
+    let own = study.into_iter().flat_map(|study| &study.parameters).find(|own| own.shared_key() == Some("friction"));
+    let Some(range) = own.map(sampled_range) else { return first_middle_last(sweep) };
+    let [low, high] = span(sweep.iter().copied());
+    let beyond = range.map(|value| value.max(0.0)).into_iter().filter(|value| !(low..=high).contains(value));
+    let mut values: Vec<f64> = sweep.iter().copied().chain(beyond).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    first_middle_last(&values)
+}
+
 /// A Galerkin super-element, and where its coordinates come from.
 pub struct GalerkinReduction {
     /// The super-element.
@@ -143,12 +161,11 @@ pub fn reduce_galerkin(
     place.begin(comm, model, observer)?;
     // What the file has as its own friction value: refused before the long work, not after it.
     model.own_friction()?;
-    let others = OtherParts::of(comm, model, options.for_study.as_deref(), &options.file, observer)?;
+    let others = OtherParts::of(model, options.for_study.as_ref(), &options.file, observer)?;
     observer.event(Event::Stage("assembling"));
     let mut system = model.assemble(comm, &model.families()?)?;
     let end = widened(model.model.band)[1];
-    let mut snapshots = Snapshots::take(model, &mut system, options, end, observer)?;
-    snapshots.take_others(model, others.first(OTHER_PARTS), options, end, observer)?;
+    let mut snapshots = sampled(model, &mut system, &others, options, observer)?;
 
     observer.event(Event::Stage("making the basis"));
     let clock = Instant::now();
@@ -176,6 +193,21 @@ pub fn reduce_galerkin(
     report.test_seconds = clock.elapsed().as_secs_f64();
     report.seconds = start.elapsed().as_secs_f64();
     Ok(GalerkinReduction { element, report, certificates })
+}
+
+/// Equilibria and modes of the model, and with other parts. Collective.
+fn sampled(
+    model: &FullModel,
+    system: &mut System,
+    others: &OtherParts,
+    options: &GalerkinOptions,
+    observer: &mut dyn Observer,
+) -> Result<Snapshots> {
+    let end = widened(model.model.band)[1];
+    let mut snapshots = Snapshots::take(model, system, options, end, observer)?;
+    snapshots.take_others(model, others.first(OTHER_PARTS), options, end, observer)?;
+    snapshots.take_equilibria(model, others.after(OTHER_PARTS, OTHER_EQUILIBRIA), options, observer)?;
+    Ok(snapshots)
 }
 
 fn factorised(k_ref: &Matrix) -> Result<Factor> {
@@ -208,7 +240,8 @@ fn made_for(
     report: &BasisReport,
 ) -> Result<Option<MadeFor>> {
     let error = |other| Ok(certify_at(model, other, (element, basis), middle, middle.friction)?.frequency_error());
-    let test_errors = others.after(OTHER_PARTS, OTHER_TESTS).map(error).collect::<Result<Vec<f64>>>()?;
+    let tests = others.after(OTHER_PARTS + OTHER_EQUILIBRIA, OTHER_TESTS);
+    let test_errors = tests.iter().map(error).collect::<Result<Vec<f64>>>()?;
     let n_samples = others.first(OTHER_PARTS).len();
     Ok(others.made_for(MadeFor {
         n_samples,
@@ -236,6 +269,25 @@ mod tests {
         assert_eq!(first_middle_last(&[0.1, 0.2, 0.3, 0.4, 0.5]), [0.1, 0.3, 0.5]);
         assert_eq!(first_middle_last(&[0.1, 0.5]), [0.1, 0.5]);
         assert_eq!(first_middle_last(&[0.4]), [0.4]);
+    }
+
+    #[test]
+    fn samples_reach_as_far_as_the_friction_coefficients_of_a_study() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("for.toml");
+        let text = |key: &str| {
+            format!(
+                "model = \"a.toml\"\n[design]\nkind = \"grid\"\n[parameter.x]\nkey = \"{key}\"\nvalues = [0.2, 0.6]\n"
+            )
+        };
+        let of = |key: &str, sweep: &[f64]| {
+            std::fs::write(&file, text(key)).unwrap();
+            friction_samples(sweep, Some(&crate::explore::read(&file).unwrap()))
+        };
+        assert_eq!(of("friction", &[0.4]), [0.2, 0.4, 0.6]);
+        assert_eq!(of("friction", &[0.1, 0.5, 0.9]), [0.1, 0.5, 0.9], "the study lies within the sweep");
+        assert_eq!(of("friction", &[0.3, 0.4, 0.5, 0.7]), [0.2, 0.4, 0.7]);
+        assert_eq!((of("pressure", &[0.4]), friction_samples(&[0.4], None)), (vec![0.4], vec![0.4]));
     }
 
     #[test]

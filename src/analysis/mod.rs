@@ -59,7 +59,7 @@ pub use external::{ExternalOptions, external_modes};
 pub use external_sweep::{ExternalModes, ExternalSweep};
 pub use family::{FrictionFamily, Snapshot, Solutions, Spectrum, Vectors, tracking_options, widened};
 pub use free_modes::{FreeModesOptions, free_modes};
-pub use galerkin::{GalerkinOptions, GalerkinReduction, first_middle_last, reduce_galerkin};
+pub use galerkin::{GalerkinOptions, GalerkinReduction, friction_samples, reduce_galerkin};
 pub use measured::{Measured, read as read_measured};
 pub use observer::{Event, Observer};
 pub use proposal::propose_model;

@@ -2,25 +2,64 @@
 
 use std::path::Path;
 
-use crate::explore::{self, Study};
+use crate::explore::{Parameter, Study};
 use crate::model::Model;
-use crate::native::Comm;
 use crate::reduction::made_for::{MadeFor, PartRange};
 use crate::reduction::part_change::PartChange;
+use crate::reduction::super_element::Sample;
 use crate::structure::FullModel;
 use crate::{Error, Result};
 
 use super::observer::{Event, Observer};
 use super::part_keys::{PartKeys, samples};
 
-/// Samples at most; fewer are taken where the last ones agree with the basis.
-const MAX_SAMPLES: usize = 16;
+/// Samples at most.
+const MAX_SAMPLES: usize = 64;
 
 /// The model with other parts.
 pub(super) struct OtherModel {
     pub model: Model,
     /// What the parts are changed by.
     pub changes: Vec<(String, PartChange)>,
+    /// What the study changes beside the parts.
+    pub shared: SharedValues,
+}
+
+/// Values that no part has, of a study's point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SharedValues {
+    /// Friction coefficient; none where the study has no such parameter.
+    pub friction: Option<f64>,
+    /// Factor on the loads.
+    pub pressure: f64,
+    /// Factor on the contact stiffness.
+    pub contact_stiffness: f64,
+}
+
+impl SharedValues {
+    /// Of a point of a study.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for values that no model can have.
+    pub fn at(values: &[f64], parameters: &[Parameter]) -> Result<SharedValues> {
+        let of = |key: &str| {
+            parameters.iter().position(|parameter| parameter.shared_key() == Some(key)).map(|place| values[place])
+        };
+        let friction = of("friction");
+        let [pressure, contact_stiffness] = ["pressure", "contact_stiffness"].map(|key| of(key).unwrap_or(1.0));
+        if friction.is_some_and(|friction| friction < 0.0) || pressure <= 0.0 || contact_stiffness <= 0.0 {
+            let friction = friction.map_or(String::new(), |friction| format!("friction {friction}, "));
+            let what = format!("{friction}pressure {pressure}, contact stiffness {contact_stiffness}");
+            return Err(Error::input(format!("{what}: friction is 0 or above, the factors are above 0")));
+        }
+        Ok(SharedValues { friction, pressure, contact_stiffness })
+    }
+
+    /// The state of the full model there; at a friction value where the study changes none.
+    pub fn sample(&self, friction: f64) -> Sample {
+        let SharedValues { pressure, contact_stiffness, .. } = *self;
+        Sample { friction: self.friction.unwrap_or(friction), pressure, contact_stiffness }
+    }
 }
 
 /// The models of samples.
@@ -38,18 +77,18 @@ pub(super) struct OtherParts {
 
 impl OtherParts {
     /// Those of a model by the parameters of a study of it, or of its super-element `place`; none where no parameter
-    /// changes a part. Reports what should be known of the study. Collective.
+    /// changes a part. Reports what should be known of the study.
     ///
     /// # Errors
-    /// [`Error::Input`] for a file that is no study, and for keys that a super-element cannot follow.
+    /// [`Error::Input`] for a model or a study that goes without samples, and for keys that a super-element cannot
+    /// follow.
     pub fn of(
-        comm: &Comm,
         model: &FullModel,
-        study: Option<&Path>,
+        study: Option<&Study>,
         place: &Path,
         observer: &mut dyn Observer,
     ) -> Result<OtherParts> {
-        let Some(file) = study else { return Ok(OtherParts::default()) };
+        let Some(study) = study else { return Ok(OtherParts::default()) };
         if model.model.has_prestress() {
             let what =
                 "--for does not go with prestress: the geometric stiffness of an equilibrium changes with its parts";
@@ -62,8 +101,8 @@ impl OtherParts {
                 model.model.file.display()
             )));
         };
-        let (study, file) = (comm.agree(explore::read(file))?, &model.model.file);
-        let mut others = OtherParts::by(text, file, &study)?;
+        let file = &model.model.file;
+        let mut others = OtherParts::by(text, file, study)?;
         if !is_same(&study.model, file) && !is_same(&study.model, place) {
             let (of, file) = (study.model.display(), file.display());
             others.warnings.push(format!("{}: its model is {of}, and this is {file}", study.file.display()));
@@ -91,12 +130,13 @@ impl OtherParts {
 
     /// The first ones.
     pub fn first(&self, n: usize) -> &[OtherModel] {
-        &self.models[..n.min(self.models.len())]
+        self.after(0, n)
     }
 
     /// So many after the first ones.
-    pub fn after(&self, first: usize, n: usize) -> impl Iterator<Item = &OtherModel> {
-        self.models.iter().skip(first).take(n)
+    pub fn after(&self, first: usize, n: usize) -> &[OtherModel] {
+        let first = first.min(self.models.len());
+        &self.models[first..(first + n).min(self.models.len())]
     }
 
     /// What a super-element is made for, with what its samples found; none where there are none.
@@ -115,6 +155,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::explore;
 
     const FILE: &str = "tests/data/pads_on_disc.toml";
 
@@ -145,6 +186,26 @@ mod tests {
         let range = factors.iter().fold(range, |[from, to], &own| [from.min(own), to.max(own)]);
         let made_for = others.made_for(MadeFor { n_samples: 3, ..MadeFor::default() }).unwrap();
         assert_eq!((made_for.parts.len(), made_for.parts[0].stiffness), (2, range));
+    }
+
+    #[test]
+    fn a_point_has_values_beside_those_of_its_parts() {
+        let text = |key: &str| format!("[parameter.{key}]\nkey = \"{key}\"\nuniform = [0.2, 0.5]\n");
+        let lining = "[parameter.E]\nkey = \"material.lining.young\"\nfactor = true\nuniform = [0.7, 1.4]\n";
+        let shared = |keys: &str| by(&format!("{keys}{lining}")).models[0].shared;
+        let none = shared("");
+        assert_eq!(none, SharedValues { friction: None, pressure: 1.0, contact_stiffness: 1.0 });
+        assert_eq!(none.sample(0.7), Sample::at(0.7));
+        let all = shared(&["friction", "pressure", "contact_stiffness"].map(text).concat()).sample(0.7);
+        let Sample { friction, pressure, contact_stiffness } = all;
+        assert!([friction, pressure, contact_stiffness].iter().all(|value| (0.2..0.5).contains(value)), "{all:?}");
+    }
+
+    #[test]
+    fn no_model_has_a_negative_friction_coefficient() {
+        let study = by("[parameter.mu]\nkey = \"friction\"\nuniform = [-1, 0.5]\n[parameter.E]\n\
+                        key = \"material.lining.young\"\nfactor = true\nuniform = [0.7, 1.4]\n");
+        assert!(study.models.len() < MAX_SAMPLES && study.models.iter().all(|own| own.shared.friction >= Some(0.0)));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::reduction::made_for::PartRange;
 use crate::reduction::part_change::{PartChange, part_changes};
 use crate::{Error, Result};
 
-use super::other_parts::OtherModel;
+use super::other_parts::{OtherModel, SharedValues};
 
 /// What of a model file a super-element can follow.
 const FOLLOWED: &str = "friction, pressure, contact_stiffness and, of the model file, density, loss_factor and all \
@@ -84,10 +84,11 @@ impl PartKeys {
         part_changes(&self.own, &self.model(values)?)
     }
 
-    /// The model at a point, and what is changed in its parts.
-    fn other(&self, values: &[f64]) -> Result<OtherModel> {
-        let model = self.model(values)?;
-        Ok(OtherModel { changes: part_changes(&self.own, &model)?, model })
+    /// The model at a point of a study; none that no model can have.
+    fn other(&self, values: &[f64], parameters: &[Parameter]) -> Option<OtherModel> {
+        let model = self.model(values).ok()?;
+        let changes = part_changes(&self.own, &model).ok()?;
+        Some(OtherModel { changes, model, shared: SharedValues::at(values, parameters).ok()? })
     }
 
     /// The ranges of factors on parts over points; those of parts that do not change are left out.
@@ -98,16 +99,30 @@ impl PartKeys {
     }
 }
 
-/// The models of the first points of a Sobol sequence over the parameters of a study; points that no model can have are
-/// left out.
+/// The models of the first points of a Sobol sequence over the parameters of a study, more of them near the ends of the
+/// distributions than points of the study, as Chebyshev's are; points that no model can have are left out.
 ///
 /// # Errors
 /// [`Error::Input`] where there are no such points.
 pub(super) fn samples(keys: &PartKeys, study: &Study, n_points: usize) -> Result<Vec<OtherModel>> {
-    let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
+    let parameters = &study.parameters;
     let kind = DesignKind::Sobol { n_points };
     let design = Design { kind, seed: 0, correlation: study.design.correlation.clone() };
-    Ok(design.points(&distributions, &[])?.iter().filter_map(|values| keys.other(values).ok()).collect())
+    let unit = Distribution::Uniform { from: 0.0, to: 1.0 };
+    let points = design.points(&vec![&unit; parameters.len()], &[])?;
+    let value = |(own, &v): (&Parameter, &f64)| own.distribution.quantile(spread(v));
+    let values = |point: &Vec<f64>| parameters.iter().zip(point).map(value).collect::<Vec<f64>>();
+    Ok(points.iter().filter_map(|point| keys.other(&values(point), parameters)).collect())
+}
+
+/// The smallest and the largest value of a parameter at samples.
+pub(super) fn sampled_range(parameter: &Parameter) -> [f64; 2] {
+    [0.0, 1.0].map(|v| parameter.distribution.quantile(spread(v)))
+}
+
+/// The probability of a smaller value: `sin^2(pi/2 (0.05 + 0.9 v))`, 0.6 % at v = 0 and 99.4 % at v = 1.
+fn spread(v: f64) -> f64 {
+    (std::f64::consts::FRAC_PI_2 * (0.05 + 0.9 * v)).sin().powi(2)
 }
 
 /// What one other value of a parameter changes; refuses what is more than factors of parts.
@@ -187,6 +202,15 @@ mod tests {
         assert_eq!((models.len(), ranges.len()), (5, 2), "two linings");
         assert!(ranges.iter().all(|range| range.stiffness[0] < 0.9 && range.stiffness[1] > 1.2), "{ranges:?}");
         assert!(ranges.iter().all(|range| range.mass == [1.0, 1.0]));
+    }
+
+    /// The ends of the distributions have more samples than points of a study.
+    #[test]
+    fn samples_are_denser_near_the_ends() {
+        let near_the_ends = (0..1000).filter(|&i| (spread(i as f64 / 999.0) - 0.5).abs() > 0.4).count();
+        assert!((340..380).contains(&near_the_ends), "{near_the_ends} of 1000, of a study 200");
+        assert!((spread(0.0) - 0.006_156).abs() < 1e-6 && (spread(1.0) - 0.993_844).abs() < 1e-6);
+        assert!((spread(0.5) - 0.5).abs() < 1e-15);
     }
 
     /// Densities below zero are no model's.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::explore::Study;
 use crate::native::Comm;
 use crate::output::overwrite::{FileKind, may_write_file};
 use crate::reduction::craig_bampton::Costs;
@@ -18,6 +19,8 @@ use super::observer::{Event, Observer, warn};
 use super::other_parts::OtherParts;
 use super::sweep::Sweep;
 
+/// Samples of other parts at most; fewer are taken where the last ones agree with the basis.
+const MAX_SAMPLES: usize = 16;
 /// What a reduction writes.
 const SUPER_ELEMENT: FileKind = FileKind { name: "a super-element of squeal", is_one: file::is_super_element };
 
@@ -75,8 +78,8 @@ pub struct ReduceOptions {
     pub friction: Option<f64>,
     /// Fixed-interface modes are kept below this, Hz; the model's own limit where there is none.
     pub limit: Option<f64>,
-    /// File of a study of many parameters, at whose moduli and densities the basis holds as well.
-    pub for_study: Option<PathBuf>,
+    /// A study of many parameters, at whose moduli and densities the basis holds as well.
+    pub for_study: Option<Study>,
     /// The super-element's file.
     pub file: PathBuf,
     /// Whether an earlier super-element may be replaced.
@@ -111,7 +114,7 @@ pub fn reduce(
     let place = SuperElementPlace { file: &options.file, force: options.force };
     place.begin(comm, model, observer)?;
     let friction = options.friction.map_or_else(|| model.own_friction(), Ok)?;
-    let others = OtherParts::of(comm, model, options.for_study.as_deref(), &options.file, observer)?;
+    let others = OtherParts::of(model, options.for_study.as_ref(), &options.file, observer)?;
     let limit = options.limit.unwrap_or_else(|| model.reduction_limit());
     observer.event(Event::Stage("assembling"));
     let system = model.assemble(comm, &model.families()?)?;
@@ -120,7 +123,7 @@ pub fn reduce(
     let mut follow = |event| observer.event(Event::Reduction(&event));
     let sample = |i: usize| model.assemble_as(comm, &others.models[i].model);
     // Damping is no part of the basis.
-    let n_samples = if others.changes_matrices { others.models.len() } else { 0 };
+    let n_samples = if others.changes_matrices { others.first(MAX_SAMPLES).len() } else { 0 };
     let samples = PartSamples { n_samples, min_samples: others.min_samples, system: &sample };
     let (mut element, surface, costs, report) =
         model.reduce_for(comm, (&system, &equilibrium), limit, &samples, &mut follow)?;

@@ -55,6 +55,10 @@ pub(super) struct Snapshots {
     pub modes: Vec<Block>,
     /// How many of these samples have the model's own parts.
     n_own: usize,
+    /// From how many states, the first ones, others start.
+    n_starts: usize,
+    /// Whether equilibria are proportional to the loads.
+    is_homogeneous: bool,
     /// Spent on equilibria, modes and left vectors, s.
     seconds: [f64; 3],
 }
@@ -75,7 +79,7 @@ impl Snapshots {
             modes.chain(equilibria.into_iter().map(|sample| (sample, None))).collect();
         let rank = |s: &Sample| (!is_own(s), s.pressure, s.contact_stiffness, s.friction);
         all.sort_by(|(a, _), (b, _)| rank(a).partial_cmp(&rank(b)).expect("samples are finite"));
-        let mut snapshots = Snapshots::default();
+        let mut snapshots = Snapshots { is_homogeneous, ..Snapshots::default() };
         let is_one_path =
             |a: &Sample, b: &Sample| (a.pressure, a.contact_stiffness) == (b.pressure, b.contact_stiffness);
         for path in all.chunk_by(|(a, _), (b, _)| is_one_path(a, b)) {
@@ -83,13 +87,14 @@ impl Snapshots {
             system.scale_load(pressure)?;
             snapshots.follow(model, system, path, options.vector_accuracy(), observer)?;
             system.scale_load(1.0 / pressure)?;
+            // Those of the first path, which are the model's own.
+            snapshots.n_starts = if snapshots.n_starts == 0 { snapshots.states.len() } else { snapshots.n_starts };
         }
         Ok(snapshots)
     }
 
-    /// Solves at the friction values of a path, for modes below a frequency (Hz) where there is one. Under other loads
-    /// or contact stiffnesses each equilibrium starts from the model's own at the same friction value, where that is
-    /// known.
+    /// Solves at the friction values of a path, for modes below a frequency (Hz) where there is one. Of all paths but
+    /// the first, each equilibrium starts from that of the first path with the nearest friction value.
     fn follow(
         &mut self,
         model: &FullModel,
@@ -105,8 +110,9 @@ impl Snapshots {
         sweep = sweep.with_prestress(prestress.as_ref());
         sweep.search_by(EigenOptions::with_vector_accuracy(accuracy));
         for &(sample, end) in path {
-            let equilibrium = match self.states.iter().find(|state| state.sample == Sample::at(sample.friction)) {
-                Some(own) => sweep.equilibrium_near(own.u.duplicate()?, sample.friction, observer)?,
+            let starts = &self.states[..self.n_starts];
+            let equilibrium = match nearest(starts.iter().map(|own| own.sample.friction), sample.friction) {
+                Some(own) => sweep.equilibrium_near(starts[own].u.duplicate()?, sample.friction, observer)?,
                 None => sweep.equilibrium(sample.friction, observer)?,
             };
             if let Some(end) = end {
@@ -140,6 +146,25 @@ impl Snapshots {
             let system = model.assemble_as(self.states[0].u.comm(), &other.model)?;
             let path = with_modes_at(&options.modes, i % options.modes.len(), end);
             self.follow(model, &system, &path, options.vector_accuracy(), observer)?;
+        }
+        Ok(())
+    }
+
+    /// Solves the model with other parts for equilibria alone, each under the friction, loads and contact stiffness of
+    /// its own point. Collective.
+    pub(super) fn take_equilibria(
+        &mut self,
+        model: &FullModel,
+        others: &[OtherModel],
+        options: &GalerkinOptions,
+        observer: &mut dyn Observer,
+    ) -> Result<()> {
+        for other in others {
+            let mut system = model.assemble_as(self.states[0].u.comm(), &other.model)?;
+            let own = other.shared.sample(options.middle().friction);
+            let sample = if self.is_homogeneous { Sample { pressure: 1.0, ..own } } else { own };
+            system.scale_load(sample.pressure)?;
+            self.follow(model, &system, &[(sample, None)], options.vector_accuracy(), observer)?;
         }
         Ok(())
     }
@@ -204,9 +229,15 @@ impl Snapshots {
             values
         };
         let modes = sorted(&mut options.modes.iter().copied());
-        let states = sorted(&mut self.states.iter().map(|state| state.sample));
+        let states = sorted(&mut self.states[..self.n_starts].iter().map(|state| state.sample));
         modes.windows(2).filter_map(|ends| empty_middle(&states, 0.5 * (ends[0] + ends[1]))).collect()
     }
+}
+
+/// The place of the value that is nearest to another one; the first of several.
+fn nearest(values: impl Iterator<Item = f64>, to: f64) -> Option<usize> {
+    let distances = values.map(|value| (value - to).abs()).enumerate();
+    distances.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(place, _)| place)
 }
 
 /// Whether a sample has the model's own loads and contact stiffness.
@@ -231,6 +262,13 @@ mod tests {
         assert_eq!(empty_middle(&states, 0.2), Some(0.5 * (0.2 + 0.3)));
         assert_eq!(empty_middle(&states, 0.36), Some(0.35));
         assert_eq!(empty_middle(&states, 0.5), None);
+    }
+
+    #[test]
+    fn the_nearest_value_is_the_first_of_several() {
+        let nearest = |to| nearest([0.5, 0.1, 0.3, 0.5].into_iter(), to);
+        assert_eq!([0.2001, 0.05, 0.9].map(nearest), [Some(2), Some(1), Some(0)]);
+        assert_eq!(super::nearest([].into_iter(), 0.3), None);
     }
 
     #[test]

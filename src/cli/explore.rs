@@ -1,14 +1,15 @@
 //! `squeal explore`: modes at points of many parameters, and the probability of squeal.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::Result;
 use crate::analysis::{self, ExploreOutput, Output};
-use crate::explore::{self, Study};
+use crate::explore::{self, Answers, Study};
 use crate::output::explore::Document;
 use crate::report::explore_page;
+use crate::results::Exploration;
+use crate::{Error, Result};
 
 use super::watch::Watch;
 use super::{Shell, command_line, values};
@@ -19,7 +20,7 @@ use super::{Shell, command_line, values};
 pub struct Explore {
     /// The file of the study (TOML), which names a model file or a super-element, parameters and a design of points
     study: PathBuf,
-    /// Folder of the results (default: the model file's name with -explore)
+    /// Folder of the results (default: the names of the model file and of the study, MODEL-STUDY)
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     /// Replace the results of an earlier run, and what another study has left unfinished
@@ -36,9 +37,10 @@ pub struct Explore {
 
 impl Explore {
     fn output(&self, shell: &Shell, study: &Study) -> ExploreOutput {
-        let stem = study.model.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = |file: &Path| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = || format!("{}-{}", stem(&study.model), stem(&study.file));
         let output = Output {
-            folder: self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-explore"))),
+            folder: self.output.clone().unwrap_or_else(|| PathBuf::from(name())),
             force: self.force,
             command: command_line(),
             identity: vec![("options for PETSc", shell.petsc.join(" "))],
@@ -55,5 +57,13 @@ pub fn run(shell: &Shell, arguments: &Explore) -> Result<()> {
     watch.finish();
     let Some(found) = found? else { return Ok(()) };
     let document = Document::new(&study, &found, &output.output.folder);
-    shell.print(&document.text(), &document)
+    shell.print(&document.text(), &document)?;
+    require_solution(&found)
+}
+
+/// A study without any solution beside the nominal one has not converged.
+fn require_solution(found: &Exploration) -> Result<()> {
+    let Answers { n_points, n_failed, .. } = found.answers;
+    let what = "no point of the study has a solution. summary.txt has the reasons: change the ranges of its parameters";
+    if n_failed < n_points { Ok(()) } else { Err(Error::not_converged(what)) }
 }

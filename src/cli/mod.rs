@@ -141,7 +141,7 @@ enum Command {
     Convert(convert::Convert),
     /// Find the static equilibrium under load, contact and friction
     Static(Run),
-    /// Reduce a model to a super-element with a few hundred coordinates and the same instabilities
+    /// Reduce a model to a super-element with a few hundred coordinates
     Reduce(reduce::Reduce),
     /// Write M, C and K about an equilibrium, with what contact has in K and the meaning of each row
     Export(export::Export),

@@ -6,9 +6,11 @@ use clap::Args;
 
 use crate::Result;
 use crate::analysis::{
-    GalerkinOptions, GalerkinReduction, ReduceOptions, Reduction, first_middle_last, reduce, reduce_galerkin,
+    GalerkinOptions, GalerkinReduction, ReduceOptions, Reduction, friction_samples, reduce, reduce_galerkin,
     with_reference_contacts,
 };
+use crate::explore::{self, Study};
+use crate::native::Comm;
 use crate::output::super_element::{GalerkinDocument, ReductionDocument};
 use crate::structure::FullModel;
 
@@ -35,12 +37,12 @@ pub struct Reduce {
     /// one super-element for all friction coefficients, pressures and contact stiffnesses
     #[arg(long, conflicts_with_all = ["contacts", "friction", "limit"])]
     galerkin: bool,
-    /// Make the super-element for the moduli and densities of a study: its basis holds over the ranges of the study's
-    /// parameters
+    /// Make the super-element for a study of many parameters: its basis holds over the ranges of moduli and densities,
+    /// with --galerkin also of friction, pressure and contact stiffness
     #[arg(long = "for", value_name = "STUDY")]
     for_study: Option<PathBuf>,
     /// With --galerkin: friction coefficients at which the full model's modes are found, a list 0.1,0.5,0.9 (default:
-    /// the first, the middle and the last of the model file's sweep)
+    /// the first, the middle and the last of the model file's sweep, widened to the friction coefficients of --for)
     #[arg(long, value_name = "MU", value_parser = values::parse, requires = "galerkin")]
     samples: Option<Values>,
     /// With --galerkin: keep the basis in the file (four bytes a coordinate and displacement of the mesh), so that
@@ -64,7 +66,7 @@ pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let options = ReduceOptions {
         friction: arguments.friction,
         limit: arguments.limit,
-        for_study: arguments.for_study.clone(),
+        for_study: arguments.study(comm)?,
         file: arguments.file(),
         force: arguments.force,
     };
@@ -78,12 +80,13 @@ pub fn run(shell: &Shell, arguments: &Reduce) -> Result<()> {
 fn run_galerkin(shell: &Shell, arguments: &Reduce) -> Result<()> {
     let comm = shell.comm;
     let model = FullModel::read(comm, &arguments.model)?;
+    let for_study = arguments.study(comm)?;
     let all = model.friction_values(arguments.samples.as_ref().map(|values| &values.0[..]))?;
-    let samples = if arguments.samples.is_some() { all } else { first_middle_last(&all) };
+    let samples = if arguments.samples.is_some() { all } else { friction_samples(&all, for_study.as_ref()) };
     let options = GalerkinOptions {
         force: arguments.force,
         keep_basis: arguments.keep_basis,
-        for_study: arguments.for_study.clone(),
+        for_study,
         ..GalerkinOptions::over(&samples, arguments.file())
     };
     let mut watch = Watch::new(shell, false);
@@ -94,6 +97,11 @@ fn run_galerkin(shell: &Shell, arguments: &Reduce) -> Result<()> {
 }
 
 impl Reduce {
+    /// The study that the super-element is made for. Collective.
+    fn study(&self, comm: &Comm) -> Result<Option<Study>> {
+        self.for_study.as_ref().map(|file| comm.agree(explore::read(file))).transpose()
+    }
+
     fn file(&self) -> PathBuf {
         let stem = self.model.file_stem().unwrap_or_default().to_string_lossy();
         self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.se.h5")))

@@ -9,9 +9,10 @@ use super::hopf::HopfCurves;
 use super::instability::{Instability, instabilities};
 use super::predicted::Prediction;
 use super::result::{PointMode, PointResult};
-use super::sensitivity::{Bar, Indices, sobol_indices, tornado};
+use super::sensitivity::{Bar, Indices, sobol_indices, tornado, whole_base_points};
 use super::statistics::{Probability, quantile};
 use super::study::Study;
+use crate::model::InstabilityCriterion;
 
 /// The answers of a study. Points have numbers from 1; the nominal point has number 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,8 +25,11 @@ pub struct Answers {
     pub n_doubtful: usize,
     /// Whether points represent the distributions of the parameters. If not, probabilities are fractions of the points.
     pub is_sample: bool,
-    /// That any mode is unstable.
+    /// That any mode is unstable, of the points that have not failed.
     pub unstable: Probability,
+    /// The fraction of all points that are unstable where none of the failed ones is, and where all are; none where
+    /// none has failed.
+    pub with_failed: Option<[f64; 2]>,
     /// Quantiles of the largest growth rate, 1/s.
     pub growth_rate: Vec<Quantile>,
     /// The modes of the nominal point that are unstable anywhere, the most probable first, and those that are no mode
@@ -35,6 +39,8 @@ pub struct Answers {
     pub bins: Vec<Bin>,
     /// Sobol indices of the largest growth rate, where the design is for them.
     pub indices: Option<Vec<Indices>>,
+    /// How many base points these are of: those without a failed point.
+    pub n_base_points: usize,
     /// Swings of the largest growth rate, where one parameter varies at a time.
     pub tornado: Option<Vec<Bar>>,
     /// First-order changes of the nominal modes that may squeal over the range of each parameter, by left vectors.
@@ -79,40 +85,43 @@ pub fn quantity(point: &PointResult) -> Option<f64> {
 
 impl Answers {
     /// The answers of finished points, the nominal one first, then those of the design in its order. `gradients` are
-    /// derivatives by each parameter; `band` in Hz.
+    /// derivatives by each parameter; `band` in Hz; `criterion` is what the points' modes are unstable by.
     ///
     /// # Panics
     /// Without a nominal point.
-    pub fn new(study: &Study, points: &[PointResult], gradients: &[Gradient], band: [f64; 2]) -> Answers {
+    pub fn new(
+        study: &Study,
+        points: &[PointResult],
+        gradients: &[Gradient],
+        band: [f64; 2],
+        criterion: InstabilityCriterion,
+    ) -> Answers {
         let (nominal, own) = points.split_first().expect("the nominal point");
         let solved: Vec<(usize, &PointResult)> = (1..).zip(own).filter(|(_, point)| point.modes().is_some()).collect();
         let sample: Vec<(usize, &PointResult)> =
             solved.iter().copied().filter(|(number, _)| study.is_independent(number - 1)).collect();
-        let quantities = |points: &[(usize, &PointResult)]| -> Vec<f64> {
-            let mut sorted: Vec<f64> = points.iter().filter_map(|(_, point)| quantity(point)).collect();
-            sorted.sort_by(f64::total_cmp);
-            sorted
-        };
-        let sorted = quantities(&sample);
-        let at = |&fraction: &f64| Some(Quantile { fraction, growth_rate_per_s: quantile(&sorted, fraction)? });
         let n_unstable = sample.iter().filter(|(_, point)| point.is_unstable()).count();
         let growth = |(number, point): &(usize, &PointResult)| Some((*number, quantity(point)?));
         let worst = solved.iter().filter_map(growth).max_by(|a, b| a.1.total_cmp(&b.1));
         let n_counted = (0..own.len()).filter(|index| study.is_independent(*index)).count();
-        let is_complete = sample.len() == n_counted;
-        let prediction = Prediction::new(study, gradients, &nominal.values).filter(|_| is_complete);
+        let n_sample_failed = n_counted - sample.len();
+        let prediction = Prediction::new(study, gradients, &nominal.values, criterion).filter(|_| n_sample_failed == 0);
+        let with_failed = [n_unstable, n_unstable + n_sample_failed].map(|n| n as f64 / n_counted as f64);
+        let (indices, n_base_points) = indices(study, own);
         Answers {
             n_points: own.len(),
             n_failed: own.len() - solved.len(),
             n_doubtful: solved.iter().flat_map(|(_, point)| doubtful(point)).count(),
             is_sample: study.design.is_sample(),
             unstable: Probability::of(n_unstable, sample.len()),
-            growth_rate: FRACTIONS.iter().filter_map(at).collect(),
+            with_failed: (n_sample_failed > 0).then_some(with_failed),
+            growth_rate: quantiles(&sample),
             instabilities: instabilities(nominal, &solved, &sample, prediction.as_ref()),
             bins: bins(&sample, band, study.bin),
-            indices: indices(study, own),
+            indices,
+            n_base_points,
             tornado: bars(study, nominal, &solved),
-            gradients: may_squeal(study, gradients, points),
+            gradients: may_squeal(study, gradients, points, criterion),
             missing_derivatives: missing_derivatives(&study.parameters, gradients),
             boundary: study.boundary(own),
             hopf: study.hopf(own),
@@ -150,6 +159,14 @@ fn doubtful(point: &PointResult) -> impl Iterator<Item = &PointMode> {
     point.modes().into_iter().flatten().filter(|mode| mode.link.is_some_and(|link| link.doubtful))
 }
 
+/// Quantiles of the largest growth rate.
+fn quantiles(sample: &[(usize, &PointResult)]) -> Vec<Quantile> {
+    let mut sorted: Vec<f64> = sample.iter().filter_map(|(_, point)| quantity(point)).collect();
+    sorted.sort_by(f64::total_cmp);
+    let at = |&fraction: &f64| Some(Quantile { fraction, growth_rate_per_s: quantile(&sorted, fraction)? });
+    FRACTIONS.iter().filter_map(at).collect()
+}
+
 fn bins(sample: &[(usize, &PointResult)], band: [f64; 2], width: f64) -> Vec<Bin> {
     let n = ((band[1] - band[0]) / width).ceil().max(1.0) as usize;
     let bin = |i: usize| {
@@ -164,12 +181,14 @@ fn bins(sample: &[(usize, &PointResult)], band: [f64; 2], width: f64) -> Vec<Bin
     (0..n).map(bin).collect()
 }
 
-fn indices(study: &Study, own: &[PointResult]) -> Option<Vec<Indices>> {
+/// Sobol indices, and of how many base points.
+fn indices(study: &Study, own: &[PointResult]) -> (Option<Vec<Indices>>, usize) {
     if !matches!(study.design.kind, DesignKind::Saltelli { .. }) {
-        return None;
+        return (None, 0);
     }
     let values: Vec<Option<f64>> = own.iter().map(quantity).collect();
-    sobol_indices(&study.names(), &values, study.design.seed)
+    let n_base_points = whole_base_points(study.parameters.len(), &values).len();
+    (sobol_indices(&study.names(), &values, study.design.seed), n_base_points)
 }
 
 fn bars(study: &Study, nominal: &PointResult, solved: &[(usize, &PointResult)]) -> Option<Vec<Bar>> {
@@ -182,9 +201,14 @@ fn bars(study: &Study, nominal: &PointResult, solved: &[(usize, &PointResult)]) 
 }
 
 /// The tornados of the nominal modes that may squeal, where a parameter has a derivative.
-fn may_squeal(study: &Study, gradients: &[Gradient], points: &[PointResult]) -> Vec<Tornado> {
+fn may_squeal(
+    study: &Study,
+    gradients: &[Gradient],
+    points: &[PointResult],
+    criterion: InstabilityCriterion,
+) -> Vec<Tornado> {
     let all = tornados(&study.parameters, gradients, points);
-    all.into_iter().filter(|own| !own.bars.is_empty() && own.may_squeal(points)).collect()
+    all.into_iter().filter(|own| !own.bars.is_empty() && own.may_squeal(points, criterion)).collect()
 }
 
 #[cfg(test)]
@@ -241,9 +265,16 @@ mod tests {
             point(vec![mode(150.0, -1.0, Some(1)), mode(250.0, -2.0, Some(2))]),
             failed,
         ];
-        let answers = Answers::new(&study(DesignKind::Sobol { n_points: 4 }, 1), &points, &[], [100.0, 300.0]);
+        let answers = Answers::new(
+            &study(DesignKind::Sobol { n_points: 4 }, 1),
+            &points,
+            &[],
+            [100.0, 300.0],
+            InstabilityCriterion::default(),
+        );
         assert_eq!((answers.n_points, answers.n_failed, answers.n_doubtful, answers.worst), (4, 1, 2, Some(2)));
         assert_eq!((answers.unstable.n_true, answers.unstable.n_points), (2, 3));
+        assert_eq!(answers.with_failed, Some([0.5, 0.75]), "of all four points");
         let [first, other] = &answers.instabilities[..] else { panic!("{:?}", answers.instabilities) };
         assert_eq!((first.nominal, first.probability.n_true, first.worst), (Some(1), 2, 2));
         assert!((first.frequency_range_hz[0] - 140.0).abs() < 1e-9 && first.largest_growth_rate_per_s == 5.0);
@@ -275,7 +306,7 @@ mod tests {
         let points: Vec<PointResult> = all
             .map(|values| PointResult { outcome: Outcome::Modes(vec![hoffmann(values[0], values[1])]), values })
             .collect();
-        Answers::new(&study, &points, &[], [0.0, 1.0])
+        Answers::new(&study, &points, &[], [0.0, 1.0], InstabilityCriterion::default())
     }
 
     /// Mean of a function over mu in (0.4, 0.9) and k in (1.8, 2.2), by the midpoint rule.
@@ -321,8 +352,19 @@ mod tests {
             assert!((index.first_order.value - first[i]).abs() < 0.02, "{index:?}, exact {}", first[i]);
             assert!((index.total.value - total).abs() < 0.02, "{index:?}, exact {total}");
         }
-        assert_eq!(answers.unstable.n_points, 2048, "A and B alone are independent");
+        assert_eq!((answers.unstable.n_points, answers.n_base_points), (2048, 1024), "A and B alone are independent");
+        assert_eq!(answers.with_failed, None);
         assert!((answers.unstable.value - 0.3).abs() < 5e-3);
+    }
+
+    #[test]
+    fn a_base_point_with_a_failed_point_has_no_part_in_indices() {
+        let study = study(DesignKind::Saltelli { n_base: 3 }, 2);
+        let mut points: Vec<PointResult> =
+            (0..13).map(|i| point(vec![mode(100.0, f64::from(i * i % 7) - 2.0, None)])).collect();
+        points[6].outcome = Outcome::Failed("no equilibrium".into());
+        let answers = Answers::new(&study, &points, &[], [0.0, 300.0], InstabilityCriterion::default());
+        assert_eq!((answers.n_base_points, answers.indices.map(|all| all.len())), (2, Some(2)));
     }
 
     #[test]

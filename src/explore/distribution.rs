@@ -5,7 +5,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// The values of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Distribution {
-    /// These values, each equally probable.
+    /// These values, the smallest first, each equally probable.
     Values(Vec<f64>),
     /// All values between two, equally probable.
     Uniform {

@@ -168,12 +168,12 @@ pub fn tornados(parameters: &[Parameter], gradients: &[Gradient], points: &[Poin
 
 impl Tornado {
     /// Whether the mode is unstable at a point, or one parameter alone makes it so to first order: its bar reaches
-    /// above a growth rate of 0, by more than rounding.
-    pub fn may_squeal(&self, points: &[PointResult]) -> bool {
+    /// above the limit of the criterion.
+    pub fn may_squeal(&self, points: &[PointResult], criterion: InstabilityCriterion) -> bool {
         let is_own = |mode: &PointMode| mode.unstable && mode.link.is_some_and(|link| link.nominal == self.nominal);
         let lambda = Complex64::new(0.0, TAU * self.frequency_hz);
-        let rounding = InstabilityCriterion::default().limit(lambda, 0.0);
-        let reaches = |bar: &Influence| bar.ends(self.growth_rate_per_s).iter().any(|end| *end > rounding);
+        let limit = criterion.limit(lambda, 0.0);
+        let reaches = |bar: &Influence| bar.ends(self.growth_rate_per_s).iter().any(|end| *end > limit);
         points.iter().flat_map(PointResult::modes).flatten().any(is_own) || self.bars.iter().any(reaches)
     }
 }
@@ -274,14 +274,17 @@ mod tests {
     #[test]
     fn a_mode_may_squeal_where_it_does_or_one_bar_reaches_there() {
         let parameters = [parameter("p", 0.5, 1.5), parameter("q", 10.0, 30.0)];
-        let may = |slope: f64, points: &[PointResult]| {
+        let by = |criterion: InstabilityCriterion, slope: f64, points: &[PointResult]| {
             let gradients = [gradient(&[[slope, 0.0]]), gradient(&[[0.0, 0.0]])];
-            tornados(&parameters, &gradients, points)[0].may_squeal(points)
+            tornados(&parameters, &gradients, points)[0].may_squeal(points, criterion)
         };
+        let may = |slope: f64, points: &[PointResult]| by(InstabilityCriterion::default(), slope, points);
         let quiet = &points()[..1];
         // From 1 to the quantile 1.45: -3 + 0.45 slope.
         assert!(!may(6.6, quiet) && may(6.7, quiet) && may(-6.7, quiet));
         assert!(!may(3.003 / 0.45, quiet), "rounding");
+        let limit = InstabilityCriterion::GrowthRate(5.0);
+        assert!(!by(limit, 7.9 / 0.45, quiet) && by(limit, 8.1 / 0.45, quiet), "-3 + 0.45 slope above 5");
         assert!(may(0.0, &[points()[0].clone(), point([1.0, 20.0], [0.1, -1.0])]));
     }
 

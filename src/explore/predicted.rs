@@ -1,7 +1,8 @@
 //! Probabilities from points and derivatives together.
 //!
 //! A mode is *predicted* to be unstable where its growth rate of first order, from the nominal point's derivatives, is
-//! positive. How probable that is costs no analysis, so that the points only have to tell how often it is wrong:
+//! above the limit of the criterion. How probable that is costs no analysis, so that the points serve only to
+//! count how often it is wrong:
 //!
 //! ```text
 //! P(unstable) = P(predicted) + P(unstable, not predicted) - P(predicted, not unstable)
@@ -35,15 +36,19 @@ pub(super) struct Prediction<'a> {
 
 impl<'a> Prediction<'a> {
     /// None without derivatives, or where the points of the study do not represent distributions that are known: a list
-    /// does not.
-    pub fn new(study: &Study, gradients: &'a [Gradient], nominal: &'a [f64]) -> Option<Prediction<'a>> {
+    /// does not. `criterion` is what the points' modes are unstable by.
+    pub fn new(
+        study: &Study,
+        gradients: &'a [Gradient],
+        nominal: &'a [f64],
+        criterion: InstabilityCriterion,
+    ) -> Option<Prediction<'a>> {
         let is_drawn = study.design.is_sample() && !matches!(study.design.kind, DesignKind::List(_));
         if gradients.is_empty() || !is_drawn {
             return None;
         }
         let design = Design { kind: DesignKind::Sobol { n_points: N_PREDICTED }, ..study.design.clone() };
         let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
-        let criterion = study.criterion.unwrap_or_default();
         Some(Prediction { gradients, nominal, criterion, cloud: design.points(&distributions, nominal).ok()? })
     }
 
@@ -139,29 +144,33 @@ mod tests {
         }
     }
 
-    fn point(values: &[f64], growth: f64) -> PointResult {
+    fn point(values: &[f64], growth: f64, criterion: InstabilityCriterion) -> PointResult {
         let link = Some(Link { nominal: 1, share: 1.0, doubtful: false });
-        let mode =
-            PointMode { lambda: Complex64::new(growth, 1000.0), unstable: growth > 0.0, backward_error: 0.0, link };
+        let lambda = Complex64::new(growth, 1000.0);
+        let mode = PointMode { lambda, unstable: growth > criterion.limit(lambda, 0.0), backward_error: 0.0, link };
         PointResult { values: values.to_vec(), outcome: Outcome::Modes(vec![mode]) }
     }
 
     /// The estimate with slopes, of 64 points and the growth rate `p + q - 0.5 + bend p q`, and that of the points
     /// alone.
     fn estimates(slopes: [f64; 2], bend: f64) -> (Option<Estimate>, Probability) {
+        estimates_by(InstabilityCriterion::default(), slopes, bend)
+    }
+
+    fn estimates_by(criterion: InstabilityCriterion, slopes: [f64; 2], bend: f64) -> (Option<Estimate>, Probability) {
         let study = study(DesignKind::Sobol { n_points: 64 });
         let distributions: Vec<&Distribution> = study.parameters.iter().map(|own| &own.distribution).collect();
         let nominal = [0.25, 0.25];
         let growth = |x: &[f64]| x[0] + x[1] - 0.5 + bend * x[0] * x[1];
         let values = study.design.points(&distributions, &nominal).unwrap();
-        let points: Vec<PointResult> = values.iter().map(|x| point(x, growth(x))).collect();
+        let points: Vec<PointResult> = values.iter().map(|x| point(x, growth(x), criterion)).collect();
         let sample: Vec<(usize, &PointResult)> = (1..).zip(&points).collect();
         let gradient =
             |slope: f64| Gradient { slopes: vec![Complex64::new(slope, 0.0)], difference: Difference::Central };
         let gradients = slopes.map(gradient);
         let plain = Probability::of(points.iter().filter(|point| point.is_unstable()).count(), 64);
-        let prediction = Prediction::new(&study, &gradients, &nominal).unwrap();
-        let of = point(&nominal, growth(&nominal));
+        let prediction = Prediction::new(&study, &gradients, &nominal, criterion).unwrap();
+        let of = point(&nominal, growth(&nominal), criterion);
         (prediction.probability((0, &of.modes().unwrap()[0]), &sample, plain), plain)
     }
 
@@ -172,6 +181,14 @@ mod tests {
         let found = found.unwrap();
         assert!((found.value - 0.875).abs() < 1e-3, "{found:?}");
         assert!(found.low <= 0.875 && 0.875 <= found.high && found.high - found.low < plain.high - plain.low);
+    }
+
+    /// `p + q - 1/2 > 1/2` on the unit square: 1/2, by the limit of the criterion in place of 0.
+    #[test]
+    fn predictions_have_the_limit_of_the_criterion() {
+        let (found, plain) = estimates_by(InstabilityCriterion::GrowthRate(0.5), [1.0, 1.0], 0.0);
+        let found = found.unwrap();
+        assert!((found.value - 0.5).abs() < 1e-3 && (plain.value - 0.5).abs() < 0.05, "{found:?} {plain:?}");
     }
 
     /// `p + q - p q > 1/2` is `(1 - p) (1 - q) < 1/2`: `1/2 + ln 2 / 2`. With the slopes at the nominal point.
@@ -192,12 +209,21 @@ mod tests {
     fn points_of_no_known_distribution_and_missing_derivatives_give_none() {
         let gradient = Gradient { slopes: Vec::new(), difference: Difference::None("lost".into()) };
         let gradients = [gradient.clone(), gradient];
-        let is_made = |kind| Prediction::new(&study(kind), &gradients, &[0.5, 0.5]).is_some();
+        let is_made =
+            |kind| Prediction::new(&study(kind), &gradients, &[0.5, 0.5], InstabilityCriterion::default()).is_some();
         assert!(!is_made(DesignKind::Grid { n_levels: 3 }) && !is_made(DesignKind::List(vec![vec![0.5, 0.5]])));
-        assert!(Prediction::new(&study(DesignKind::Sobol { n_points: 4 }), &[], &[0.5, 0.5]).is_none());
+        assert!(
+            Prediction::new(
+                &study(DesignKind::Sobol { n_points: 4 }),
+                &[],
+                &[0.5, 0.5],
+                InstabilityCriterion::default()
+            )
+            .is_none()
+        );
         let study = study(DesignKind::Sobol { n_points: 4 });
-        let prediction = Prediction::new(&study, &gradients, &[0.5, 0.5]).unwrap();
-        let of = point(&[0.5, 0.5], 1.0);
+        let prediction = Prediction::new(&study, &gradients, &[0.5, 0.5], InstabilityCriterion::default()).unwrap();
+        let of = point(&[0.5, 0.5], 1.0, InstabilityCriterion::default());
         assert_eq!(prediction.probability((0, &of.modes().unwrap()[0]), &[], Probability::of(0, 0)), None);
     }
 }

@@ -39,9 +39,9 @@ pub struct PointMode {
 pub struct Link {
     /// Number of the nominal mode, from 1.
     pub nominal: usize,
-    /// Share of the nominal mode in it, from 0 to 1.
+    /// Share of the nominal mode in it: 1 for the same mode, above 1 near a coalescence.
     pub share: f64,
-    /// Whether the share is too small to be sure.
+    /// Whether the share is too small, or too large, to be sure.
     pub doubtful: bool,
 }
 

@@ -61,9 +61,7 @@ const N_SAMPLES: usize = 1000;
 /// # Panics
 /// Where there are not k + 2 values for each base point.
 pub fn sobol_indices(parameters: &[&str], values: &[Option<f64>], seed: u32) -> Option<Vec<Indices>> {
-    let width = parameters.len() + 2;
-    assert_eq!(values.len() % width, 0, "k + 2 values a base point");
-    let rows: Vec<Vec<f64>> = values.chunks(width).filter_map(|row| row.iter().copied().collect()).collect();
+    let rows = whole_base_points(parameters.len(), values);
     let all: Vec<usize> = (0..rows.len()).collect();
     let whole = estimates(&rows, &all)?;
     let mut chance = Pcg64::seed_from_u64(u64::from(seed));
@@ -84,6 +82,16 @@ pub fn sobol_indices(parameters: &[&str], values: &[Option<f64>], seed: u32) -> 
         total: estimate(&|sample| sample[i][1]),
     };
     Some(parameters.iter().enumerate().map(of).collect())
+}
+
+/// The values of the base points of which none is missing, `k + 2` each.
+///
+/// # Panics
+/// Where there are not k + 2 values for each base point.
+pub(super) fn whole_base_points(n_parameters: usize, values: &[Option<f64>]) -> Vec<Vec<f64>> {
+    let width = n_parameters + 2;
+    assert_eq!(values.len() % width, 0, "k + 2 values a base point");
+    values.chunks(width).filter_map(|row| row.iter().copied().collect()).collect()
 }
 
 /// First-order and total index of each parameter from some of the rows `f(A), f(B), f(A_B^1), ...`.

@@ -27,7 +27,8 @@ impl Probability {
     /// (p + z^2 / (2 n) +- z sqrt(p (1 - p) / n + z^2 / (4 n^2))) / (1 + z^2 / n)
     /// ```
     ///
-    /// Points of a Latin hypercube or Sobol sequence are no less exact. Source: Wilson, J. Am. Stat. Assoc. 22 (1927).
+    /// Points of a Latin hypercube or Sobol sequence are spread more evenly, so that the interval is usually too wide.
+    /// Source: Wilson, J. Am. Stat. Assoc. 22 (1927).
     ///
     /// ```
     /// let squeal = squeal::explore::Probability::of(3, 10);

@@ -197,7 +197,8 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
         (bin.is_nan() || bin <= 0.0).then_some("bin is not above 0. Give the width of the frequency bins in Hz"),
         (!(0.0..to).contains(&from)).then_some("band is not [from, to] with 0 <= from < to. Give both ends in Hz"),
     ];
-    if let Some(what) = mistakes.into_iter().flatten().next() {
+    let mistakes = mistakes.into_iter().flatten().map(str::to_owned).chain(shared_twice(&parameters));
+    if let Some(what) = mistakes.into_iter().next() {
         return Err(Error::input(format!("{}: {what}", path.display())));
     }
     let study = Study {
@@ -215,6 +216,16 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Study> {
     };
     study.contacts.map_or(Ok(()), |_| study.require_no_fields())?;
     Ok(study)
+}
+
+/// What is wrong where two parameters have one of the keys that models and super-elements share.
+fn shared_twice(parameters: &[Parameter]) -> Option<String> {
+    parameters.iter().enumerate().find_map(|(i, own)| {
+        let key = own.shared_key()?;
+        let first = parameters[..i].iter().find(|earlier| earlier.shared_key() == Some(key))?;
+        let names = format!("parameters {:?} and {:?}", first.name, own.name);
+        Some(format!("{names} both have the key {key}. Leave one of them out"))
+    })
 }
 
 /// How often the line to the nominal point may be bisected; none where modes are not followed.
@@ -267,8 +278,12 @@ fn distribution(table: &ParameterTable) -> std::result::Result<Distribution, Str
         to: own.to.unwrap_or(f64::INFINITY),
     };
     let lognormal = |own: &LogNormalTable| Distribution::LogNormal { mean: own.mean, deviation: own.deviation };
+    let sorted = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values
+    };
     let given = [
-        table.values.clone().map(Distribution::Values),
+        table.values.clone().map(sorted).map(Distribution::Values),
         table.uniform.map(|[from, to]| Distribution::Uniform { from, to }),
         table.loguniform.map(|[from, to]| Distribution::LogUniform { from, to }),
         table.normal.as_ref().map(normal),
@@ -319,6 +334,14 @@ mod tests {
         assert_eq!((follow("bisections = 5"), follow("follow = false")), (Some(5), None));
     }
 
+    /// Quantiles rise: so a range goes from the smallest to the largest value, in whatever order they are given.
+    #[test]
+    fn values_are_sorted() {
+        let text = TEXT.replace("uniform = [0.3, 0.6]", "values = [0.5, 0.2, 0.4]");
+        let mu = &parse(&text, "explore.toml".as_ref()).unwrap().parameters[0];
+        assert_eq!((&mu.distribution, mu.range()), (&Distribution::Values(vec![0.2, 0.4, 0.5]), [0.2, 0.5]));
+    }
+
     #[test]
     fn mistakes_have_their_line_and_advice() {
         for (old, new, parts) in [
@@ -333,6 +356,7 @@ mod tests {
             ("uniform = [0.3, 0.6]", "", ["parameter \"mu\"", "give one of values"]),
             ("uniform", "unifrom", ["explore.toml:9", "unknown field"]),
             ("key = \"friction\"", "key = \"friction\"\nfactor = true", ["parameter \"mu\"", "friction is not"]),
+            ("[parameter.E]", "[parameter.a]\nkey = \"friction\"\nvalues = [1]\n[parameter.E]", ["\"mu\" and", "both"]),
             ("bin = 250", "bisections = 7", ["explore.toml", "from 0 to 6"]),
             ("bin = 250", "follow = false\nbisections = 2", ["explore.toml", "goes with follow = true"]),
             ("bin = 250", "bin = 0", ["explore.toml", "bin is not above 0. Give"]),

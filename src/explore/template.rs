@@ -6,7 +6,7 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, value};
 
 use super::key::{Address, KeyPath, at, number, set};
 use super::study::Parameter;
-use crate::model::{self, Model};
+use crate::model::{self, InstabilityCriterion, Model};
 use crate::{Error, Result};
 
 /// What a model is before any parameter changes it.
@@ -46,19 +46,24 @@ impl Template {
     /// Finds the numbers of the parameters in the text of a model file.
     ///
     /// # Errors
-    /// [`Error::Input`] where a key matches no number, or two parameters change the same one.
+    /// [`Error::Input`] where a key matches no number or several different ones without being a factor, or two
+    /// parameters change the same one.
     pub fn new(text: &str, parameters: &[Parameter], nominal: Nominal) -> Result<Template> {
         let document: DocumentMut =
             text.parse().map_err(|reason| Error::input(format!("{}: {reason}", nominal.model.file.display())))?;
         let swept = nominal.swept.to_vec();
         let target = |parameter: &Parameter| target(document.as_item(), parameter, &swept);
         let targets = parameters.iter().map(target).collect::<Result<Vec<_>>>()?;
-        refuse_doubled(parameters, &targets)?;
-        let own = nominal.model.contacts.iter().find(|contact| swept.first() == Some(&contact.name));
-        Ok(Template { document, targets, friction: own.map_or(0.0, |contact| contact.friction), swept })
+        refuse_doubled(document.as_item(), parameters, &targets, &swept)?;
+        let friction = friction_coefficients(nominal.model, &swept);
+        if targets.iter().any(|target| matches!(target, Target::Friction)) {
+            let advice = "Give each a parameter of its own, such as contact.NAME.friction";
+            require_one_number("the friction coefficients of the swept contacts", &friction, advice)?;
+        }
+        Ok(Template { document, targets, friction: friction.first().copied().unwrap_or(0.0), swept })
     }
 
-    /// The parameters' values in the model file; 1 of factors, the first number of a group.
+    /// The parameters' values in the model file; 1 of factors.
     pub fn nominal(&self) -> Vec<f64> {
         let of = |target: &Target| match target {
             Target::Numbers { is_factor: true, .. } => 1.0,
@@ -102,20 +107,25 @@ impl Template {
         if let Some(friction) = given {
             return Some((&self.swept, friction));
         }
-        let own = |name: &String| model.contacts.iter().find(|own| own.name == *name).map(|own| own.friction);
-        let values: Vec<f64> = self.swept.iter().filter_map(own).collect();
+        let values = friction_coefficients(model, &self.swept);
         let first = *values.first()?;
         let n = if values.iter().all(|value| *value == first) { self.swept.len() } else { 1 };
         Some((&self.swept[..n], first))
     }
 }
 
-/// The text of a model file whose mesh has another path, with the band of a study (Hz). Gap fields, which are beside
-/// the model file `file`, get their whole path.
+/// The text of a model file whose mesh has another path, with the band of a study (Hz), and what counts as an unstable
+/// mode where the study says so. Gap fields, which are beside the model file `file`, get their whole path.
 ///
 /// # Errors
 /// [`Error::Input`] where the text is no model file.
-pub fn standing_alone(text: &str, file: &Path, mesh: &str, band: [f64; 2]) -> Result<String> {
+pub fn standing_alone(
+    text: &str,
+    file: &Path,
+    mesh: &str,
+    band: [f64; 2],
+    criterion: Option<InstabilityCriterion>,
+) -> Result<String> {
     let mut document: DocumentMut = text.parse().map_err(|reason| Error::input(format!("no model file: {reason}")))?;
     let table = document.get_mut("mesh").and_then(Item::as_table_like_mut);
     let table = table.ok_or_else(|| Error::input("the model file has no [mesh]"))?;
@@ -123,6 +133,9 @@ pub fn standing_alone(text: &str, file: &Path, mesh: &str, band: [f64; 2]) -> Re
     let stability = document.get_mut("stability").and_then(Item::as_table_like_mut);
     stability.into_iter().for_each(|table| {
         table.insert("band", value(band.into_iter().collect::<Array>()));
+        if let Some(criterion) = criterion {
+            table.insert("unstable", value(InlineTable::from_iter([criterion.entry()])));
+        }
     });
     let contacts = document.get_mut("contact").and_then(Item::as_array_of_tables_mut);
     for contact in contacts.into_iter().flat_map(|list| list.iter_mut()) {
@@ -143,9 +156,18 @@ fn target(document: &Item, parameter: &Parameter, swept: &[String]) -> Result<Ta
             let own = number(at(document, &place)).expect("a number was found");
             (place, own)
         };
-        let places = found.map_err(of_parameter)?.concat().into_iter().map(own).collect();
+        let places: Vec<(Address, f64)> = found.map_err(of_parameter)?.concat().into_iter().map(own).collect();
+        if !is_factor {
+            let numbers: Vec<f64> = places.iter().map(|(_, own)| *own).collect();
+            let advice = "Give factor = true, or each a parameter of its own";
+            require_one_number("the numbers of its keys", &numbers, advice).map_err(of_parameter)?;
+        }
         Ok(Target::Numbers { places, is_factor })
     };
+    if let Some(key) = parameter.keys.iter().find(|key| key.segments()[0] == "sweep") {
+        let what = format!("key {}: a point of a study has no sweep. Give the key friction", key.text());
+        return Err(of_parameter(Error::input(what)));
+    }
     match parameter.shared_key() {
         _ if parameter.is_of_field() => Ok(Target::FieldMode),
         Some(FRICTION) if swept.is_empty() => {
@@ -175,11 +197,21 @@ fn shared(key: &str, swept: &[String]) -> Result<Vec<KeyPath>> {
     paths.iter().map(|path| KeyPath::parse(path)).collect()
 }
 
-fn refuse_doubled(parameters: &[Parameter], targets: &[Target]) -> Result<()> {
-    let mut seen: Vec<(&Address, &str)> = Vec::new();
+/// Numbers that one value takes the place of are equal.
+fn require_one_number(what: &str, numbers: &[f64], advice: &str) -> Result<()> {
+    let Some(other) = numbers.iter().find(|number| **number != numbers[0]) else { return Ok(()) };
+    Err(Error::input(format!("{what} differ in the model file ({} and {other}). {advice}", numbers[0])))
+}
+
+fn refuse_doubled(document: &Item, parameters: &[Parameter], targets: &[Target], swept: &[String]) -> Result<()> {
+    let mut seen: Vec<(Address, &str)> = Vec::new();
     for (parameter, target) in parameters.iter().zip(targets) {
-        let Target::Numbers { places, .. } = target else { continue };
-        for (place, _) in places {
+        let places = match target {
+            Target::Numbers { places, .. } => places.iter().map(|(place, _)| place.clone()).collect(),
+            Target::Friction => friction_places(document, swept)?,
+            Target::FieldMode => Vec::new(),
+        };
+        for place in places {
             if let Some((_, first)) = seen.iter().find(|(other, _)| *other == place) {
                 let what = format!("parameters {first:?} and {:?} change the same number", parameter.name);
                 return Err(Error::input(format!("{what}. Leave one of them out")));
@@ -188,6 +220,19 @@ fn refuse_doubled(parameters: &[Parameter], targets: &[Target]) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The friction coefficients of contacts of a model.
+fn friction_coefficients(model: &Model, contacts: &[String]) -> Vec<f64> {
+    let own = |name: &String| model.contacts.iter().find(|own| own.name == *name).map(|own| own.friction);
+    contacts.iter().filter_map(own).collect()
+}
+
+/// The friction coefficients of the swept contacts that the model file has.
+fn friction_places(document: &Item, swept: &[String]) -> Result<Vec<Address>> {
+    let keys = swept.iter().map(|name| KeyPath::parse(&format!("contact.\"{name}\".friction")));
+    let keys = keys.collect::<Result<Vec<KeyPath>>>()?;
+    Ok(keys.iter().filter_map(|key| key.find(document, false).ok()).flatten().collect())
 }
 
 /// `[sweep]` with one friction coefficient.
@@ -277,13 +322,39 @@ mod tests {
     fn a_model_file_may_stand_elsewhere() {
         let text = std::fs::read_to_string(FILE).unwrap();
         let worn = text.replacen("[[contact]]\n", "[[contact]]\ngap = \"worn.csv\"\n", 1);
-        let worn = standing_alone(&worn, FILE.as_ref(), "a.msh", [0.0, 500.0]).unwrap();
+        let worn = standing_alone(&worn, FILE.as_ref(), "a.msh", [0.0, 500.0], None).unwrap();
         let gap = std::path::absolute("tests/data/worn.csv").unwrap();
         assert!(worn.contains(&format!("gap = \"{}\"", gap.display())), "{worn}");
-        let text = standing_alone(&text, FILE.as_ref(), "../data/pads_on_disc.msh", [0.0, 500.0]);
-        let model = model::parse(&text.unwrap(), "tests/data/worst.toml".as_ref()).unwrap();
-        assert_eq!(model.mesh_file, Path::new("tests/data/../data/pads_on_disc.msh"));
-        assert_eq!(model.band, [0.0, 500.0]);
+        for criterion in [InstabilityCriterion::GrowthRate(5.0), InstabilityCriterion::DampingRatio(-0.001)] {
+            let mesh = "../data/pads_on_disc.msh";
+            let text = standing_alone(&text, FILE.as_ref(), mesh, [0.0, 500.0], Some(criterion)).unwrap();
+            let model = model::parse(&text, "tests/data/worst.toml".as_ref()).unwrap();
+            assert_eq!(model.mesh_file, Path::new("tests/data/../data/pads_on_disc.msh"));
+            assert_eq!((model.band, model.criterion), ([0.0, 500.0], criterion));
+        }
+    }
+
+    #[test]
+    fn friction_has_one_parameter_of_all_pairs_or_one_of_each() {
+        let message = |of: &[(&str, &str, bool)]| template(of).err().map(|error| error.to_string());
+        let (mu, inner) = (("mu", "friction", false), ("inner", "contact.*inner*.friction", false));
+        for both in [[mu, inner], [inner, mu], [mu, ("again", "friction", false)]] {
+            assert!(message(&both).unwrap().contains("change the same number"), "{both:?}");
+        }
+        assert_eq!(message(&[inner, ("outer", "contact.*outer*.friction", false)]), None);
+        let swept = message(&[("mu", "sweep.friction.values.1", false)]).unwrap();
+        assert!(swept.contains("Give the key friction"), "a point has no sweep: {swept}");
+    }
+
+    #[test]
+    fn one_value_takes_the_place_of_one_number() {
+        let message = |key: &str, is_factor| template(&[("p", key, is_factor)]).err().map(|error| error.to_string());
+        let differ = message("material.*.density", false).unwrap();
+        assert!(differ.contains("parameter \"p\": the numbers of its keys differ"), "{differ}");
+        assert_eq!((message("material.*.density", true), message("contact.*.law.linear", false)), (None, None));
+        assert!(require_one_number("numbers", &[0.4, 0.4], "").is_ok());
+        let error = require_one_number("numbers", &[0.4, 0.4, 0.5], "Give one").unwrap_err().to_string();
+        assert!(error.contains("numbers differ in the model file (0.4 and 0.5). Give one"), "{error}");
     }
 
     #[test]

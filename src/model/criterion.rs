@@ -50,6 +50,14 @@ impl InstabilityCriterion {
         }
     }
 
+    /// Its key in a model file, and the limit.
+    pub fn entry(self) -> (&'static str, f64) {
+        match self {
+            InstabilityCriterion::GrowthRate(limit) => ("growth_rate", limit),
+            InstabilityCriterion::DampingRatio(limit) => ("damping_ratio", limit),
+        }
+    }
+
     /// The growth rate (1/s) above which an eigenvalue is unstable. A real eigenvalue is a divergence only above
     /// `rigid` (1/s): the double zero of a rigid-body motion may come out as a small real pair.
     pub fn limit(self, lambda: Complex64, rigid: f64) -> f64 {

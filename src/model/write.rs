@@ -11,7 +11,7 @@ use super::elasticity::{from_compliance, isotropic_compliance};
 use super::friction::{FrictionCurve, FrictionTable, SpeedDecay, Stribeck};
 use super::read::UNITS;
 use super::viscoelastic::{FractionalZener, MaxwellElement, ModulusTable, ViscoelasticLaw};
-use super::{Contact, GapField, ImageFrame, Inertia, InstabilityCriterion, Material, Model, NormalLaw, ROUGH};
+use super::{Contact, GapField, ImageFrame, Inertia, Material, Model, NormalLaw, ROUGH};
 use loads::loads;
 
 /// Elasticities are isotropic to this relative difference.
@@ -260,14 +260,8 @@ fn analysis(out: &mut Text, model: &Model) {
     out.line("band", list(&model.band));
     out.line("friction_damping", model.friction_damping);
     model.prestress.into_iter().for_each(|prestress| out.line("prestress", prestress));
-    match model.criterion {
-        InstabilityCriterion::DampingRatio(ratio) => {
-            out.line("unstable", format_args!("{{ damping_ratio = {} }}", number(ratio)));
-        }
-        InstabilityCriterion::GrowthRate(rate) => {
-            out.line("unstable", format_args!("{{ growth_rate = {} }}", number(rate)));
-        }
-    }
+    let (key, limit) = model.criterion.entry();
+    out.line("unstable", format_args!("{{ {key} = {} }}", number(limit)));
     if !model.frictions.is_empty() {
         let mut contacts = String::new();
         if !model.swept.is_empty() {

@@ -4,15 +4,16 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::explore_sections::{
+    bins, fields, hopf_points_not_found, indices, influences, instabilities, links, percent, section, tornado,
+    with_failed,
+};
 use super::explore_tables::{write_boundary, write_gradients, write_hopf, write_modes, write_points};
 use super::folder::Folder;
 use super::results_folder::RESULTS;
-use super::text::{aligned, files, or_dash, plural};
+use super::text::{aligned, files, plural};
 use crate::Result;
-use crate::explore::{
-    Answers, Bar, Bin, Estimate, Indices, Influence, Instability, Outcome, Parameter, PointModel, PointResult, Study,
-    Tornado,
-};
+use crate::explore::{Answers, Outcome, Parameter, PointModel, PointResult, Study};
 use crate::results::exploration_file::{self, ShapesOf};
 use crate::results::{Exploration, FieldShare};
 
@@ -20,8 +21,6 @@ use crate::results::{Exploration, FieldShare};
 pub const PAGE: &str = "explore.html";
 /// Name of the model file of the worst point.
 pub const WORST: &str = "worst.toml";
-/// Bars of the squeal probability have so many signs at 100 %.
-const BAR: f64 = 40.0;
 
 /// The answers of a study, as one JSON document.
 #[derive(Debug, Serialize)]
@@ -40,6 +39,9 @@ pub struct Document<'a> {
     #[serde(skip)]
     tables: Vec<&'static str>,
     folder: String,
+    /// How many modes are linked with doubt.
+    #[serde(skip)]
+    links: String,
     /// Points that a design starts with before it adds others.
     #[serde(skip)]
     n_start: Option<usize>,
@@ -104,6 +106,7 @@ impl<'a> Document<'a> {
             fields: &found.fields,
             tables: found.worst.as_ref().map_or_else(Vec::new, PointModel::files),
             folder: folder.display().to_string(),
+            links: links(&points[1..]),
             n_start: study.design.n_start(),
         }
     }
@@ -127,37 +130,37 @@ impl<'a> Document<'a> {
         let answers = self.answers;
         let what = if answers.is_sample { "probability" } else { "fraction of the points" };
         let mut text = self.head() + &format!("unstable ({}): {what} {}\n", self.criterion, percent(answers.unstable));
+        text += &with_failed(answers.with_failed);
         text += &self.boundary();
         text += &fields(self.fields);
         text += &section("largest growth rate, 1/s", &self.growth_rates());
         text += &section(&format!("instabilities, by {what}"), &instabilities(&answers.instabilities));
         text += &section(&format!("{what} of squeal over frequency"), &bins(&answers.bins));
         let indices = answers.indices.as_deref().map_or_else(String::new, indices);
-        text += &section("Sobol indices of the largest growth rate, with intervals of 95 %", &indices);
+        let n_base = format!("Sobol indices of the largest growth rate, of {} base points", answers.n_base_points);
+        text += &section(&format!("{n_base} without a failed point, with intervals of 95 %"), &indices);
         text += &section("largest growth rate, one parameter at a time", &tornado(answers.tornado.as_deref()));
         let gradients: String = answers.gradients.iter().map(influences).chain(self.missing_derivatives()).collect();
-        text +=
-            &section("first-order changes of the growth rate, 1/s, by left vectors at the nominal point", &gradients);
+        text += &section(
+            "first-order changes from quantile 5 % to 95 % of a parameter, by derivatives at the nominal point",
+            &gradients,
+        );
         text += &self.worst();
         let failures: String = self.failures.iter().map(|f| format!("point {}: {}\n", f.point, f.reason)).collect();
         text + &section("points that have failed", &failures) + &self.files()
     }
 
     fn head(&self) -> String {
-        let Answers { n_points, n_failed, n_doubtful, .. } = *self.answers;
+        let Answers { n_points, n_failed, .. } = *self.answers;
         let n = self.parameters.len();
         let [from, to] = self.band_hz;
         let failed = if n_failed > 0 { format!(", {n_failed} failed") } else { String::new() };
-        let doubtful = if n_doubtful > 0 {
-            format!("{n_doubtful} links of modes to the nominal point are doubtful (modes.csv)\n")
-        } else {
-            String::new()
-        };
         format!(
-            "{}: modes of {from}-{to} Hz at {n_points} point{} of {n} parameter{}{failed}\n{doubtful}",
+            "{}: modes of {from}-{to} Hz at {n_points} point{} of {n} parameter{}{failed}\n{}",
             self.title,
             plural(n_points),
-            plural(n)
+            plural(n),
+            self.links
         )
     }
 
@@ -166,9 +169,10 @@ impl<'a> Document<'a> {
         let Some(n_start) = self.n_start else { return String::new() };
         let what = if self.answers.is_sample { "probabilities" } else { "fractions" };
         let start = format!("{what} are of the first {n_start} points, with which the design starts\n");
-        let n_hopf = self.answers.hopf.points.len();
-        if n_hopf > 0 {
-            return start + &format!("{n_hopf} Hopf point{} between points of the grid (hopf.csv)\n", plural(n_hopf));
+        let (n_hopf, n_not_found) = (self.answers.hopf.points.len(), self.answers.hopf.n_not_found);
+        if n_hopf + n_not_found > 0 {
+            let found = format!("{n_hopf} Hopf point{} between points of the grid (hopf.csv)\n", plural(n_hopf));
+            return start + &found + &hopf_points_not_found(n_not_found);
         }
         let n = self.answers.boundary.len();
         let pairs = self.answers.boundary.first().map_or_else(String::new, |widest| {
@@ -270,94 +274,4 @@ pub fn write(
     }
     folder.write("summary.json", |out| out.write_all(super::json::text(document).as_bytes()))?;
     folder.write("summary.txt", |out| out.write_all(document.text().as_bytes()))
-}
-
-/// A heading with what stands below it; nothing where that is empty.
-fn section(heading: &str, body: &str) -> String {
-    if body.is_empty() { String::new() } else { format!("\n{heading}\n{body}") }
-}
-
-fn percent(own: crate::explore::Probability) -> String {
-    let [value, low, high] = [own.value, own.low, own.high].map(|p| 100.0 * p);
-    format!("{value:.1} % (95 %: {low:.1} to {high:.1}), {} of {} points", own.n_true, own.n_points)
-}
-
-fn instabilities(all: &[Instability]) -> String {
-    let row = |own: &Instability| {
-        let [low, high] = own.frequency_range_hz;
-        let p = own.probability;
-        format!(
-            "{}\t{}\t{:.1}\t{:.1}\t{:.1}\t{low:.1}\t{high:.1}\t{:+.2}\t{}",
-            or_dash(own.nominal, |number| number.to_string()),
-            or_dash(own.nominal_frequency_hz, |f| format!("{f:.1}")),
-            100.0 * p.value,
-            100.0 * p.low,
-            100.0 * p.high,
-            own.largest_growth_rate_per_s,
-            own.worst
-        )
-    };
-    let heading = "mode at the\t\t\t95 %\t95 %\tfrequency where unstable\t\tlargest\tat\n\
-                   nominal point\tHz\t%\tfrom\tto\tfrom\tto\tgrowth, 1/s\tpoint";
-    let better = |own: &Instability| {
-        let Estimate { value, low, high } = own.by_derivatives?;
-        let [value, low, high] = [value, low, high].map(|p| 100.0 * p);
-        let number = own.nominal?;
-        Some(format!("mode {number} by points and derivatives: {value:.1} % (95 %: {low:.1} to {high:.1})\n"))
-    };
-    let better: String = all.iter().filter_map(better).collect();
-    if all.is_empty() { String::new() } else { aligned(heading, all.iter().map(row)) + &better }
-}
-
-/// A line for each random field.
-fn fields(all: &[FieldShare]) -> String {
-    let line = |own: &FieldShare| {
-        let FieldShare { name, n_points, n_modes, share } = own;
-        let (modes, share) = (plural(*n_modes), 100.0 * share);
-        format!(
-            "field {name:?}: {n_modes} mode{modes} with {share:.1} % of the variance over {n_points} contact points\n"
-        )
-    };
-    all.iter().map(line).collect()
-}
-
-/// Bins up to the last one with squeal.
-fn bins(all: &[Bin]) -> String {
-    let n = all.iter().rposition(|bin| bin.probability.n_true > 0).map_or(0, |last| last + 1);
-    let row = |bin: &Bin| {
-        let p = bin.probability;
-        let bar = "#".repeat((BAR * p.value).round() as usize);
-        format!("{:.0}-{:.0} Hz\t{:.1} %\t{bar}", bin.from_hz, bin.to_hz, 100.0 * p.value)
-    };
-    if n == 0 { String::new() } else { aligned("frequency\t", all[..n].iter().map(row)) }
-}
-
-fn indices(all: &[Indices]) -> String {
-    let three = |own: &Estimate| format!("{:.3}\t{:.3}\t{:.3}", own.value, own.low, own.high);
-    let row = |own: &Indices| format!("{}\t{}\t{}", own.parameter, three(&own.first_order), three(&own.total));
-    aligned("parameter\tfirst\tfrom\tto\ttotal\tfrom\tto", all.iter().map(row))
-}
-
-fn tornado(bars: Option<&[Bar]>) -> String {
-    let row = |bar: &Bar| {
-        let Bar { parameter, lowest_at, lowest, highest_at, highest } = bar;
-        format!("{parameter}\t{lowest:.2}\t{lowest_at:.4e}\t{highest:.2}\t{highest_at:.4e}")
-    };
-    bars.filter(|bars| !bars.is_empty())
-        .map_or_else(String::new, |bars| aligned("parameter\tsmallest\tat\tlargest\tat", bars.iter().map(row)))
-}
-
-/// The tornado of a mode.
-fn influences(own: &Tornado) -> String {
-    let share = own.linear_share.map_or_else(String::new, |share| {
-        format!("; to first order {:.0} % of its variance over the points", 100.0 * share.max(0.0))
-    });
-    let head = format!("mode {}: {:.1} Hz, {:+.2} 1/s{share}\n", own.nominal, own.frequency_hz, own.growth_rate_per_s);
-    let row = |bar: &Influence| {
-        format!(
-            "{}\t{:+.2}\t{:+.2}\t{:.4e}\t{:.4e}",
-            bar.parameter, bar.growth_rate_change_per_s, bar.frequency_change_hz, bar.from, bar.to
-        )
-    };
-    head + &aligned("parameter\tgrowth, 1/s\tfrequency, Hz\tfrom\tto", own.bars.iter().map(row))
 }

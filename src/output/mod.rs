@@ -9,6 +9,7 @@ mod contact_rows;
 pub mod details;
 pub mod explain;
 pub mod explore;
+mod explore_sections;
 mod explore_tables;
 pub mod external;
 pub mod fields;

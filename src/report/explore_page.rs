@@ -81,11 +81,14 @@ fn answer(study: &Study, found: &Exploration) -> Markup {
 fn headline(found: &Exploration) -> String {
     let answers = &found.answers;
     let p = answers.unstable;
+    if p.n_points == 0 {
+        return "Unknown: all points have failed".to_owned();
+    }
     if !answers.is_sample {
         return format!("Unstable at {} of {} points", p.n_true, p.n_points);
     }
     let [value, low, high] = [p.value, p.low, p.high].map(|p| 100.0 * p);
-    format!("Squeals with a probability of {value:.1} % (95 % confidence: {low:.1} to {high:.1} %)")
+    format!("Squeals with a probability of {value:.1}\u{a0}% (95\u{a0}% confidence: {low:.1} to {high:.1}\u{a0}%)")
 }
 
 fn cautions(study: &Study, found: &Exploration) -> Markup {
@@ -102,6 +105,10 @@ fn cautions(study: &Study, found: &Exploration) -> Markup {
                 @if !answers.hopf.points.is_empty() {
                     " The others close in on the " (answers.hopf.points.len()) " Hopf points between them (hopf.csv)."
                 }
+                @if answers.hopf.n_not_found > 0 {
+                    " On " (answers.hopf.n_not_found) " edges of the grid a mode turns unstable, but its Hopf point is "
+                    "not found: a solution has no such mode."
+                }
                 @if let Some(widest) = answers.boundary.first() {
                     " Most of the others lie near the boundary, of which " (answers.boundary.len())
                     " pairs of neighbours are known, at most " (format!("{:.1e}", widest.distance)) " apart."
@@ -111,8 +118,14 @@ fn cautions(study: &Study, found: &Exploration) -> Markup {
         @if n_failed + answers.n_doubtful > 0 {
             ul.cautions {
                 @if n_failed > 0 { li { (n_failed) " point" (plural(n_failed)) " failed, see below." } }
+                @if let Some([low, high]) = answers.with_failed.map(|limits| limits.map(|p| 100.0 * p)) {
+                    li {
+                        "Failed points are left out: with them it is " (format!("{low:.1} to {high:.1}"))
+                        " % (none or all of them unstable)."
+                    }
+                }
                 @if answers.n_doubtful > 0 {
-                    li { (answers.n_doubtful) " links of modes to the nominal point are doubtful; a ? marks them." }
+                    li { "Links of " (answers.n_doubtful) " modes to the nominal point are doubtful; a ? marks them." }
                 }
             }
         }
@@ -135,7 +148,7 @@ fn instabilities(found: &Exploration) -> Markup {
                 tbody { @for own in &found.answers.instabilities { (instability(own, found, has_better)) } }
             }
         }
-        p.hint { "Modes have the numbers of the nominal point. A dash: modes that are none of it." }
+        p.hint { "Modes have the numbers of the nominal point. A dash: modes without a link to it." }
     }
 }
 

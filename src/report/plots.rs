@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use super::findings::{Findings, Instability, Place};
 use super::svg::{Anchor, INK, PALE, Panel, Scale, Sheet, colour};
 use super::words;
+use crate::algebra::span;
 use crate::output::overwrite::{FileKind, SIGNATURE, head_contains};
 use crate::tracking::{Branch, Hopf};
 
@@ -235,11 +236,6 @@ fn mark(sheet: &mut Sheet, at: [f64; 2], place: Place, radius: f64, fill: &str) 
 fn friction_scale(findings: &Findings) -> Scale {
     let all = span(findings.results.values.iter().map(|value| value.friction));
     Scale::with_margin(all, 0.03)
-}
-
-/// The least and the largest number.
-fn span(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
-    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
 fn asked_modes<'f>(findings: &'f Findings) -> impl Iterator<Item = Place> + 'f {

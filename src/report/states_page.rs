@@ -6,6 +6,7 @@ use super::frame::frame;
 use super::pressure_map;
 use super::states::{InstabilityRow, StateDocument, StatesDocument, middle};
 use super::svg::{Anchor, PALE, Panel, Scale, Sheet, colour};
+use crate::algebra::span;
 use crate::analysis::StateResults;
 use crate::results::{ModeData, Results};
 
@@ -109,10 +110,7 @@ fn instability(row: &InstabilityRow) -> Markup {
 /// The largest growth rate at each friction value asked for, a line a state.
 fn growth(states: &[StateResults]) -> String {
     let lines: Vec<Vec<[f64; 2]>> = states.iter().map(|state| largest_growth(&state.results)).collect();
-    let range = |i: usize| {
-        let values = lines.iter().flatten().map(|point| point[i]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
-    };
+    let range = |i: usize| span(lines.iter().flatten().map(|point| point[i]));
     let ([low, high], height) = (range(1), 20.0 * states.len().div_ceil(2) as f64);
     let mut sheet = Sheet::new([760.0, 400.0 + height]);
     let (x, y) = (Scale::with_margin(range(0), 0.03), Scale::with_margin([low.min(0.0), high.max(0.0)], 0.06));

@@ -2,6 +2,7 @@
 //! paper).
 
 use super::svg::{Anchor, INK, Panel, Scale, Sheet, colour};
+use crate::algebra::span;
 use crate::comparison::{CurvePoint, StudiedModel, Study};
 
 /// The reference and some of the models: a column an instability, frequency above growth rate. None where nothing
@@ -45,8 +46,7 @@ fn growth_rate(point: &CurvePoint) -> f64 {
 
 fn scale(models: &[&StudiedModel], i: usize, of: fn(&CurvePoint) -> f64) -> Scale {
     let values = models.iter().flat_map(|model| &model.curves[i]).map(of);
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
-    Scale::with_margin([low, high], 0.06)
+    Scale::with_margin(span(values), 0.06)
 }
 
 /// The reference in the colour of the axes, the models in the palette's.

@@ -253,6 +253,7 @@ mod tests {
 
     use super::*;
     use crate::explore::{Answers, Difference, Gradient, Link};
+    use crate::model::InstabilityCriterion;
     use crate::results::{About, Surface};
 
     /// A study with two points that have modes and one that has failed.
@@ -273,7 +274,7 @@ mod tests {
         let slopes = vec![Complex64::new(1.0, -3.0)];
         let none = Gradient { slopes: Vec::new(), difference: Difference::None("lost".into()) };
         let gradients = vec![Gradient { slopes, difference: Difference::Central }, none];
-        let answers = Answers::new(&study, &points, &gradients, [0.0, 200.0]);
+        let answers = Answers::new(&study, &points, &gradients, [0.0, 200.0], InstabilityCriterion::default());
         let found = Exploration {
             about: About::default(),
             points,

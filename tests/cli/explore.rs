@@ -185,6 +185,7 @@ fn a_point_that_fails_is_recorded_and_the_study_continues() {
     let finished = done(place.run(&[&EXPLORE[..], &["--json"]].concat()));
     let text = place.read("run/summary.txt");
     assert!(text.contains("4 points of 3 parameters, 2 failed") && text.contains("point 2: "), "{text}");
+    assert!(text.contains("failed points are left out: with them it is "), "{text}");
     let points = table(&place, "run/points.csv");
     assert_eq!(points.len(), 5);
     assert!(points[2]["failure"].contains("friction") && points[2]["growth_rate_per_s"].is_empty());
@@ -393,6 +394,18 @@ fn a_study_of_full_contact_is_one_of_its_galerkin_super_element() {
     let (sampled, made, _) = reduced_error(&place, &options, &study, &expected);
     println!("{without:.1e} without and {sampled:.1e} with samples\n{}", made.out);
     assert!(sampled < 1e-3 && sampled < 0.2 * without, "{without} {sampled}\n{}", made.out);
+}
+
+#[test]
+fn a_study_without_a_solution_has_no_probability() {
+    let design = "kind = \"list\"\nfile = \"points.csv\"\n";
+    let place = place_with(&swap(STUDY, "kind = \"sobol\"\npoints = 6\nseed = 2\n", design));
+    place.write("points.csv", "mu,load,density\n3,1,7000\n0.5,1,-7\n");
+    let finished = place.run(&EXPLORE);
+    assert_eq!(finished.code, 3, "{}", finished.err);
+    assert!(finished.err.contains("no point of the study has a solution"), "{}", finished.err);
+    assert!(finished.out.contains("unknown, as all points have failed"), "{}", finished.out);
+    assert!(place.read("run/explore.html").contains("Unknown: all points have failed"));
 }
 
 #[test]

@@ -64,12 +64,13 @@ impl<'s> Fields<'s> {
         Ok(Fields { study, all: comm.agree(all)? })
     }
 
-    /// The model with gaps and factors of the fields at a point.
+    /// The model with gaps and factors of the fields at a point; where a field is zero, as at the nominal point, those
+    /// of the model file with its table, which the digests of a study are of.
     ///
     /// # Errors
     /// [`Error::Input`] where tables of the model file do not cover the contact points.
     pub fn applied(&self, mut model: Model, values: &[f64]) -> Result<Model> {
-        for own in &self.all {
+        for own in self.all.iter().filter(|own| own.field.coefficients(values).iter().any(|z| *z != 0.0)) {
             own.apply(&mut model, values, &self.study.file).map_err(|what| self.error(own, &what))?;
         }
         Ok(model)
@@ -213,6 +214,9 @@ mod tests {
             let factor = k.get(i).map_or(1.0, |z| (0.3 * z).exp());
             assert_eq!(own.law.normal_law, plain.law.normal_law.times(factor));
         }
+        let nominal = fields.applied(variants.model.clone(), &[0.0, 0.0, 0.0, 0.1, 0.0]).unwrap().contacts;
+        assert!(nominal[0].gap_field.is_none() && nominal[1].stiffness_field.is_none(), "as in the model file");
+        assert!(nominal[0].stiffness_field.is_some());
         let tables = fields.tables(variants.model.clone(), &values).unwrap();
         let names: Vec<(&str, FieldQuantity)> = tables.iter().map(|own| (own.name.as_str(), own.quantity)).collect();
         let [inner, outer] = ["disc / inner pad", "disc / outer pad"];

@@ -153,7 +153,7 @@ impl<'s> Run<'s> {
         }
         self.about.n_dofs = self.groups.own.sum(points.n_own_dofs());
         let (done, gradients) = (points.all(), points.gradients.clone());
-        let answers = Answers::new(self.study, &done, &gradients, self.request.band);
+        let answers = Answers::new(self.study, &done, &gradients, self.request.band, self.request.criterion);
         let worst = answers.worst.map_or(Ok(None), |number| self.subject.model(&done[number].values))?;
         let (contacts, fields) = (self.subject.contacts(), self.subject.field_shares());
         let (about, surface, shapes) = (self.about, self.surface, Vec::new());
@@ -241,7 +241,8 @@ fn finish(
     let page = (output.page)(study, found)?;
     folder.write(PAGE, |out| out.write_all(page.as_bytes()))?;
     if let Some(worst) = &found.worst {
-        let text = standing_alone(&worst.text, &study.model, &mesh_from(place, &found.about.mesh), found.about.band)?;
+        let (mesh, band) = (mesh_from(place, &found.about.mesh), found.about.band);
+        let text = standing_alone(&worst.text, &study.model, &mesh, band, study.criterion)?;
         let text = document.worst_head() + &with_tables(&text, &worst.tables)?;
         folder.write(WORST, |out| out.write_all(text.as_bytes()))?;
         for quantity in worst.quantities() {

@@ -6,18 +6,23 @@
 use std::path::Path;
 use std::rc::Rc;
 
+use crate::algebra::span;
+use crate::analysis::other_parts::SharedValues;
 use crate::analysis::part_keys::PartKeys;
 use crate::explore::{Nominal, Parameter, Study, Template, standing_alone};
 use crate::model::names;
 use crate::reduction::file;
 use crate::reduction::made_for::{MadeFor, PartRange};
 use crate::reduction::recovery::OuterSurface;
-use crate::reduction::super_element::SuperElement;
+use crate::reduction::super_element::{Sample, SuperElement};
 use crate::structure::{ReducedModel, StructureOptions};
 use crate::{Error, Result};
 
 /// Keys that a super-element has without a model file.
 const KEYS: [&str; 3] = ["friction", "pressure", "contact_stiffness"];
+/// Friction coefficients may lie this far outside those at which a Galerkin super-element has modes without a warning.
+const FRICTION_MARGIN: f64 = 0.05;
+
 /// A super-element, the parameters of a study, and the model file for those that change its parts.
 pub struct ReducedSubject<'s> {
     place: &'s Path,
@@ -25,13 +30,6 @@ pub struct ReducedSubject<'s> {
     surface: Rc<OuterSurface>,
     parameters: &'s [Parameter],
     parts: Option<PartKeys>,
-}
-
-/// What no part has.
-struct SharedValues {
-    friction: f64,
-    pressure: f64,
-    contact_stiffness: f64,
 }
 
 impl<'s> ReducedSubject<'s> {
@@ -82,7 +80,7 @@ impl<'s> ReducedSubject<'s> {
     /// # Errors
     /// [`Error::Input`] where it cannot have these values.
     pub fn structure(&self, values: &[f64]) -> Result<(ReducedModel, f64)> {
-        let SharedValues { friction, pressure, contact_stiffness } = self.shared(values)?;
+        let Sample { friction, pressure, contact_stiffness } = self.sample(values)?;
         let mut element = self.element.clone();
         for (part, change) in self.parts.as_ref().map_or(Ok(Vec::new()), |parts| parts.changes(values))? {
             element.change_part(&part, &change)?;
@@ -91,9 +89,15 @@ impl<'s> ReducedSubject<'s> {
         Ok((ReducedModel::with(self.place, element, self.surface.clone(), &options)?, friction))
     }
 
-    /// Where the samples of the super-element did not agree, and what points have far outside the moduli and densities
-    /// that it is made for: a line a part.
+    /// Where the samples of the super-element did not agree, and what points have far outside the friction
+    /// coefficients, moduli and densities that it is made for: a line for friction and for each part.
     pub fn warnings(&self, points: &[Vec<f64>]) -> Vec<String> {
+        let friction: Vec<f64> = points.iter().filter_map(|own| Some(self.sample(own).ok()?.friction)).collect();
+        let friction = friction_warning(&self.element.origin.samples, &friction);
+        friction.into_iter().chain(self.part_warnings(points)).collect()
+    }
+
+    fn part_warnings(&self, points: &[Vec<f64>]) -> Vec<String> {
         let Some(parts) = &self.parts else { return Vec::new() };
         let made_for = self.element.origin.made_for.as_ref();
         let made = made_for.map_or(&[][..], |own| &own.parts);
@@ -121,23 +125,28 @@ impl<'s> ReducedSubject<'s> {
         let swept: Vec<String> = swept.collect();
         let (file, origin) = (&parts.own().file, &self.element.origin);
         let template = Template::new(own, self.parameters, Nominal { model: parts.own(), swept: &swept })?;
-        let text = template.text(values, Some(self.shared(values)?.friction), file)?;
-        standing_alone(&text, file, &origin.mesh, origin.band).map(Some)
+        let text = template.text(values, Some(self.sample(values)?.friction), file)?;
+        standing_alone(&text, file, &origin.mesh, origin.band, None).map(Some)
     }
 
-    fn shared(&self, values: &[f64]) -> Result<SharedValues> {
-        let of = |key: &str, otherwise: f64| {
-            let place = self.parameters.iter().position(|parameter| parameter.shared_key() == Some(key));
-            place.map_or(otherwise, |i| values[i])
-        };
-        let [friction, pressure, contact_stiffness] =
-            [of(KEYS[0], self.element.origin.friction), of(KEYS[1], 1.0), of(KEYS[2], 1.0)];
-        if friction < 0.0 || pressure <= 0.0 || contact_stiffness <= 0.0 {
-            let what = format!("friction {friction}, pressure {pressure}, contact stiffness {contact_stiffness}");
-            return Err(Error::input(format!("{what}: friction is 0 or above, the factors are above 0")));
-        }
-        Ok(SharedValues { friction, pressure, contact_stiffness })
+    /// What a point changes beside the parts.
+    fn sample(&self, values: &[f64]) -> Result<Sample> {
+        Ok(SharedValues::at(values, self.parameters)?.sample(self.element.origin.friction))
     }
+}
+
+/// What is wrong where points have friction coefficients beyond those at which a Galerkin super-element has modes.
+fn friction_warning(samples: &[Sample], points: &[f64]) -> Option<String> {
+    let [from, to] = span(samples.iter().map(|sample| sample.friction));
+    let [low, high] = span(points.iter().copied());
+    let is_outside = from <= to && (low < from - FRICTION_MARGIN || high > to + FRICTION_MARGIN);
+    is_outside.then(|| {
+        format!(
+            "friction coefficients of the study: {low:.3} to {high:.3}; the super-element has modes of the full model \
+             from {from:.3} to {to:.3}. Modes outside are less exact: make one by `squeal reduce --galerkin` with \
+             --samples or --for"
+        )
+    })
 }
 
 fn outside(range: &PartRange, own: &PartRange) -> String {
@@ -173,7 +182,7 @@ fn unknown(parameter: &Parameter) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::explore;
+    use crate::explore::{self, KeyPath};
     use crate::native::Mck;
     use crate::reduction::parts::MatricesByPart;
     use crate::reduction::testing;
@@ -219,6 +228,20 @@ mod tests {
         assert!(message.contains("soft.toml: the super-element has the geometric stiffness of one"), "{message}");
         assert!(of(&study("part.disc.rayleigh.alpha"), prestressed()).is_ok());
         assert!(of(&study(LINING), element(Some(&model()))).is_ok());
+    }
+
+    #[test]
+    fn friction_coefficients_without_modes_nearby_have_a_warning() {
+        let samples = [0.5, 0.2].map(Sample::at);
+        let is_silent = |points: &[f64]| friction_warning(&samples, points).is_none();
+        assert!(is_silent(&[0.16, 0.3, 0.54]) && !is_silent(&[0.14, 0.3]) && !is_silent(&[0.3, 0.56]));
+        assert!(friction_warning(&samples[..1], &[0.3, 0.7]).unwrap().contains("0.300 to 0.700; the super-element"));
+        assert_eq!(friction_warning(&[], &[0.9]), None, "no samples: a super-element of reference pairs");
+        let mut study = study("material.lining.young");
+        (study.parameters[0].keys, study.parameters[0].is_factor) = (vec![KeyPath::parse("friction").unwrap()], false);
+        let mut subject = of(&study, element(None)).unwrap();
+        subject.element.origin.samples = samples.to_vec();
+        assert_eq!(subject.warnings(&[vec![0.9], vec![0.3]]).len(), 1);
     }
 
     #[test]
