@@ -4,11 +4,12 @@
 //! alone makes K differ from its transpose, so the right vectors span a start V; better still, the space in which they
 //! were found, whose projections serve transposed. A round computes each vector again in V, by inverse iteration with
 //! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as the
-//! search for the right vectors does ([`super::blocked`]). A vector is found when a round hardly moves it.
+//! search for the right vectors does ([`super::blocked`]). A vector is found when a round hardly moves it, or only
+//! within the space of the vectors that have the same eigenvalue.
 //!
 //! Why it is written by hand: SLEPc's PEP has no left vectors.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::Mode;
@@ -18,6 +19,10 @@ use crate::{Error, Result};
 
 /// Relative steps away from an eigenvalue at which the problem is not singular.
 const LAMBDA_STEPS: [f64; 3] = [0.0, 1e-14, 1e-12];
+
+/// Eigenvalues that differ by less than this, relatively, have one space of vectors: as far as they are known, each
+/// vector of that space belongs to each of them.
+const SAME_EIGENVALUE: f64 = 1e-9;
 
 /// Left vectors of `modes`, found in the space whose `basis` is given: columns `2i` and `2i + 1` are the real and
 /// imaginary part of mode i, `y^H M y = 1`, with the accuracy that each is to have: relative, by the last round's
@@ -42,7 +47,7 @@ pub(super) fn left_vectors(
     let mut open: Vec<usize> = (0..modes.len()).filter(|&i| accuracies[i].is_finite()).collect();
     for round in 0..max_rounds {
         open.retain(|&i| {
-            let moved = improve(&space, &mut vectors[i]);
+            let moved = improve(&space, &mut vectors, i);
             round == 0 || moved > accuracies[i]
         });
         let before = space.v.n_columns();
@@ -71,21 +76,34 @@ fn start_from(space: &Space, modes: &[Mode], vectors: &Block) -> Vec<Ritz> {
     modes.iter().enumerate().map(ritz).collect()
 }
 
-/// One inverse iteration with the projected `P(lambda)^T`, from where the vector was, so that two vectors of one
-/// eigenvalue stay two. Gives by how much it moved, relative and but for its phase.
-fn improve(space: &Space, vector: &mut Ritz) -> f64 {
+/// One inverse iteration with the projected `P(lambda)^T` for vector i, from where it was, so that two vectors of one
+/// eigenvalue stay two. Gives by how much it moved, relative, out of the space of all vectors with its eigenvalue.
+fn improve(space: &Space, vectors: &mut [Ritz], i: usize) -> f64 {
+    let lambda = vectors[i].lambda;
+    let start = coefficients(space, &vectors[i]);
+    // Where lambda is an eigenvalue to the last digit, a number beside it serves.
+    let found = LAMBDA_STEPS.iter().find_map(|step| inverse_iterate(space, lambda * (1.0 + step), &start));
+    let x = normalise(found.unwrap_or_else(|| start.clone()));
+    let has_same = |other: &&Ritz| (other.lambda - lambda).norm() <= SAME_EIGENVALUE * lambda.norm();
+    let same: Vec<Vec<Complex64>> = vectors.iter().filter(has_same).map(|own| coefficients(space, own)).collect();
+    (vectors[i].re, vectors[i].im) = x.iter().map(|z| (z.re, z.im)).unzip();
+    outside(x, &same)
+}
+
+/// The coefficients of a vector in the whole space, of length 1.
+fn coefficients(space: &Space, vector: &Ritz) -> Vec<Complex64> {
     let entry = |row: usize| match (vector.re.get(row), vector.im.get(row)) {
         (Some(&re), Some(&im)) => Complex64::new(re, im),
         _ => Complex64::default(),
     };
-    let start = normalise((0..space.v.n_columns()).map(entry).collect());
-    // Where lambda is an eigenvalue to the last digit, a number beside it serves.
-    let found = LAMBDA_STEPS.iter().find_map(|step| inverse_iterate(space, vector.lambda * (1.0 + step), &start));
-    let x = normalise(found.unwrap_or_else(|| start.clone()));
-    let overlap: Complex64 = start.iter().zip(&x).map(|(a, b)| a.conj() * b).sum();
-    let moved = start.iter().zip(&x).map(|(a, b)| (b - overlap * a).norm_sqr()).sum::<f64>().sqrt();
-    (vector.re, vector.im) = x.iter().map(|z| (z.re, z.im)).unzip();
-    moved
+    normalise((0..space.v.n_columns()).map(entry).collect())
+}
+
+/// How much of x is outside of what some vectors of length 1 span.
+fn outside(x: Vec<Complex64>, span: &[Vec<Complex64>]) -> f64 {
+    let columns: Vec<DVector<Complex64>> = span.iter().map(|own| DVector::from_column_slice(own)).collect();
+    let (q, x) = (DMatrix::from_columns(&columns).qr().q(), DVector::from_vec(x));
+    (&x - &q * q.ad_mul(&x)).norm()
 }
 
 /// The projected `P(lambda)^-T start`; none where that cannot be had.
@@ -150,4 +168,21 @@ fn conjugated(mut block: Block) -> Block {
         block.column_mut(j).iter_mut().for_each(|x| *x = -*x);
     }
     block
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vector_that_stays_among_those_of_its_eigenvalue_has_not_moved() {
+        let vector = |entries: [f64; 3]| normalise(entries.map(|x| Complex64::from_polar(x, 0.3)).to_vec());
+        let same = [vector([1.0, 0.0, 0.0]), vector([1.0, 1e-3, 0.0])];
+        let turned = vector([0.6, 0.8, 0.0]);
+        assert!(outside(turned.clone(), &same) < 1e-12 && (outside(turned, &same[..1]) - 0.8).abs() < 1e-15);
+        let phase = same[0].iter().map(|z| -Complex64::I * z).collect();
+        assert!(outside(phase, &same[..1]) < 1e-15, "a phase is no change");
+        assert!((outside(vector([3.0, 0.0, 4.0]), &same) - 0.8).abs() < 1e-12);
+        assert!(outside(same[0].clone(), &[same[0].clone(), same[0].clone()]) < 1e-15, "a vector that stands twice");
+    }
 }
