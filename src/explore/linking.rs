@@ -11,6 +11,11 @@ use super::result::Link;
 const LEAST_SHARE: f64 = 0.3;
 /// A smaller share is doubtful.
 const CLEAR_SHARE: f64 = 0.6;
+/// Two assignments are equally good where their sums of shares differ by less: the vectors of a coalescence differ in
+/// the sign of their imaginary parts alone, so that both have the same shares, up to the error of left vectors.
+const TIE: f64 = 0.02;
+/// Growth rates are equal where they differ by less than this part of the frequency.
+const EQUAL_GROWTH: f64 = 1e-6;
 /// Shares are counted in whole parts of one, as the assignment algorithm needs them.
 const PARTS: f64 = 1e9;
 
@@ -45,17 +50,25 @@ impl ModeProducts {
     }
 }
 
-/// The nominal mode of each mode of a point: of all assignments one to one that with the largest sum of shares.
+/// The nominal mode of each mode of a point, whose eigenvalues are `lambdas`: of all assignments one to one that with
+/// the largest sum of shares. Where two modes can be exchanged, the one with the larger growth rate has the larger
+/// number, and at equal growth rates the one with the higher frequency.
 ///
 /// ```
 /// use nalgebra::dmatrix;
+/// use num_complex::Complex64;
 ///
-/// let links = squeal::explore::link(&dmatrix![0.1, 0.9; 0.5, 0.1]);
+/// let lambdas = [1000.0, 2000.0].map(|omega| Complex64::new(-1.0, omega));
+/// let links = squeal::explore::link(&dmatrix![0.1, 0.9; 0.5, 0.1], &lambdas);
 /// let [first, second] = links[..] else { panic!("two modes") };
 /// assert!(first.is_some_and(|link| link.nominal == 2 && link.doubtful));
 /// assert!(second.is_some_and(|link| link.nominal == 1 && !link.doubtful));
 /// ```
-pub fn link(shares: &DMatrix<f64>) -> Vec<Option<Link>> {
+///
+/// # Panics
+/// Where there is not one eigenvalue for each column of the shares.
+pub fn link(shares: &DMatrix<f64>, lambdas: &[Complex64]) -> Vec<Option<Link>> {
+    assert_eq!(shares.ncols(), lambdas.len(), "an eigenvalue for each mode");
     let mut links = vec![None; shares.ncols()];
     let n = shares.nrows().max(shares.ncols());
     if n == 0 {
@@ -64,7 +77,15 @@ pub fn link(shares: &DMatrix<f64>) -> Vec<Option<Link>> {
     // Near a coalescence a share may be large without bound.
     let share =
         |i: usize, j: usize| shares.get((i, j)).filter(|share| **share >= LEAST_SHARE).map_or(0.0, |s| s.min(1.0));
-    let (_, columns) = kuhn_munkres(&Matrix::from_fn(n, n, |(i, j)| (PARTS * share(i, j)) as i64));
+    let (_, mut columns) = kuhn_munkres(&Matrix::from_fn(n, n, |(i, j)| (PARTS * share(i, j)) as i64));
+    for (i, k) in (0..n).flat_map(|k| (0..k).map(move |i| (i, k))) {
+        let (j, l) = (columns[i], columns[k]);
+        let is_linked = [(i, j), (k, l), (i, l), (k, j)].iter().all(|&(i, j)| share(i, j) > 0.0);
+        if is_linked && share(i, j) + share(k, l) - share(i, l) - share(k, j) < TIE && is_later(lambdas[j], lambdas[l])
+        {
+            columns.swap(i, k);
+        }
+    }
     for (i, j) in columns.into_iter().enumerate().filter(|&(i, j)| share(i, j) > 0.0) {
         let found = shares[(i, j)];
         // Beyond 1 the vectors are those of a coalescence.
@@ -72,6 +93,11 @@ pub fn link(shares: &DMatrix<f64>) -> Vec<Option<Link>> {
         links[j] = Some(Link { nominal: i + 1, share: found, doubtful });
     }
     links
+}
+
+/// Whether the first of two modes has the larger number where both are the same nominal modes.
+fn is_later(a: Complex64, b: Complex64) -> bool {
+    if (a.re - b.re).abs() > EQUAL_GROWTH * a.norm() { a.re > b.re } else { a.im > b.im }
 }
 
 #[cfg(test)]
@@ -94,6 +120,28 @@ mod tests {
         let shares = products(1.0, 1.0).shares();
         assert!((shares[(0, 0)] - 0.72).abs() < 1e-15 && (shares[(0, 1)] - 0.02).abs() < 1e-15);
         assert!((products(-7.0, 3.0).shares() - shares).norm() < 1e-14);
+    }
+
+    /// Damped modes of rising frequency.
+    fn link(shares: &DMatrix<f64>) -> Vec<Option<Link>> {
+        let lambda = |j: usize| Complex64::new(-1.0, 1000.0 + j as f64);
+        super::link(shares, &(0..shares.ncols()).map(lambda).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn modes_of_a_coalescence_have_the_order_of_their_growth_rates() {
+        let of = |shares: DMatrix<f64>, lambdas: [[f64; 2]; 2]| {
+            let links = super::link(&shares, &lambdas.map(|[re, im]| Complex64::new(re, im)));
+            links.into_iter().map(|link| link.unwrap().nominal).collect::<Vec<_>>()
+        };
+        // What is equal but for rounding, in either order of the modes and whichever sum is larger.
+        let either = [dmatrix![0.51, 0.5; 0.5, 0.5], dmatrix![0.5, 0.51; 0.5, 0.5], dmatrix![1.7, 1.4; 1.5, 1.6]];
+        for shares in either {
+            assert_eq!(of(shares.clone(), [[-300.0, 1000.0], [300.0, 1000.0]]), [1, 2]);
+            assert_eq!(of(shares.clone(), [[300.0, 1000.0], [-300.0, 1000.0]]), [2, 1]);
+            assert_eq!(of(shares, [[-1.0 + 1e-5, 1001.0], [-1.0, 1002.0]]), [1, 2], "equal growth rates");
+        }
+        assert_eq!(of(dmatrix![0.6, 0.5; 0.5, 0.6], [[300.0, 1000.0], [-300.0, 1000.0]]), [1, 2], "no tie");
     }
 
     #[test]

@@ -169,7 +169,8 @@ impl PointSolution {
             nominal_own: other.own.clone(),
             own: vectors.own.clone(),
         };
-        link(&products.shares())
+        let lambdas: Vec<Complex64> = self.modes.iter().map(|mode| mode.lambda).collect();
+        link(&products.shares(), &lambdas)
     }
 }
 
