@@ -16,6 +16,7 @@ mod nafems_fv52;
 mod oberst_beam;
 mod pads_on_disc;
 mod sandwich_beam;
+mod sensitivity;
 #[path = "../support/mod.rs"]
 mod support;
 mod table;
