@@ -119,7 +119,8 @@ pub fn first_middle_last(values: &[f64]) -> Vec<f64> {
 }
 
 /// Where modes are taken unless otherwise said: at the first, the middle and the last friction coefficient of a sweep,
-/// which is widened to the range of a study where that reaches beyond it.
+/// which is widened to the range of a study where that reaches beyond it; the middle one is then the nearest to the
+/// middle of that range.
 pub fn friction_samples(sweep: &[f64], study: Option<&Study>) -> Vec<f64> {
     let own = study.into_iter().flat_map(|study| &study.parameters).find(|own| own.shared_key() == Some("friction"));
     let Some(range) = own.map(sampled_range) else { return first_middle_last(sweep) };
@@ -128,7 +129,14 @@ pub fn friction_samples(sweep: &[f64], study: Option<&Study>) -> Vec<f64> {
     let mut values: Vec<f64> = sweep.iter().copied().chain(beyond).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
-    first_middle_last(&values)
+    let [low, high] = span(values.iter().copied());
+    let middle = values.iter().copied().min_by(|a, b| {
+        let distance = |value: &f64| (value - 0.5 * (low + high)).abs();
+        distance(a).total_cmp(&distance(b))
+    });
+    let mut samples: Vec<f64> = [low].into_iter().chain(middle).chain([high]).collect();
+    samples.dedup();
+    samples
 }
 
 /// A Galerkin super-element, and where its coordinates come from.
@@ -206,8 +214,18 @@ fn sampled(
     let end = widened(model.model.band)[1];
     let mut snapshots = Snapshots::take(model, system, options, end, observer)?;
     snapshots.take_others(model, others.first(OTHER_PARTS), options, end, observer)?;
-    snapshots.take_equilibria(model, others.after(OTHER_PARTS, OTHER_EQUILIBRIA), options, observer)?;
+    snapshots.take_equilibria(
+        model,
+        others.after(OTHER_PARTS, n_equilibria(others.models.len())),
+        options,
+        observer,
+    )?;
     Ok(snapshots)
+}
+
+/// At how many models with other parts equilibria alone are taken: what others and tests leave.
+fn n_equilibria(n_models: usize) -> usize {
+    n_models.saturating_sub(OTHER_PARTS + OTHER_TESTS).min(OTHER_EQUILIBRIA)
 }
 
 fn factorised(k_ref: &Matrix) -> Result<Factor> {
@@ -240,7 +258,7 @@ fn made_for(
     report: &BasisReport,
 ) -> Result<Option<MadeFor>> {
     let error = |other| Ok(certify_at(model, other, (element, basis), middle, middle.friction)?.frequency_error());
-    let tests = others.after(OTHER_PARTS + OTHER_EQUILIBRIA, OTHER_TESTS);
+    let tests = others.after(OTHER_PARTS + n_equilibria(others.models.len()), OTHER_TESTS);
     let test_errors = tests.iter().map(error).collect::<Result<Vec<f64>>>()?;
     let n_samples = others.first(OTHER_PARTS).len();
     Ok(others.made_for(MadeFor {
@@ -272,6 +290,11 @@ mod tests {
     }
 
     #[test]
+    fn few_models_leave_tests() {
+        assert_eq!([9, 10, 22, 50, 64].map(n_equilibria), [0, 0, 12, 40, 40]);
+    }
+
+    #[test]
     fn samples_reach_as_far_as_the_friction_coefficients_of_a_study() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("for.toml");
@@ -287,6 +310,7 @@ mod tests {
         assert_eq!(of("friction", &[0.4]), [0.2, 0.4, 0.6]);
         assert_eq!(of("friction", &[0.1, 0.5, 0.9]), [0.1, 0.5, 0.9], "the study lies within the sweep");
         assert_eq!(of("friction", &[0.3, 0.4, 0.5, 0.7]), [0.2, 0.4, 0.7]);
+        assert_eq!(of("friction", &[0.1, 0.12, 0.14, 0.16, 0.3]), [0.1, 0.3, 0.6], "nearest to 0.35");
         assert_eq!((of("pressure", &[0.4]), friction_samples(&[0.4], None)), (vec![0.4], vec![0.4]));
     }
 

@@ -1,6 +1,5 @@
 //! Equilibria and modes of the full model at samples, of which the basis of a Galerkin super-element is made.
 
-use crate::Result;
 use crate::assembly::System;
 use crate::contact::Response;
 use crate::equilibrium::{Contacts, Equilibrium};
@@ -9,9 +8,10 @@ use crate::reduction::galerkin::{self, Basis, BasisReport};
 use crate::reduction::super_element::Sample;
 use crate::stability::EigenOptions;
 use crate::structure::FullModel;
+use crate::{Error, ErrorKind, Result};
 
 use super::galerkin::GalerkinOptions;
-use super::observer::Observer;
+use super::observer::{Event, Observer};
 use super::other_parts::OtherModel;
 use super::sweep::{Costs, Sweep};
 
@@ -151,7 +151,7 @@ impl Snapshots {
     }
 
     /// Solves the model with other parts for equilibria alone, each under the friction, loads and contact stiffness of
-    /// its own point. Collective.
+    /// its own point. One that is not found is left out with a warning, as it is of a study. Collective.
     pub(super) fn take_equilibria(
         &mut self,
         model: &FullModel,
@@ -159,12 +159,15 @@ impl Snapshots {
         options: &GalerkinOptions,
         observer: &mut dyn Observer,
     ) -> Result<()> {
-        for other in others {
+        for (number, other) in (1..).zip(others) {
             let mut system = model.assemble_as(self.states[0].u.comm(), &other.model)?;
             let own = other.shared.sample(options.middle().friction);
             let sample = if self.is_homogeneous { Sample { pressure: 1.0, ..own } } else { own };
             system.scale_load(sample.pressure)?;
-            self.follow(model, &system, &[(sample, None)], options.vector_accuracy(), observer)?;
+            let found = self.follow(model, &system, &[(sample, None)], options.vector_accuracy(), observer);
+            if let Some(reason) = not_converged(found)? {
+                observer.event(Event::Warning(&left_out(number, &sample, &reason)));
+            }
         }
         Ok(())
     }
@@ -234,6 +237,23 @@ impl Snapshots {
     }
 }
 
+/// Why something did not converge; other errors stay what they are.
+fn not_converged(outcome: Result<()>) -> Result<Option<Error>> {
+    match outcome {
+        Err(error) if error.kind() == ErrorKind::NotConverged => Ok(Some(error)),
+        outcome => outcome.map(|()| None),
+    }
+}
+
+/// The warning of a sample without an equilibrium.
+fn left_out(number: usize, sample: &Sample, reason: &Error) -> String {
+    let Sample { friction, pressure, contact_stiffness } = sample;
+    format!(
+        "the super-element goes without equilibrium {number} of other parts, at friction {friction:.3}, pressure \
+         {pressure:.3} and contact stiffness {contact_stiffness:.3}: {reason}"
+    )
+}
+
 /// The place of the value that is nearest to another one; the first of several.
 fn nearest(values: impl Iterator<Item = f64>, to: f64) -> Option<usize> {
     let distances = values.map(|value| (value - to).abs()).enumerate();
@@ -262,6 +282,16 @@ mod tests {
         assert_eq!(empty_middle(&states, 0.2), Some(0.5 * (0.2 + 0.3)));
         assert_eq!(empty_middle(&states, 0.36), Some(0.35));
         assert_eq!(empty_middle(&states, 0.5), None);
+    }
+
+    #[test]
+    fn an_equilibrium_that_is_not_found_is_left_out_and_other_errors_are_not() {
+        assert!(not_converged(Ok(())).unwrap().is_none());
+        let reason = not_converged(Err(Error::not_converged("no equilibrium"))).unwrap().unwrap();
+        let text = left_out(7, &Sample { pressure: 0.4, ..Sample::at(0.25) }, &reason);
+        assert!(text.contains("equilibrium 7 of other parts, at friction 0.250, pressure 0.400"), "{text}");
+        assert!(text.contains("no equilibrium"), "{text}");
+        assert!(not_converged(Err(Error::input("a file"))).is_err());
     }
 
     #[test]

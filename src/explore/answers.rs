@@ -39,7 +39,7 @@ pub struct Answers {
     pub bins: Vec<Bin>,
     /// Sobol indices of the largest growth rate, where the design is for them.
     pub indices: Option<Vec<Indices>>,
-    /// How many base points these are of: those without a failed point.
+    /// How many base points these are of: those whose points all have modes in the band.
     pub n_base_points: usize,
     /// Swings of the largest growth rate, where one parameter varies at a time.
     pub tornado: Option<Vec<Bar>>,

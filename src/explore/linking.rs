@@ -11,8 +11,9 @@ use super::result::Link;
 const LEAST_SHARE: f64 = 0.3;
 /// A smaller share is doubtful.
 const CLEAR_SHARE: f64 = 0.6;
-/// Two assignments are equally good where their sums of shares differ by less: the vectors of a coalescence differ in
-/// the sign of their imaginary parts alone, so that both have the same shares, up to the error of left vectors.
+/// Two assignments of two modes are equally good where their sums of shares differ by less than this part: the vectors
+/// of a coalescence differ in the sign of their imaginary parts alone, so that both have the same shares, up to the
+/// error of left vectors.
 const TIE: f64 = 0.02;
 /// Growth rates are equal where they differ by less than this part of the frequency.
 const EQUAL_GROWTH: f64 = 1e-6;
@@ -81,8 +82,7 @@ pub fn link(shares: &DMatrix<f64>, lambdas: &[Complex64]) -> Vec<Option<Link>> {
     for (i, k) in (0..n).flat_map(|k| (0..k).map(move |i| (i, k))) {
         let (j, l) = (columns[i], columns[k]);
         let is_linked = [(i, j), (k, l), (i, l), (k, j)].iter().all(|&(i, j)| share(i, j) > 0.0);
-        if is_linked && share(i, j) + share(k, l) - share(i, l) - share(k, j) < TIE && is_later(lambdas[j], lambdas[l])
-        {
+        if is_linked && should_exchange(shares, [(i, j), (k, l)], lambdas) {
             columns.swap(i, k);
         }
     }
@@ -93,6 +93,13 @@ pub fn link(shares: &DMatrix<f64>, lambdas: &[Complex64]) -> Vec<Option<Link>> {
         links[j] = Some(Link { nominal: i + 1, share: found, doubtful });
     }
     links
+}
+
+/// Whether two links are better the other way round, by the shares as they are.
+fn should_exchange(shares: &DMatrix<f64>, [(i, j), (k, l)]: [(usize, usize); 2], lambdas: &[Complex64]) -> bool {
+    let (own, other) = (shares[(i, j)] + shares[(k, l)], shares[(i, l)] + shares[(k, j)]);
+    let is_tie = (own - other).abs() < TIE * own;
+    if is_tie { is_later(lambdas[j], lambdas[l]) } else { other > own }
 }
 
 /// Whether the first of two modes has the larger number where both are the same nominal modes.
@@ -135,13 +142,16 @@ mod tests {
             links.into_iter().map(|link| link.unwrap().nominal).collect::<Vec<_>>()
         };
         // What is equal but for rounding, in either order of the modes and whichever sum is larger.
-        let either = [dmatrix![0.51, 0.5; 0.5, 0.5], dmatrix![0.5, 0.51; 0.5, 0.5], dmatrix![1.7, 1.4; 1.5, 1.6]];
+        let either = [dmatrix![0.51, 0.5; 0.5, 0.5], dmatrix![0.5, 0.51; 0.5, 0.5], dmatrix![1.7, 1.65; 1.6, 1.6]];
         for shares in either {
             assert_eq!(of(shares.clone(), [[-300.0, 1000.0], [300.0, 1000.0]]), [1, 2]);
             assert_eq!(of(shares.clone(), [[300.0, 1000.0], [-300.0, 1000.0]]), [2, 1]);
             assert_eq!(of(shares, [[-1.0 + 1e-5, 1001.0], [-1.0, 1002.0]]), [1, 2], "equal growth rates");
         }
-        assert_eq!(of(dmatrix![0.6, 0.5; 0.5, 0.6], [[300.0, 1000.0], [-300.0, 1000.0]]), [1, 2], "no tie");
+        for shares in [dmatrix![0.6, 0.5; 0.5, 0.6], dmatrix![2.0, 1.0; 1.0, 2.0]] {
+            assert_eq!(of(shares.clone(), [[300.0, 1000.0], [-300.0, 1000.0]]), [1, 2], "no tie");
+            assert_eq!(of(shares, [[-300.0, 1000.0], [300.0, 1000.0]]), [1, 2], "no tie");
+        }
     }
 
     #[test]

@@ -56,11 +56,21 @@ impl Template {
         let targets = parameters.iter().map(target).collect::<Result<Vec<_>>>()?;
         refuse_doubled(document.as_item(), parameters, &targets, &swept)?;
         let friction = friction_coefficients(nominal.model, &swept);
-        if targets.iter().any(|target| matches!(target, Target::Friction)) {
-            let advice = "Give each a parameter of its own, such as contact.NAME.friction";
-            require_one_number("the friction coefficients of the swept contacts", &friction, advice)?;
-        }
         Ok(Template { document, targets, friction: friction.first().copied().unwrap_or(0.0), swept })
+    }
+
+    /// Refuses the friction of all swept contacts as a parameter where `model`, which has the nominal point, has several
+    /// values.
+    ///
+    /// # Errors
+    /// [`Error::Input`] there.
+    pub fn require_one_friction(&self, model: &Model) -> Result<()> {
+        if !self.targets.iter().any(|target| matches!(target, Target::Friction)) {
+            return Ok(());
+        }
+        let advice = "Give each a parameter of its own, such as contact.NAME.friction";
+        let friction = friction_coefficients(model, &self.swept);
+        require_one_number("the friction coefficients of the swept contacts", &friction, advice)
     }
 
     /// The parameters' values in the model file; 1 of factors.
@@ -115,7 +125,7 @@ impl Template {
 }
 
 /// The text of a model file whose mesh has another path, with the band of a study (Hz), and what counts as an unstable
-/// mode where the study says so. Gap fields, which are beside the model file `file`, get their whole path.
+/// mode where the study gives one. Gap fields, which are beside the model file `file`, get their whole path.
 ///
 /// # Errors
 /// [`Error::Input`] where the text is no model file.

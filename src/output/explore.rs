@@ -138,7 +138,7 @@ impl<'a> Document<'a> {
         text += &section(&format!("{what} of squeal over frequency"), &bins(&answers.bins));
         let indices = answers.indices.as_deref().map_or_else(String::new, indices);
         let n_base = format!("Sobol indices of the largest growth rate, of {} base points", answers.n_base_points);
-        text += &section(&format!("{n_base} without a failed point, with intervals of 95 %"), &indices);
+        text += &section(&format!("{n_base} with modes at all points, with intervals of 95 %"), &indices);
         text += &section("largest growth rate, one parameter at a time", &tornado(answers.tornado.as_deref()));
         let gradients: String = answers.gradients.iter().map(influences).chain(self.missing_derivatives()).collect();
         text += &section(

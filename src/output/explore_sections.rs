@@ -27,7 +27,7 @@ pub(super) fn with_failed(limits: Option<[f64; 2]>) -> String {
 
 pub(super) fn percent(own: Probability) -> String {
     if own.n_points == 0 {
-        return "unknown, as all points have failed".into();
+        return "unknown, as no point that counts has a solution".into();
     }
     let [value, low, high] = [own.value, own.low, own.high].map(|p| 100.0 * p);
     format!("{value:.1} % (95 %: {low:.1} to {high:.1}), {} of {} points", own.n_true, own.n_points)
@@ -121,8 +121,10 @@ pub(super) fn influences(own: &Tornado) -> String {
 /// A line where Hopf points are not found.
 pub(super) fn hopf_points_not_found(n_edges: usize) -> String {
     let edges = format!("{n_edges} edge{} of the grid", plural(n_edges));
-    let line =
-        format!("on {edges} a mode turns unstable, but its Hopf point is not found: a solution has no such mode\n");
+    let line = format!(
+        "on {edges} a mode turns unstable, but its Hopf point is not found: a solution there failed, or has no mode near \
+                          the frequency. Give more levels\n"
+    );
     if n_edges > 0 { line } else { String::new() }
 }
 

@@ -82,7 +82,7 @@ fn headline(found: &Exploration) -> String {
     let answers = &found.answers;
     let p = answers.unstable;
     if p.n_points == 0 {
-        return "Unknown: all points have failed".to_owned();
+        return "Unknown: no point that counts has a solution".to_owned();
     }
     if !answers.is_sample {
         return format!("Unstable at {} of {} points", p.n_true, p.n_points);
@@ -106,8 +106,9 @@ fn cautions(study: &Study, found: &Exploration) -> Markup {
                     " The others close in on the " (answers.hopf.points.len()) " Hopf points between them (hopf.csv)."
                 }
                 @if answers.hopf.n_not_found > 0 {
-                    " On " (answers.hopf.n_not_found) " edges of the grid a mode turns unstable, but its Hopf point is "
-                    "not found: a solution has no such mode."
+                    " On " (answers.hopf.n_not_found) " edge" (plural(answers.hopf.n_not_found)) " of the grid a mode "
+                    "turns unstable, but its Hopf point is not found: a solution there failed, or has no mode near the "
+                    "frequency. Give more levels."
                 }
                 @if let Some(widest) = answers.boundary.first() {
                     " Most of the others lie near the boundary, of which " (answers.boundary.len())

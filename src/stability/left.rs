@@ -5,7 +5,8 @@
 //! were found, whose projections serve transposed. A round computes each vector again in V, by inverse iteration with
 //! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as the
 //! search for the right vectors does ([`super::blocked`]). A vector is found when a round hardly moves it, or only
-//! within the space of the vectors that have the same eigenvalue.
+//! within the space of the vectors that have the same eigenvalue. Vectors of one eigenvalue are combined so that each is
+//! the left vector of one right vector: `y_i^H P'(lambda) x_j = 0` for two of them.
 //!
 //! Why it is written by hand: SLEPc's PEP has no left vectors.
 
@@ -23,6 +24,9 @@ const LAMBDA_STEPS: [f64; 3] = [0.0, 1e-14, 1e-12];
 /// Eigenvalues that differ by less than this, relatively, have one space of vectors: as far as they are known, each
 /// vector of that space belongs to each of them.
 const SAME_EIGENVALUE: f64 = 1e-9;
+
+/// Vectors of length 1 with no more than this between them are one.
+const SAME_DIRECTION: f64 = 1e-8;
 
 /// Left vectors of `modes`, found in the space whose `basis` is given: columns `2i` and `2i + 1` are the real and
 /// imaginary part of mode i, `y^H M y = 1`, with the accuracy that each is to have: relative, by the last round's
@@ -43,7 +47,8 @@ pub(super) fn left_vectors(
         Some(basis) => Space::of_left_vectors(searched, basis),
         None => Space::spanned(searched, start.clone())?,
     };
-    let mut vectors = start_from(&space, modes, &start);
+    let right = start_from(&space, modes, &start);
+    let mut vectors = right.clone();
     let mut open: Vec<usize> = (0..modes.len()).filter(|&i| accuracies[i].is_finite()).collect();
     for round in 0..max_rounds {
         open.retain(|&i| {
@@ -57,6 +62,7 @@ pub(super) fn left_vectors(
             space.extend_by_solves(&residuals)?;
         }
         if space.v.n_columns() == before {
+            pair(&space, &mut vectors, &right);
             return normalised_left(m, space.vectors(&vectors));
         }
     }
@@ -99,11 +105,58 @@ fn coefficients(space: &Space, vector: &Ritz) -> Vec<Complex64> {
     normalise((0..space.v.n_columns()).map(entry).collect())
 }
 
-/// How much of x is outside of what some vectors of length 1 span.
+/// How much of x is outside of what some vectors of length 1 span (Gram and Schmidt, twice).
 fn outside(x: Vec<Complex64>, span: &[Vec<Complex64>]) -> f64 {
-    let columns: Vec<DVector<Complex64>> = span.iter().map(|own| DVector::from_column_slice(own)).collect();
-    let (q, x) = (DMatrix::from_columns(&columns).qr().q(), DVector::from_vec(x));
-    (&x - &q * q.ad_mul(&x)).norm()
+    let mut basis: Vec<DVector<Complex64>> = Vec::new();
+    let rest = |x: &[Complex64], basis: &[DVector<Complex64>]| {
+        let once = |x: DVector<Complex64>| basis.iter().fold(x, |x, q| &x - q * q.dotc(&x));
+        once(once(DVector::from_column_slice(x)))
+    };
+    for own in span {
+        let own = rest(own, &basis);
+        let length = own.norm();
+        if length > SAME_DIRECTION {
+            basis.push(own / Complex64::from(length));
+        }
+    }
+    rest(&x, &basis).norm()
+}
+
+/// Combines the left vectors of each group of equal eigenvalues, so that each belongs to one right vector.
+fn pair(space: &Space, vectors: &mut [Ritz], right: &[Ritz]) {
+    for i in 0..vectors.len() {
+        let lambda = vectors[i].lambda;
+        let is_same = |other: &Ritz| (other.lambda - lambda).norm() <= SAME_EIGENVALUE * lambda.norm();
+        let group: Vec<usize> = (0..vectors.len()).filter(|&j| is_same(&vectors[j])).collect();
+        if group.len() < 2 || group[0] != i {
+            continue;
+        }
+        let columns = |of: &[Ritz]| {
+            let columns: Vec<_> = group.iter().map(|&j| DVector::from_vec(coefficients(space, &of[j]))).collect();
+            DMatrix::from_columns(&columns)
+        };
+        let (v, x) = (columns(vectors), columns(right));
+        let mut slope = DMatrix::from_element(v.nrows(), v.nrows(), Complex64::ZERO);
+        for (factor, projected) in space.problem().slopes(lambda).into_iter().zip(&space.projected) {
+            slope.zip_apply(projected, |z, a| *z += factor * a);
+        }
+        let Some(paired) = biorthogonal(&v, &(x.transpose() * slope * &v)) else { continue };
+        for (column, &j) in paired.column_iter().zip(&group) {
+            (vectors[j].re, vectors[j].im) = column.iter().map(|z| (z.re, z.im)).unzip();
+        }
+    }
+}
+
+/// `V G^-1`, with columns of length 1: where `G = X^T A V`, column j has no product with the columns of X but its own.
+/// None where G is singular, as it is for a defective eigenvalue.
+fn biorthogonal(v: &DMatrix<Complex64>, g: &DMatrix<Complex64>) -> Option<DMatrix<Complex64>> {
+    let singular = g.clone().singular_values();
+    if singular.min() <= SAME_DIRECTION * singular.max() {
+        return None;
+    }
+    let mut paired = v * g.clone().try_inverse()?;
+    paired.column_iter_mut().for_each(|mut column| column /= Complex64::from(column.norm()));
+    Some(paired)
 }
 
 /// The projected `P(lambda)^-T start`; none where that cannot be had.
@@ -183,6 +236,22 @@ mod tests {
         let phase = same[0].iter().map(|z| -Complex64::I * z).collect();
         assert!(outside(phase, &same[..1]) < 1e-15, "a phase is no change");
         assert!((outside(vector([3.0, 0.0, 4.0]), &same) - 0.8).abs() < 1e-12);
-        assert!(outside(same[0].clone(), &[same[0].clone(), same[0].clone()]) < 1e-15, "a vector that stands twice");
+        let twice = [same[0].clone(), same[0].clone()];
+        assert!(outside(same[0].clone(), &twice) < 1e-15, "a vector that stands twice");
+        assert!((outside(vector([0.0, 1.0, 0.0]), &twice) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn left_vectors_of_one_eigenvalue_are_those_of_one_right_vector_each() {
+        let c = |re: f64, im: f64| Complex64::new(re, im);
+        let x = nalgebra::dmatrix![c(1.0, 0.0), c(0.0, 0.0); c(0.0, 0.0), c(1.0, 0.5); c(0.0, 0.0), c(0.0, 0.0)];
+        let v = nalgebra::dmatrix![c(0.6, 0.0), c(0.8, 0.1); c(0.0, 0.8), c(0.3, 0.0); c(0.0, 0.0), c(0.0, 0.0)];
+        let a = DMatrix::from_diagonal(&DVector::from_vec(vec![c(2.0, 0.0), c(3.0, 1.0), c(1.0, 0.0)]));
+        let paired = biorthogonal(&v, &(x.transpose() * &a * &v)).unwrap();
+        let g = x.transpose() * a * &paired;
+        assert!(g[(0, 1)].norm() < 1e-14 && g[(1, 0)].norm() < 1e-14 && g[(0, 0)].norm() > 0.1, "{g}");
+        assert!(paired.column_iter().all(|column| (column.norm() - 1.0).abs() < 1e-14));
+        let one = nalgebra::dmatrix![c(1.0, 0.0), c(2.0, 0.0); c(0.5, 0.0), c(1.0, 0.0)];
+        assert!(biorthogonal(&v, &one).is_none(), "a defective eigenvalue");
     }
 }

@@ -404,8 +404,8 @@ fn a_study_without_a_solution_has_no_probability() {
     let finished = place.run(&EXPLORE);
     assert_eq!(finished.code, 3, "{}", finished.err);
     assert!(finished.err.contains("no point of the study has a solution"), "{}", finished.err);
-    assert!(finished.out.contains("unknown, as all points have failed"), "{}", finished.out);
-    assert!(place.read("run/explore.html").contains("Unknown: all points have failed"));
+    assert!(finished.out.contains("unknown, as no point that counts has a solution"), "{}", finished.out);
+    assert!(place.read("run/explore.html").contains("Unknown: no point that counts has a solution"));
 }
 
 #[test]

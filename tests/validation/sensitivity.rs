@@ -5,8 +5,8 @@
 //! (lambda^2 + e_1 w_1 lambda + w_1^2) (lambda^2 + e_2 w_2 lambda + w_2^2) + mu^2 w_1^2 w_2^2 = 0
 //! ```
 //!
-//! Sources: Sinou and Jezequel, Eur. J. Mech. A 26 (2007) for the model; Iwanaga, Usher and Herman, Socio-Environ. Syst.
-//! Model. 4 (2022) for SALib 1.4 and later.
+//! Sources: Sinou and Jezequel, Eur. J. Mech. A 26 (2007) for the model; Iwanaga, Usher and Herman, Socio-Environ.
+//! Syst. Model. 4 (2022) for SALib.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -142,7 +142,7 @@ for ab in y.T[2:]: print(repr(float(first_order(a, ab, b))), repr(float(total_or
     };
     if !folder.join("complete").exists() {
         run(Command::new("python3").args(["-m", "venv"]).arg(&folder));
-        run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "SALib"]));
+        run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "SALib==1.6.0"]));
         std::fs::write(folder.join("complete"), "").unwrap();
     }
     let (values, found) = hultens_indices(256);

@@ -92,10 +92,17 @@ fn joined(first: &[Option<Link>], second: &[Option<Link>]) -> Vec<Option<Link>> 
     let through = |link: &Option<Link>| {
         let second = (*link)?;
         let first = first[second.nominal - 1]?;
-        let (share, doubtful) = (first.share.min(second.share), first.doubtful || second.doubtful);
+        let doubtful = first.doubtful || second.doubtful;
+        // What is farther from 1, on either side.
+        let share = if distance(first.share) > distance(second.share) { first.share } else { second.share };
         Some(Link { nominal: first.nominal, share, doubtful })
     };
     second.iter().map(through).collect()
+}
+
+/// How far a share is from 1, which is that of a mode that has not changed.
+fn distance(share: f64) -> f64 {
+    share.ln().abs()
 }
 
 /// Of each mode the direct link where that is clear, then that by way of the middle where that is, then what is
@@ -117,7 +124,7 @@ mod tests {
     use super::*;
 
     fn link(nominal: usize, share: f64) -> Option<Link> {
-        Some(Link { nominal, share, doubtful: share < 0.6 })
+        Some(Link { nominal, share, doubtful: !(0.6..=1.0 / 0.6).contains(&share) })
     }
 
     #[test]
@@ -125,6 +132,7 @@ mod tests {
         let first = [link(2, 0.9), link(1, 0.5), None];
         let second = [link(2, 0.8), link(1, 0.7), link(3, 0.9), None];
         assert_eq!(joined(&first, &second), [link(1, 0.5), link(2, 0.7), None, None]);
+        assert_eq!(joined(&[link(1, 2.0)], &[link(1, 0.9)]), [link(1, 2.0)], "a coalescence on the way");
     }
 
     #[test]

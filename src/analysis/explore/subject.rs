@@ -29,6 +29,7 @@ impl<'s> Subject<'s> {
         let variants = ModelVariants::read(comm, &study.model)?;
         let nominal = Nominal { model: &variants.model, swept: &variants.swept };
         let template = Template::new(&variants.text, &study.parameters, nominal)
+            .and_then(|template| template.require_one_friction(&variants.model).map(|()| template))
             .map_err(|error| Error::input(format!("{}: {error}", study.file.display())))?;
         let fields = Fields::new(comm, study, &variants)?;
         let (variants, template) = (Box::new(variants), Box::new(template));
