@@ -59,8 +59,8 @@ impl Template {
         Ok(Template { document, targets, friction: friction.first().copied().unwrap_or(0.0), swept })
     }
 
-    /// Refuses the friction of all swept contacts as a parameter where `model`, which has the nominal point, has several
-    /// values.
+    /// Refuses the friction of all swept contacts as a parameter where `model`, which has the nominal point, has
+    /// several values.
     ///
     /// # Errors
     /// [`Error::Input`] there.

@@ -3,10 +3,10 @@
 //! With `v = conj(y)` that is `P(lambda)^T v = 0`, the transposed problem at an eigenvalue that is known. Friction
 //! alone makes K differ from its transpose, so the right vectors span a start V; better still, the space in which they
 //! were found, whose projections serve transposed. A round computes each vector again in V, by inverse iteration with
-//! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as the
-//! search for the right vectors does ([`super::blocked`]). A vector is found when a round hardly moves it, or only
-//! within the space of the vectors that have the same eigenvalue. Vectors of one eigenvalue are combined so that each is
-//! the left vector of one right vector: `y_i^H P'(lambda) x_j = 0` for two of them.
+//! `V^T P(lambda)^T V` from where it was, and extends V by `K^-T R Omega`, random combinations of the residuals, as
+//! the search for the right vectors does ([`super::blocked`]). A vector is found when a round hardly moves it, or only
+//! within the space of the vectors that have the same eigenvalue. Vectors of one eigenvalue are combined so that each
+//! is the left vector of one right vector: `y_i^H P'(lambda) x_j = 0` for two of them.
 //!
 //! Why it is written by hand: SLEPc's PEP has no left vectors.
 
